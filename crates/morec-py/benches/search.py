@@ -28,8 +28,8 @@ import morec
 import morec.archive as ma
 from morec import _morec
 from morec.archive import _layout as layout
-from morec.archive._search import Wanted, search
-from morec.archive._sketches import SKETCHES, Part, made_of
+from morec.archive._search import Sketched, Wanted, search
+from morec.archive._sketches import Part, made_of, table_name
 from morec.archive._store import Store
 
 HZ = 30.0
@@ -69,8 +69,8 @@ def parts(task: tuple[str, range, str, int]) -> int:
     if base not in _BASE:
         _BASE[base] = base_rows(ma.open(base))
     done = [part(store, number, _BASE[base], seed) for number in numbers]
-    content = made_of(store, [one for one, _ in done])
-    store.write(layout.part_name(SKETCHES, [f"{numbers} {seed}"]), content)
+    made = [one for one, _ in done]
+    store.write(table_name(made), made_of(store, made))
     return sum(clips for _, clips in done)
 
 
@@ -192,7 +192,7 @@ def report(archive: ma.Archive, base: ma.Archive, compare: int, seed: int, count
         said = f"{found.bound} bound closely, {found.read} clips read"
         if number < compare:
             begun = time.perf_counter()
-            slow = search(archive.store, [], archive._clips("name", "bones", "rows"), asked, wanted)
+            slow = search(archive.store, Sketched([]), archive._clips("name", "bones", "rows"), asked, wanted)
             said += f"; all rows: {time.perf_counter() - begun:.1f} s, the same hits: {slow.hits == found.hits}"
         best = found.hits[0][4] if found.hits else 0.0
         print(

@@ -1,13 +1,16 @@
 //! Searching archives: parts laid out for it, sketches of clips, and the plan of what to read.
 
-use morec::features::{FeatureParams, RowLayout, Rows};
+use std::ops::Range;
+
+use morec::features::{BoneSet, FeatureParams, RowLayout, Rows};
 use morec_db::search::{
     BoundDepth, Example, SearchIndex, SearchOptions, SearchPlan, SketchedClip, lower_bounds,
     sketch_of, windows_wanted,
 };
 use morec_db::{ClipId, bones_of_bits, clip_rows};
-use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
+use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
+use pyo3::pybacked::PyBackedBytes;
 use pyo3::types::PyBytes;
 use rayon::prelude::*;
 
@@ -58,7 +61,7 @@ fn numbered(near: Vec<(ClipId, f32)>) -> Vec<(i64, f32)> {
 impl SearchPart {
     /// For each clip its number, bones and packed rows.
     #[new]
-    fn new(py: Python<'_>, clips: Vec<(i64, i64, Vec<u8>)>) -> Self {
+    fn new(py: Python<'_>, clips: Vec<(i64, i64, PyBackedBytes)>) -> Self {
         let index = py.detach(|| {
             let rows = clips
                 .par_iter()
@@ -139,9 +142,10 @@ impl SearchPart {
 #[pyfunction]
 pub fn sketch_kept<'py>(
     py: Python<'py>,
-    clips: Vec<(i64, Vec<u8>)>,
+    clips: Vec<(i64, PyBackedBytes)>,
 ) -> Vec<Option<Bound<'py, PyBytes>>> {
-    let one = |(bones, rows): &(i64, Vec<u8>)| sketch_of(&clip_rows(ClipId(0), *bones, rows)?);
+    let one =
+        |(bones, rows): &(i64, PyBackedBytes)| sketch_of(&clip_rows(ClipId(0), *bones, rows)?);
     let sketches: Vec<Option<Vec<u8>>> = py.detach(|| clips.par_iter().map(one).collect());
     let bytes = |sketch: Option<Vec<u8>>| sketch.map(|bytes| PyBytes::new(py, &bytes));
     sketches.into_iter().map(bytes).collect()
@@ -171,65 +175,102 @@ type SketchColumns<'py> = (
     PyReadonlyArray1<'py, u8>,
 );
 
-/// For clips of tables of sketches, one after the other, a bound below the distance of all their windows. `which` are places
-/// in all tables together; by default all. `closely` is by eighths of windows, else by halves. A bound above `reach` says only
-/// that the clip is farther than that.
-#[pyfunction]
-#[pyo3(signature = (example, tables, limit, mirror, one_a_clip, closely, reach, which=None))]
-#[expect(
-    clippy::too_many_arguments,
-    reason = "those of a search, and what it is done in"
-)]
-pub fn sketch_bounds<'py>(
-    py: Python<'py>,
-    example: &SearchExample,
-    tables: Vec<SketchColumns<'py>>,
-    limit: usize,
-    mirror: bool,
-    one_a_clip: bool,
-    closely: bool,
-    reach: f32,
-    which: Option<PyReadonlyArray1<'py, i64>>,
-) -> PyResult<Bound<'py, PyArray1<f32>>> {
-    let mut clips: Vec<SketchedClip<'_>> = Vec::new();
-    for (bones, starts, bytes) in &tables {
-        let (bones, starts, bytes) = (bones.as_slice()?, starts.as_slice()?, bytes.as_slice()?);
-        if starts.len() != bones.len() + 1 {
-            return Err(value_error(format!(
-                "starts: expected {}, found {}",
-                bones.len() + 1,
-                starts.len()
-            )));
+/// Clips of tables of sketches, one after the other.
+#[pyclass(frozen, module = "morec")]
+pub struct SketchedClips {
+    tables: Vec<Py<PyArray1<u8>>>,
+    /// Of each clip its table, and where its sketch begins and ends.
+    places: Vec<(u32, Range<u32>)>,
+    bones: Vec<BoneSet>,
+}
+
+#[pymethods]
+impl SketchedClips {
+    /// Nothing is copied: the arrays are not to be changed.
+    #[new]
+    fn new(tables: Vec<SketchColumns<'_>>) -> PyResult<Self> {
+        let (mut kept, mut places, mut all_bones) = (Vec::new(), Vec::new(), Vec::new());
+        for (number, (bones, starts, bytes)) in tables.iter().enumerate() {
+            if starts.len() != bones.len() + 1 {
+                return Err(value_error(format!(
+                    "starts: expected {}, found {}",
+                    bones.len() + 1,
+                    starts.len()
+                )));
+            }
+            for ends in starts.as_slice()?.windows(2) {
+                let span = u32::try_from(ends[0]).ok().zip(u32::try_from(ends[1]).ok());
+                let span = span.filter(|(start, end)| start <= end && *end as usize <= bytes.len());
+                let (start, end) =
+                    span.ok_or_else(|| value_error("starts beyond the bytes of sketches"))?;
+                places.push((number as u32, start..end));
+            }
+            all_bones.extend(bones.as_slice()?.iter().map(|bits| bones_of_bits(*bits)));
+            bytes.as_slice()?;
+            kept.push(bytes.as_unbound().clone_ref(bytes.py()));
         }
-        for (bits, ends) in bones.iter().zip(starts.windows(2)) {
-            let span = usize::try_from(ends[0])
-                .ok()
-                .zip(usize::try_from(ends[1]).ok());
-            let sketch = span.and_then(|(start, end)| bytes.get(start..end));
-            clips.push(SketchedClip {
-                sketch: sketch.ok_or_else(|| value_error("starts beyond the bytes of sketches"))?,
-                bones: bones_of_bits(*bits),
-            });
-        }
+        Ok(Self {
+            tables: kept,
+            places,
+            bones: all_bones,
+        })
     }
-    if let Some(which) = which {
-        let of = |at: &i64| {
-            usize::try_from(*at)
-                .ok()
-                .and_then(|at| clips.get(at).copied())
+
+    fn __len__(&self) -> usize {
+        self.places.len()
+    }
+
+    /// A bound below the distance of all windows of each clip, or of those at the places `which`. `closely` is by eighths of
+    /// windows, else by halves. A bound above `reach` says only that the clip is farther than that.
+    #[pyo3(signature = (example, limit, mirror, one_a_clip, closely, reach, which=None))]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "those of a search, and how it is done"
+    )]
+    fn bounds<'py>(
+        &self,
+        py: Python<'py>,
+        example: &SearchExample,
+        limit: usize,
+        mirror: bool,
+        one_a_clip: bool,
+        closely: bool,
+        reach: f32,
+        which: Option<PyReadonlyArray1<'py, i64>>,
+    ) -> PyResult<Bound<'py, PyArray1<f32>>> {
+        let arrays: Vec<_> = self.tables.iter().map(|t| t.bind(py).readonly()).collect();
+        let tables: Vec<&[u8]> = arrays
+            .iter()
+            .map(|array| array.as_slice())
+            .collect::<Result<_, _>>()?;
+        let clip = |at: usize| {
+            let (table, span) = &self.places[at];
+            let (table, span) = (*table as usize, span.start as usize..span.end as usize);
+            SketchedClip {
+                sketch: &tables[table][span],
+                bones: self.bones[at],
+            }
         };
-        let chosen: Option<Vec<_>> = which.as_slice()?.iter().map(of).collect();
-        clips = chosen.ok_or_else(|| value_error("no such clip in the tables of sketches"))?;
+        let options = options(limit, mirror, one_a_clip);
+        let depth = if closely {
+            BoundDepth::Eighths
+        } else {
+            BoundDepth::Halves
+        };
+        let example = &example.example;
+        let bounds = match which {
+            None => {
+                let clips = (0..self.places.len()).into_par_iter().map(clip);
+                py.detach(|| lower_bounds(example, &options, depth, reach, clips))
+            }
+            Some(which) => {
+                let which = places_below(&which, self.places.len(), "the tables of sketches")?;
+                let clips = which.into_par_iter().map(clip);
+                py.detach(|| lower_bounds(example, &options, depth, reach, clips))
+            }
+        };
+        Ok(PyArray1::from_vec(py, bounds))
     }
-    let options = options(limit, mirror, one_a_clip);
-    let depth = if closely {
-        BoundDepth::Eighths
-    } else {
-        BoundDepth::Halves
-    };
-    let example = &example.example;
-    let bounds = py.detach(|| lower_bounds(example, &options, depth, reach, clips.into_par_iter()));
-    Ok(PyArray1::from_vec(py, bounds))
 }
 
 /// Windows that a search for so many hits looks at.
@@ -244,6 +285,23 @@ pub struct PySearchPlan {
     plan: SearchPlan,
 }
 
+/// Places, all of which are below `count`.
+fn places_below(
+    places: &PyReadonlyArray1<'_, i64>,
+    count: usize,
+    of: &str,
+) -> PyResult<Vec<usize>> {
+    let place = |at: &i64| usize::try_from(*at).ok().filter(|at| *at < count);
+    let places: Option<Vec<usize>> = places.as_slice()?.iter().map(place).collect();
+    places.ok_or_else(|| value_error(format!("no such clip in {of}")))
+}
+
+/// Windows by the numbers of their clips.
+fn windows_of(windows: Vec<(i64, f32)>) -> Vec<(ClipId, f32)> {
+    let window = |(clip, distance)| (ClipId(clip), distance);
+    windows.into_iter().map(window).collect()
+}
+
 /// Places as an array.
 fn places<'py>(py: Python<'py>, places: &[usize]) -> Bound<'py, PyArray1<i64>> {
     PyArray1::from_iter(py, places.iter().map(|at| *at as i64))
@@ -251,15 +309,20 @@ fn places<'py>(py: Python<'py>, places: &[usize]) -> Bound<'py, PyArray1<i64>> {
 
 #[pymethods]
 impl PySearchPlan {
-    /// Of bounds by halves.
+    /// Of bounds by eighths if `closely`, else by halves.
     #[new]
     fn new(
         bounds: PyReadonlyArray1<'_, f32>,
         limit: usize,
         mirror: bool,
         one_a_clip: bool,
+        closely: bool,
     ) -> PyResult<Self> {
-        let plan = SearchPlan::new(bounds.as_slice()?, &options(limit, mirror, one_a_clip));
+        let options = options(limit, mirror, one_a_clip);
+        let plan = match closely {
+            true => SearchPlan::by_eighths(bounds.as_slice()?, &options),
+            false => SearchPlan::new(bounds.as_slice()?, &options),
+        };
         Ok(Self { plan })
     }
 
@@ -274,11 +337,15 @@ impl PySearchPlan {
         which: PyReadonlyArray1<'_, i64>,
         bounds: PyReadonlyArray1<'_, f32>,
     ) -> PyResult<()> {
-        let count = self.plan.len();
-        let place = |at: &i64| usize::try_from(*at).ok().filter(|at| *at < count);
-        let which: Option<Vec<usize>> = which.as_slice()?.iter().map(place).collect();
-        let which = which.ok_or_else(|| value_error("no such clip in the plan"))?;
+        let which = places_below(&which, self.plan.len(), "the plan")?;
         self.plan.bound(&which, bounds.as_slice()?);
+        Ok(())
+    }
+
+    /// Takes what another plan has found in clips at these places, which were read.
+    fn known(&mut self, read: PyReadonlyArray1<'_, i64>, windows: Vec<(i64, f32)>) -> PyResult<()> {
+        let read = places_below(&read, self.plan.len(), "the plan")?;
+        self.plan.known(&read, &windows_of(windows));
         Ok(())
     }
 
@@ -294,11 +361,7 @@ impl PySearchPlan {
 
     /// Takes the nearest windows of clips that were read: their clips and distances.
     fn found(&mut self, windows: Vec<(i64, f32)>) {
-        let windows: Vec<(ClipId, f32)> = windows
-            .into_iter()
-            .map(|(clip, distance)| (ClipId(clip), distance))
-            .collect();
-        self.plan.found(&windows);
+        self.plan.found(&windows_of(windows));
     }
 
     /// Numbers of the clips that hold the nearest windows.
@@ -311,11 +374,11 @@ impl PySearchPlan {
 pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<SearchPart>()?;
     module.add_class::<SearchExample>()?;
+    module.add_class::<SketchedClips>()?;
     module.add_class::<PySearchPlan>()?;
     module.add_function(wrap_pyfunction!(search_example, module)?)?;
     module.add_function(wrap_pyfunction!(search_windows, module)?)?;
     module.add_function(wrap_pyfunction!(rows_packed, module)?)?;
     module.add_function(wrap_pyfunction!(sketch_kept, module)?)?;
-    module.add_function(wrap_pyfunction!(sketch_bounds, module)?)?;
     Ok(())
 }

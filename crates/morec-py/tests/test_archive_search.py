@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import io
 from pathlib import Path
 from typing import Any
 
@@ -13,9 +14,13 @@ import morec
 from morec import _morec
 
 pytest.importorskip("daft")
+import pyarrow as pa
+import pyarrow.parquet as pq
+
 import morec.archive as ma
 from morec.archive import _layout as layout
-from morec.archive._search import Found, Wanted, search
+from morec.archive._search import Found, Sketched, Wanted, search
+from morec.archive._store import Store, _by_requests
 
 
 def slices(archive: ma.Archive, count: int, name: str) -> list[dict[str, Any]]:
@@ -62,7 +67,7 @@ HOW = [Wanted(1, False, False), Wanted(20, True, False), Wanted(5, False, True),
 def found(archive: ma.Archive, example: Any, start: float, stop: float, wanted: Wanted) -> tuple[Found, Found]:
     """By sketches, and by all rows."""
     asked = archive._example(example, start, stop)
-    slow = search(archive.store, [], archive._clips("name", "bones", "rows"), asked, wanted)
+    slow = search(archive.store, Sketched([]), archive._clips("name", "bones", "rows"), asked, wanted)
     return archive._search(asked, wanted), slow
 
 
@@ -83,7 +88,7 @@ def test_some_of_many_clips_are_searched_first(
 ) -> None:
     many.add_sketches()
     monkeypatch.setattr("morec.archive._search.GLANCED_AT", 100)
-    monkeypatch.setattr("morec.archive._search.SOME", 2)
+    monkeypatch.setattr("morec.archive._search.SOME", 3)
     for wanted in HOW:
         fast, slow = found(many, clips[0], 2.0, 3.5, wanted)
         assert fast.hits == slow.hits and len(fast.hits) > 0
@@ -119,6 +124,56 @@ def test_sketches_are_missing_stale_or_damaged(many: ma.Archive, base: ma.Archiv
     same(0)
 
 
+def test_rows_of_compressed_columns_are_read_by_row_groups(
+    many: ma.Archive, clips: list[morec.Clip]
+) -> None:
+    """As earlier releases wrote them, and one part as it is written now."""
+    for name in many._parts("clips")[:2]:
+        table = many._read_part(name)
+        out = io.BytesIO()
+        pq.write_table(table, out, compression="zstd", use_dictionary=False, row_group_size=90)
+        many.store.write(name, out.getvalue())
+    many.add_sketches()
+    known = [table.rows_at >= 0 for table in many._sketches.of(many.store)]
+    assert sum(int(of.sum()) for of in known) == 400
+    for wanted in HOW:
+        fast, slow = found(many, clips[0], 2.0, 3.5, wanted)
+        assert fast.hits == slow.hits and len(fast.hits) > 0
+
+
+def test_rows_that_are_not_those_of_the_sketches_are_an_error(many: ma.Archive, clips: list[morec.Clip]) -> None:
+    many.add_sketches()
+    (table,) = many._sketches.of(many.store)
+    for name, _ in table.parts:
+        content = bytearray(many.store.read(name))
+        for at in table.rows_at[[table.parts[part][0] == name for part in table.part]].tolist():
+            content[at + 20] ^= 1
+        many.store.write(name, bytes(content))
+    with pytest.raises(ValueError, match="not what its sketches were made of"):
+        many.search(clips[0], 2.0, 3.5)
+
+
+def test_stretches_of_a_file_are_those_asked_for(tmp_path: Path) -> None:
+    content = bytes(range(256)) * 4000
+    store = Store(str(tmp_path))
+    store.write("some", content)
+    places = [(0, 3), (3, 0), (100, 50), (120, 300), (600_000, 10), (900_000, 7), (len(content) - 2, 9)]
+    asked = [content[at : at + size] for at, size in places]
+    assert store.ranges("some", places) == asked
+    with pa.OSFile(str(tmp_path / "some")) as file:
+        assert _by_requests(file, places) == asked
+    assert store.ranges("some", []) == []
+
+
+def test_tables_of_earlier_versions_are_made_again(many: ma.Archive, clips: list[morec.Clip]) -> None:
+    many.add_sketches()
+    before = sorted(name for name, _ in many.store.list("sketches"))
+    many.store.write("sketches/part-0123.parquet", b"PAR1 of an earlier version")
+    many.store.delete(before[0])
+    assert many.add_sketches() == 3
+    assert sorted(name for name, _ in many.store.list("sketches")) == before
+
+
 def test_clips_that_show_nothing_are_no_hits(many: ma.Archive, base: ma.Archive, clips: list[morec.Clip]) -> None:
     """No bones, no rows, rows that are none, rows beyond what a sketch holds."""
     rows = slices(base, 4, "odd")
@@ -137,10 +192,13 @@ def test_mistakes_are_plain_errors(clips: list[morec.Clip]) -> None:
     example = _morec.search_example(clips[0], 0.0, 1.0)
     table = (np.zeros(2, np.int64), np.array([0, 4, 9], np.int32), np.zeros(4, np.uint8))
     with pytest.raises(ValueError, match="beyond the bytes"):
-        _morec.sketch_bounds(example, [table], 20, False, False, False, 9.0)
+        _morec.SketchedClips([table])
     with pytest.raises(ValueError, match="expected 3, found 2"):
-        _morec.sketch_bounds(example, [(table[0], table[1][:2], table[2])], 20, False, False, False, 9.0)
-    plan = _morec.SearchPlan(np.zeros(3, np.float32), 20, False, False)
+        _morec.SketchedClips([(table[0], table[1][:2], table[2])])
+    clips_of = _morec.SketchedClips([(table[0], table[1], np.zeros(9, np.uint8))])
+    with pytest.raises(ValueError, match="no such clip"):
+        clips_of.bounds(example, 20, False, False, False, 9.0, np.array([2]))
+    plan = _morec.SearchPlan(np.zeros(3, np.float32), 20, False, False, False)
     with pytest.raises(ValueError, match="no such clip"):
         plan.bound(np.array([3]), np.zeros(1, np.float32))
     with pytest.raises(ValueError, match="6 columns for each bone"):

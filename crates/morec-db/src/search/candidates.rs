@@ -209,15 +209,22 @@ fn windows(
 
 /// Windows of a clip of `rows` rows for an example of `n`; none of less than three.
 pub fn spans(n: usize, rows: usize) -> impl Iterator<Item = Range<usize>> {
-    let lengths = SCALES
-        .iter()
-        .filter(move |_| rows >= 3)
-        .map(move |scale| ((n as f64 * scale).round() as usize).clamp(3, rows));
+    let lengths = window_lengths(n, rows.max(3)).into_iter();
+    let lengths = lengths.filter(move |_| rows >= 3);
     lengths.flat_map(move |length| {
-        (0..=rows - length)
-            .step_by((length / 4).max(1))
-            .map(move |start| start..start + length)
+        let starts = (0..=rows - length).step_by(step(length));
+        starts.map(move |start| start..start + length)
     })
+}
+
+/// Lengths of the windows of a clip of `rows` rows, three or more, for an example of `n`.
+pub fn window_lengths(n: usize, rows: usize) -> [usize; SCALES.len()] {
+    SCALES.map(|scale| ((n as f64 * scale).round() as usize).clamp(3, rows))
+}
+
+/// Rows from one window of a length to the next.
+pub fn step(length: usize) -> usize {
+    (length / 4).max(1)
 }
 
 /// Of windows in the same surroundings those that are nearest by their moments, for each probe. These cost a tenth of a

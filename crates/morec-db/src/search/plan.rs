@@ -4,11 +4,11 @@ use super::rank::windows_wanted;
 use super::{BoundDepth, SearchOptions};
 use crate::ClipId;
 
-/// Clips of which the bound by eighths is taken before anything has been found.
-const LOOKED_AT_FIRST: usize = 1 << 13;
+/// Clips for each window that is wanted of which the bound by eighths is taken before anything has been found.
+const LOOKED_AT_FIRST: usize = 4;
 
-/// Clips that are read at once, after the first time.
-const BATCH: usize = 1024;
+/// Clips that are read at once, after the first time: so many may be read in vain.
+const BATCH: usize = 256;
 
 /// Distances within this factor of the last that counts are ranked with it.
 const TIES: f32 = 1.0 + 1e-4;
@@ -22,6 +22,8 @@ pub struct SearchPlan {
     /// For each clip its bound, and how it was taken.
     bounds: Vec<(f32, BoundDepth)>,
     read: Vec<bool>,
+    /// Places of clips that may still be read, in order.
+    left: Vec<usize>,
     /// The nearest windows so far: their distances and clips, nearest first.
     found: Vec<(f32, ClipId)>,
     wanted: usize,
@@ -31,9 +33,21 @@ pub struct SearchPlan {
 impl SearchPlan {
     /// Of bounds by halves.
     pub fn new(bounds: &[f32], options: &SearchOptions) -> Self {
+        Self::of(bounds, BoundDepth::Halves, options)
+    }
+
+    /// Of bounds by eighths: none is wanted any more.
+    pub fn by_eighths(bounds: &[f32], options: &SearchOptions) -> Self {
+        Self::of(bounds, BoundDepth::Eighths, options)
+    }
+
+    fn of(bounds: &[f32], depth: BoundDepth, options: &SearchOptions) -> Self {
         Self {
-            bounds: bounds.iter().map(|b| (*b, BoundDepth::Halves)).collect(),
+            bounds: bounds.iter().map(|b| (*b, depth)).collect(),
             read: vec![false; bounds.len()],
+            left: (0..bounds.len())
+                .filter(|at| bounds[*at] < f32::INFINITY)
+                .collect(),
             found: Vec::new(),
             wanted: windows_wanted(options),
             begun: false,
@@ -59,13 +73,9 @@ impl SearchPlan {
     /// Clips, by their places, of which bounds by eighths are wanted now.
     pub fn next_to_bound(&self) -> Vec<usize> {
         let reach = self.reach();
-        let within = |at: &usize| {
-            let (bound, depth) = self.bounds[*at];
-            depth == BoundDepth::Halves && bound <= reach && bound < f32::INFINITY
-        };
-        let mut clips: Vec<usize> = (0..self.bounds.len()).filter(within).collect();
-        if reach == f32::INFINITY && clips.len() > LOOKED_AT_FIRST {
-            self.least(&mut clips, LOOKED_AT_FIRST);
+        let mut clips = self.left_within(reach, BoundDepth::Halves);
+        if reach == f32::INFINITY {
+            self.least(&mut clips, LOOKED_AT_FIRST * self.wanted);
         }
         clips
     }
@@ -78,19 +88,29 @@ impl SearchPlan {
         }
     }
 
+    /// Takes what another plan, for some of the clips, has found: windows of clips that were read, by their places in this one.
+    pub fn known(&mut self, read: &[usize], windows: &[(ClipId, f32)]) {
+        read.iter().for_each(|at| self.read[*at] = true);
+        self.begun = true;
+        self.found(windows);
+    }
+
     /// Clips, by their places, that have to be read now; none if enough has been read. They count as read.
     pub fn next_to_read(&mut self) -> Vec<usize> {
-        let reach = self.reach();
-        let within = |at: &usize| {
-            let (bound, depth) = self.bounds[*at];
-            let closely = depth == BoundDepth::Eighths;
-            !self.read[*at] && closely && bound <= reach && bound < f32::INFINITY
-        };
-        let mut clips: Vec<usize> = (0..self.bounds.len()).filter(within).collect();
+        let mut clips = self.left_within(self.reach(), BoundDepth::Eighths);
         self.least(&mut clips, if self.begun { BATCH } else { self.wanted });
         self.begun = true;
         clips.iter().for_each(|at| self.read[*at] = true);
         clips
+    }
+
+    /// Clips that are not read and whose bounds, taken like this, are within a distance.
+    fn left_within(&self, reach: f32, taken: BoundDepth) -> Vec<usize> {
+        let within = |at: &&usize| {
+            let (bound, depth) = self.bounds[**at];
+            depth == taken && bound <= reach && !self.read[**at]
+        };
+        self.left.iter().filter(within).copied().collect()
     }
 
     /// So many of these clips, those of the least bounds, in the order of their places.
@@ -112,6 +132,9 @@ impl SearchPlan {
             .sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let reach = self.reach();
         self.found.retain(|(distance, _)| *distance <= reach);
+        // How near windows must be is never more than it was.
+        let (bounds, read) = (&self.bounds, &self.read);
+        self.left.retain(|at| bounds[*at].0 <= reach && !read[*at]);
     }
 
     /// Clips that hold the nearest windows of those found, in order of number.

@@ -7,6 +7,7 @@
 
 use morec::features::{RowLayout, Rows};
 
+use super::boxes::{BOX_BYTES, boxed};
 use super::windows::{TRAVEL, X};
 
 /// Rows in a block.
@@ -15,6 +16,16 @@ pub const BLOCK: usize = 4;
 pub const PLACES: usize = 8;
 /// Coordinates of directions, filled up to whole vectors, then those of the root, filled up.
 pub const LANES: usize = 48;
+/// A value for each lane, where vector loads want it.
+#[derive(Debug, Clone, Copy)]
+#[repr(C, align(64))]
+pub struct Lanes(pub [f32; LANES]);
+
+impl Lanes {
+    /// All zero.
+    pub const ZERO: Self = Self([0.0; LANES]);
+}
+
 /// The first lane of the root.
 pub const ROOT_LANE: usize = 40;
 /// Prefix sums are whole multiples of this: the largest for which a block's share of a direction fits into a byte.
@@ -23,7 +34,7 @@ pub const UNIT: f32 = 1.0 / 30.0;
 const EXACT: f64 = 16_777_216.0;
 /// Bytes of a block: directions, root, errors of both.
 const BLOCK_BYTES: usize = X + 2 * TRAVEL + 2;
-/// Bytes before the first block: the number of rows.
+/// Bytes before the box and the first block: the number of rows.
 const HEAD: usize = 4;
 
 /// Weights of the block before, of the block and of the next in a prefix sum within the block.
@@ -67,6 +78,7 @@ pub fn sketch(rows: &Rows) -> Option<Vec<u8>> {
         }
         deltas.push(lanes);
     }
+    out.extend(boxed(rows)?);
     let table = weights();
     for block in 0..blocks {
         let near = neighbours(&deltas, block);
@@ -141,7 +153,7 @@ pub struct Sketch {
     /// Rows of the clip.
     pub rows: usize,
     /// Prefix sums before each block and after the last, in units: whole numbers.
-    sums: Vec<[f32; LANES]>,
+    sums: Vec<Lanes>,
     /// Error of prefix sums within each block, Euclidean over directions and over the root.
     errors: Vec<[f32; 2]>,
 }
@@ -161,65 +173,72 @@ impl SketchTables {
     }
 }
 
-impl Sketch {
-    /// Reads a sketch into this one, whose memory is used again; false for bytes that are none.
+/// Parts of the bytes of a sketch.
+pub struct SketchBytes<'a> {
+    pub rows: usize,
+    pub within: &'a [u8; BOX_BYTES],
+    blocks: &'a [[u8; BLOCK_BYTES]],
+}
+
+impl<'a> SketchBytes<'a> {
+    /// `None` for bytes that are no sketch.
     #[inline(always)]
-    pub fn read(&mut self, bytes: &[u8], tables: &SketchTables) -> bool {
-        let Some((rows, blocks)) = bytes.split_first_chunk::<HEAD>() else {
-            return false;
-        };
-        self.rows = u32::from_le_bytes(*rows) as usize;
-        let (blocks, rest) = blocks.as_chunks::<BLOCK_BYTES>();
-        if self.rows == 0 || blocks.len() != self.rows.div_ceil(BLOCK) || !rest.is_empty() {
-            return false;
-        }
-        self.sums.clear();
-        self.errors.clear();
-        self.sums.reserve(blocks.len() + 1);
-        self.errors.reserve(blocks.len());
-        let mut sum = [0f32; LANES];
-        self.sums.push(sum);
-        for block in blocks {
+    pub fn of(bytes: &'a [u8]) -> Option<Self> {
+        let (rows, bytes) = bytes.split_first_chunk::<HEAD>()?;
+        let (within, bytes) = bytes.split_first_chunk::<BOX_BYTES>()?;
+        let rows = u32::from_le_bytes(*rows) as usize;
+        let (blocks, rest) = bytes.as_chunks::<BLOCK_BYTES>();
+        let fits = rows > 0 && blocks.len() == rows.div_ceil(BLOCK) && rest.is_empty();
+        fits.then_some(Self {
+            rows,
+            within,
+            blocks,
+        })
+    }
+}
+
+impl Sketch {
+    /// Reads a sketch into this one, whose memory is used again.
+    #[inline(always)]
+    pub fn read(&mut self, bytes: &SketchBytes<'_>, tables: &SketchTables) {
+        let blocks = bytes.blocks;
+        self.rows = bytes.rows;
+        self.sums.resize(blocks.len() + 1, Lanes::ZERO);
+        self.errors.resize(blocks.len(), [0.0; 2]);
+        let mut sum = Lanes::ZERO;
+        self.sums[0] = sum;
+        let read = self.sums[1..].iter_mut().zip(&mut self.errors);
+        for (block, (sums, errors)) in blocks.iter().zip(read) {
             for lane in 0..X {
-                sum[lane] += f32::from(block[lane].cast_signed());
+                sum.0[lane] += f32::from(block[lane].cast_signed());
             }
             for i in 0..TRAVEL {
                 let delta = i16::from_le_bytes([block[X + 2 * i], block[X + 2 * i + 1]]);
-                sum[ROOT_LANE + i] += f32::from(delta);
+                sum.0[ROOT_LANE + i] += f32::from(delta);
             }
-            self.sums.push(sum);
-            let [directions, root] = [block[BLOCK_BYTES - 2], block[BLOCK_BYTES - 1]];
-            self.errors.push([
-                tables.errors[usize::from(directions)],
-                tables.errors[usize::from(root)],
-            ]);
+            *sums = sum;
+            errors[0] = tables.errors[usize::from(block[BLOCK_BYTES - 2])];
+            errors[1] = tables.errors[usize::from(block[BLOCK_BYTES - 1])];
         }
-        true
     }
 
-    /// Prefix sums before `place`, in eighths of rows, less those before the block `base`, in units: `N` lanes from `from` on.
+    /// Prefix sums before `place`, in eighths of rows, less those before the block `base`, in units.
     #[inline(always)]
-    pub fn until<const N: usize>(
-        &self,
-        place: usize,
-        base: usize,
-        tables: &SketchTables,
-        from: usize,
-    ) -> [f32; N] {
+    pub fn until(&self, place: usize, base: usize, tables: &SketchTables) -> Lanes {
         let block = self.block(place);
         let [before, within, next] = tables.weights[place - PLACES * BLOCK * block];
         let last = self.sums.len() - 2;
         // At the ends the block stands for those that are not there.
         let (first, third) = (block.saturating_sub(1), (block + 1).min(last));
-        let lanes = |at: usize| &self.sums[at][from..from + N];
+        let lanes = |at: usize| &self.sums[at].0;
         let (a, b) = (lanes(first), lanes(first + 1));
         let (c, d) = (lanes(block), lanes(block + 1));
         let (e, f) = (lanes(third), lanes(third + 1));
         let base = lanes(base);
-        let mut out = [0f32; N];
-        for lane in 0..N {
+        let mut out = Lanes::ZERO;
+        for lane in 0..LANES {
             // Differences of whole numbers are exact.
-            out[lane] = (c[lane] - base[lane])
+            out.0[lane] = (c[lane] - base[lane])
                 + before * (b[lane] - a[lane])
                 + within * (d[lane] - c[lane])
                 + next * (f[lane] - e[lane]);
@@ -265,17 +284,17 @@ mod tests {
             let rows = Rows::from_values(DIM, values[..length * DIM].to_vec());
             let bytes = sketch(&rows).unwrap();
             let (mut read, tables) = (Sketch::default(), SketchTables::new());
-            prop_assert!(read.read(&bytes, &tables));
+            read.read(&SketchBytes::of(&bytes).unwrap(), &tables);
             prop_assert_eq!(read.rows, length);
             let base = read.block(base.min(length) * PLACES);
             let lanes: Vec<(usize, usize)> = RowLayout::ALL.directions().enumerate()
                 .chain(RowLayout::ALL.root().enumerate().map(|(i, c)| (ROOT_LANE + i, c))).collect();
             for place in 0..=length * PLACES {
-                let found = read.until::<LANES>(place, base, &tables, 0);
+                let found = read.until(place, base, &tables);
                 let errors = read.errors(place);
                 let mut squares = [0f64; 2];
                 for (lane, column) in &lanes {
-                    let there = f64::from(read.sums[base][*lane]) + f64::from(found[*lane]);
+                    let there = f64::from(read.sums[base].0[*lane]) + f64::from(found.0[*lane]);
                     let error = there * f64::from(UNIT) - slowly(&rows, place, *column);
                     squares[usize::from(*lane >= ROOT_LANE)] += error * error;
                 }
@@ -286,14 +305,19 @@ mod tests {
         }
 
         #[test]
-        fn any_bytes_are_a_sketch_or_none(bytes in prop::collection::vec(any::<u8>(), 0..200), rows in 0u32..20) {
+        fn any_bytes_are_a_sketch_or_none(bytes in prop::collection::vec(any::<u8>(), 0..400), blocks in prop::option::of(0u32..5)) {
             let mut bytes = bytes;
+            let rows = blocks.unwrap_or(7) * 4;
+            if let Some(blocks) = blocks {
+                bytes.resize(HEAD + BOX_BYTES + blocks as usize * BLOCK_BYTES, 3);
+            }
             if let Some(head) = bytes.first_chunk_mut::<4>() {
                 *head = rows.to_le_bytes();
             }
             let (mut read, tables) = (Sketch::default(), SketchTables::new());
-            if read.read(&bytes, &tables) {
-                read.until::<LANES>(rows as usize * PLACES, 0, &tables, 0);
+            if let Some(bytes) = SketchBytes::of(&bytes) {
+                read.read(&bytes, &tables);
+                read.until(rows as usize * PLACES, 0, &tables);
             }
         }
     }
@@ -306,6 +330,6 @@ mod tests {
         row = [0f32; DIM];
         row[0] = 3.0;
         assert!(sketch(&Rows::from_values(DIM, row.to_vec())).is_none());
-        assert!(!Sketch::default().read(&[], &SketchTables::new()));
+        assert!(SketchBytes::of(&[]).is_none());
     }
 }

@@ -19,7 +19,7 @@ from .._tables import Table
 from . import _layout as layout
 from ._divided import divided_events
 from ._group import group
-from ._search import Found, Wanted, search
+from ._search import Found, Sketched, Wanted, search
 from ._sketches import Sketches, add_sketches, used
 from ._store import Store
 from ._tasks import Example, cuts_of, events_of
@@ -38,6 +38,7 @@ class Archive:
     def __init__(self, store: Store) -> None:
         self.store = store
         self._sketches = Sketches()
+        self._sketched: Sketched | None = None
 
     def __repr__(self) -> str:
         return f"<morec.archive.Archive {self.store.uri}>"
@@ -283,10 +284,12 @@ class Archive:
     def _search(self, asked: Example, wanted: Wanted) -> Found:
         parts = [(name, size) for name, size in self.store.list(layout.CLIPS) if name.endswith(".parquet")]
         tables, left = used(self._sketches.of(self.store), parts)
+        if self._sketched is None or list(map(id, self._sketched.tables)) != list(map(id, tables)):
+            self._sketched = Sketched(tables)
         unsketched = None
         if left or not parts:
             unsketched = self._clips("name", "bones", "rows", parts=[name for name, _ in left])
-        return search(self.store, tables, unsketched, asked, wanted)
+        return search(self.store, self._sketched, unsketched, asked, wanted)
 
     def _example(self, example: Clip | str | os.PathLike[str], start: float, stop: float | None) -> Example:
         if isinstance(example, str) and not os.path.exists(example):

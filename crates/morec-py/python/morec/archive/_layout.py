@@ -75,6 +75,11 @@ def clip_number(clip: str) -> int:
     return int(clip, 16) - (1 << 63)
 
 
+def clip_of(number: int) -> str:
+    """The key of a clip of which this is the number."""
+    return f"{number + (1 << 63):016x}"
+
+
 def clip_key(file_hash: bytes, character: int) -> str:
     """Identifier of a clip in every table: the same for the same content, wherever it lies."""
     return hashlib.sha256(file_hash + character.to_bytes(8, "little")).hexdigest()[:16]
@@ -91,8 +96,10 @@ def parquet(rows: Sequence[Mapping[str, Any]], schema: pa.Schema) -> bytes:
     columns = {name: [row.get(name) for row in rows] for name in schema.names}
     table = pa.table([pa.array(columns[field.name], field.type) for field in schema], schema=schema)
     out = io.BytesIO()
-    # Motion and rows are compressed by coders of their own; all else is small.
-    with pq.ParquetWriter(out, schema, compression="zstd", use_dictionary=False) as writer:
+    # Motion and rows are compressed by coders of their own; all else is small. Rows lie in the file as they are, so that
+    # those of one clip can be read alone.
+    compression = {name: "none" if name == "rows" else "zstd" for name in schema.names}
+    with pq.ParquetWriter(out, schema, compression=compression, use_dictionary=False) as writer:
         for start, stop in _groups([row.get("secs") or 0.0 for row in rows]):
             writer.write_table(table.slice(start, stop - start))
     return out.getvalue()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+import zlib
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -15,16 +16,18 @@ import pyarrow.parquet as pq
 from daft import DataFrame, DataType, col
 
 from .. import _morec
-from ._layout import clip_number
+from ._layout import clip_number, clip_of
 from ._sketches import SketchTable
 from ._store import Store, patiently
 from ._tasks import Example, Nearest
 
 #: Archives of more clips are searched in one of so many clips first.
-GLANCED_AT, SOME = 1 << 16, 16
+GLANCED_AT, SOME = 1 << 14, 64
 
-#: A clip's number, name, key, bones and packed rows.
-KeptRows = tuple[int, str, str, int, bytes]
+#: A clip's number, bones and packed rows.
+KeptRows = tuple[int, int, bytes]
+#: A clip's key and name.
+Names = tuple[str, str]
 
 
 @dataclass(frozen=True)
@@ -51,98 +54,146 @@ class Found:
 
 
 def search(
-    store: Store, tables: Sequence[SketchTable], unsketched: DataFrame | None, example: Example, wanted: Wanted
+    store: Store, sketches: Sketched, unsketched: DataFrame | None, example: Example, wanted: Wanted
 ) -> Found:
-    """The hits among the clips of tables of sketches and those of a frame (clip, name, bones, rows) that have none."""
-    asked, how = example.native(), wanted.native()
-    sketched = Sketched(store, tables, asked, wanted)
-    found = Found([], int(sketched.firsts[-1]), 0, 0)
+    """The hits among the clips of which there are sketches and those of a frame (clip, name, bones, rows) that have none."""
+    ask = Asked(store, sketches, example.native(), wanted)
+    found = Found([], len(sketches), 0, 0)
     rows: dict[int, KeptRows] = {}
-    reach = math.inf
-    if found.sketched > GLANCED_AT:
+    names: dict[int, Names] = {}
+    if len(sketches) > GLANCED_AT:
         # Among some of the clips the nearest windows are further, but so near that of most others a glance is enough.
-        some = np.arange(0, found.sketched, SOME)
-        plan = _morec.SearchPlan(sketched.bounds(False, reach, some), *how)
-        sketched.read(plan, some, found, once=True)
-        reach = plan.reach()
-    plan = _morec.SearchPlan(sketched.bounds(False, reach, None), *how)
+        some = np.arange(0, len(sketches), SOME)
+        first = ask.plan(math.inf, some)
+        which, windows = ask.read_next(first, some, found, rows)
+        plan = ask.plan(first.reach(), None)
+        plan.known(some[which], windows)
+    else:
+        plan = ask.plan(math.inf, None)
     if unsketched is not None:
-        rows = {row[0]: row for row in _nearest_of(unsketched, example, wanted)}
-        plan.found(_part(list(rows.values())).nearest_windows(asked, *how))
-    rows |= sketched.read(plan, np.arange(found.sketched), found)
-    few = {number: rows[number] for number in plan.chosen()}
-    hits = _part([few[number] for number in sorted(few)]).search(asked, *how)
-    found.hits = [(few[hit[0]][2], few[hit[0]][1], *hit[1:]) for hit in hits]
+        for row, name in _nearest_of(unsketched, example, wanted):
+            rows[row[0]], names[row[0]] = row, name
+        plan.found(_morec.SearchPart(list(rows.values())).nearest_windows(ask.example, *wanted.native()))
+    while len(ask.read_next(plan, None, found, rows)[0]):
+        pass
+    few = [rows[number] for number in sorted(plan.chosen())]
+    hits = _morec.SearchPart(few).search(ask.example, *wanted.native())
+    names |= sketches.names([hit[0] for hit in hits if hit[0] not in names])
+    found.hits = [(*names[hit[0]], *hit[1:]) for hit in hits]
     return found
 
 
-@dataclass
 class Sketched:
-    """Clips of which there are sketches, and an example."""
+    """Tables of sketches, one after the other; clips are known by their places in all of them together."""
+
+    def __init__(self, tables: Sequence[SketchTable]) -> None:
+        self.tables = list(tables)
+        self.clips = _morec.SketchedClips([table.native() for table in tables])
+        self.firsts = np.cumsum([0, *(len(table.clip) for table in tables)])
+        self.numbers = np.concatenate([np.zeros(0, np.int64), *(table.clip for table in tables)])
+
+    def __len__(self) -> int:
+        return len(self.clips)
+
+    def names(self, numbers: Sequence[int]) -> dict[int, Names]:
+        """Keys and names of clips by their numbers."""
+        places: list[int] = np.flatnonzero(np.isin(self.numbers, numbers)).tolist()
+        return {int(self.numbers[place]): self._name(place) for place in places}
+
+    def _name(self, place: int) -> Names:
+        at = int(np.searchsorted(self.firsts, place, side="right")) - 1
+        return clip_of(int(self.numbers[place])), self.tables[at].name[place - int(self.firsts[at])].as_py()
+
+    def rows(self, store: Store, places: Any) -> list[KeptRows]:
+        """Rows of the clips at these places, in their order."""
+        at_table = np.searchsorted(self.firsts, places, side="right") - 1
+        of_parts: dict[str, list[Place]] = {}
+        for order, (at, place) in enumerate(zip(at_table.tolist(), places.tolist())):
+            table, row = self.tables[at], place - int(self.firsts[at])
+            of_parts.setdefault(table.parts[table.part[row]][0], []).append(Place(order, table, row))
+        read: list[KeptRows | None] = [None] * len(places)
+
+        def of_part(name: str) -> None:
+            for place, packed in zip(of_parts[name], _packed(store, name, of_parts[name])):
+                table, row = place.table, place.row
+                if zlib.crc32(packed) != table.rows_crc[row]:
+                    raise ValueError(f"{store.url(name)}: not what its sketches were made of; create the archive again")
+                read[place.order] = (int(table.clip[row]), int(table.bones[row]), packed)
+
+        with ThreadPoolExecutor(min(8, 2 * (os.cpu_count() or 1))) as pool:
+            list(pool.map(of_part, of_parts))
+        return [row for row in read if row is not None]
+
+
+@dataclass(frozen=True)
+class Place:
+    """A clip that is read: the how manieth of those that are asked for, and where it is described."""
+
+    order: int
+    table: SketchTable
+    row: int
+
+
+def _packed(store: Store, part: str, places: list[Place]) -> list[bytes]:
+    """Packed rows of clips of a part, which is read by positions where these are known, and else by row groups."""
+    places.sort(key=lambda place: int(place.table.rows_at[place.row]))
+    spans = [(int(place.table.rows_at[place.row]), int(place.table.rows_bytes[place.row])) for place in places]
+    if spans[0][0] >= 0:
+        return store.ranges(part, spans)
+    file = patiently(lambda: pq.ParquetFile(store.open(part)))
+
+    def rows_of(group: int) -> Any:
+        return patiently(lambda: file.read_row_group(group, columns=["rows"])).column(0)
+
+    groups = {group: rows_of(group) for group in {int(place.table.row_group[place.row]) for place in places}}
+    return [groups[int(p.table.row_group[p.row])][int(p.table.row[p.row])].as_py() or b"" for p in places]
+
+
+@dataclass(frozen=True)
+class Asked:
+    """An example, and where it is searched for."""
 
     store: Store
-    tables: Sequence[SketchTable]
-    asked: _morec.SearchExample
+    sketches: Sketched
+    example: _morec.SearchExample
     wanted: Wanted
 
-    def __post_init__(self) -> None:
-        self.columns = [table.native() for table in self.tables]
-        self.firsts = np.cumsum([0, *(len(table.clip) for table in self.tables)])
-
     def bounds(self, closely: bool, reach: float, places: Any) -> Any:
-        return _morec.sketch_bounds(self.asked, self.columns, *self.wanted.native(), closely, reach, places)
+        return self.sketches.clips.bounds(self.example, *self.wanted.native(), closely, reach, places)
 
-    def read(self, plan: _morec.SearchPlan, places: Any, found: Found, once: bool = False) -> dict[int, KeptRows]:
-        """Reads what a plan for the clips at these places asks for, until it has enough or `once`; clips that may be needed."""
-        rows: dict[int, KeptRows] = {}
-        while True:
-            which = plan.next_to_bound()
-            if len(which):
-                plan.bound(which, self.bounds(True, plan.reach(), places[which]))
-                found.bound += len(which)
-            which = plan.next_to_read()
-            if not len(which):
-                return rows
-            read = _rows_at(self.store, self.tables, self.firsts, places[which])
-            found.read += len(read)
-            plan.found(_part(read).nearest_windows(self.asked, *self.wanted.native()))
-            # No more is held than may be needed.
-            chosen = set(plan.chosen())
-            rows = {number: row for number, row in rows.items() if number in chosen}
-            rows |= {row[0]: row for row in read if row[0] in chosen}
-            if once:
-                return rows
+    def plan(self, reach: float, places: Any) -> _morec.SearchPlan:
+        """Once it is known how near windows must be, those that are near enough are few: they are compared closely at once."""
+        closely = reach < math.inf
+        return _morec.SearchPlan(self.bounds(closely, reach, places), *self.wanted.native(), closely)
 
+    def read_next(
+        self, plan: _morec.SearchPlan, places: Any, found: Found, rows: dict[int, KeptRows]
+    ) -> tuple[Any, list[tuple[int, float]]]:
+        """Reads what a plan for the clips at these places asks for next; which it were, none if it has enough, and their windows.
 
-def _part(rows: Sequence[KeptRows]) -> _morec.SearchPart:
-    return _morec.SearchPart([(number, bones, packed) for number, _, _, bones, packed in rows])
+        `rows` holds those of clips that may be needed.
+        """
+        def at(which: Any) -> Any:
+            return which if places is None else places[which]
 
-
-def _rows_at(store: Store, tables: Sequence[SketchTable], firsts: Any, places: Any) -> list[KeptRows]:
-    """Rows of the clips at these places of all tables together, in their order."""
-    at_table = np.searchsorted(firsts, places, side="right") - 1
-    groups: dict[tuple[str, int], list[tuple[int, int, int]]] = {}
-    for order, (at, place) in enumerate(zip(at_table.tolist(), places.tolist())):
-        table, row = tables[at], place - int(firsts[at])
-        where = (table.parts[table.part[row]][0], int(table.row_group[row]))
-        groups.setdefault(where, []).append((int(table.row[row]), order, int(table.clip[row])))
-    read: list[KeptRows | None] = [None] * len(places)
-
-    def of_group(where: tuple[str, int]) -> None:
-        inside = groups[where]
-        names = ["clip", "name", "bones", "rows"]
-        table = patiently(lambda: pq.ParquetFile(store.open(where[0])).read_row_group(where[1], columns=names))
-        for row, (_, order, number) in zip(table.take([row for row, _, _ in inside]).to_pylist(), inside):
-            if row["clip"] is None or clip_number(row["clip"]) != number:
-                raise ValueError(f"{store.url(where[0])}: not what its sketches were made of; create the archive again")
-            read[order] = (number, row["name"], row["clip"], row["bones"], row["rows"])
-
-    with ThreadPoolExecutor(min(8, 2 * (os.cpu_count() or 1))) as pool:
-        list(pool.map(of_group, groups))
-    return [row for row in read if row is not None]
+        which = plan.next_to_bound()
+        if len(which):
+            plan.bound(which, self.bounds(True, plan.reach(), at(which)))
+            found.bound += len(which)
+        which = plan.next_to_read()
+        read = self.sketches.rows(self.store, at(which))
+        found.read += len(read)
+        windows = _morec.SearchPart(read).nearest_windows(self.example, *self.wanted.native()) if read else []
+        plan.found(windows)
+        # No more is held than may be needed.
+        chosen = set(plan.chosen())
+        for number in [number for number in rows if number not in chosen]:
+            del rows[number]
+        rows.update((row[0], row) for row in read if row[0] in chosen)
+        return which, windows
 
 
-def _nearest_of(frame: DataFrame, example: Example, wanted: Wanted) -> list[KeptRows]:
+def _nearest_of(frame: DataFrame, example: Example, wanted: Wanted) -> list[tuple[KeptRows, Names]]:
     """The nearest clips of a frame, every row of which is read."""
     numbered = frame.with_column("number", _number(col("clip")))
     worker: Any = Nearest(example, *wanted.native())
@@ -156,9 +207,8 @@ def _nearest_of(frame: DataFrame, example: Example, wanted: Wanted) -> list[Kept
         return []
     few = daft.from_pydict({"number": chosen})
     rows = numbered.join(few, on="number").select("number", "name", "clip", "bones", "rows").to_pylist()
-    return sorted(
-        (row["number"], row["name"], row["clip"], row["bones"], row["rows"]) for row in rows
-    )
+    rows.sort(key=lambda row: row["number"])
+    return [((row["number"], row["bones"], row["rows"]), (row["clip"], row["name"])) for row in rows]
 
 
 @daft.func(return_dtype=DataType.int64())

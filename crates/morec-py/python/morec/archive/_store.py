@@ -6,7 +6,7 @@ import fnmatch
 import os
 import random
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
@@ -15,6 +15,9 @@ import pyarrow.fs as pafs
 from daft.io import IOConfig, S3Config
 
 T = TypeVar("T")
+
+#: Bytes that are rather read in vain than asked for by another request.
+GAP_BYTES = 256 << 10
 
 #: Attempts at a request, and seconds before the second; they double.
 TRIES = 6
@@ -85,6 +88,18 @@ class Store:
 
         return patiently(once)
 
+    def ranges(self, name: str, places: Sequence[tuple[int, int]]) -> list[bytes]:
+        """Stretches of a file, in order of their places, each from a byte on and so many long; shorter where the file ends."""
+        if not self.is_s3:
+            with open(self.url(name), "rb", buffering=0) as local:
+                return [_from(local, at, size) for at, size in places]
+
+        def once() -> list[bytes]:
+            with self._fs().open_input_file(f"{self.root}/{name}") as file:
+                return _by_requests(file, places)
+
+        return patiently(once)
+
     def write(self, name: str, content: bytes) -> None:
         """Writes a file, whole or not at all; what is there under this name goes."""
         if self.is_s3:
@@ -122,6 +137,27 @@ class Store:
             return sorted((info.path[len(self.root) + 1 :], info.size) for info in files)
 
         return [(name, size) for name, size in patiently(once) if not name.endswith(".partial")]
+
+
+def _from(file: Any, at: int, size: int) -> bytes:
+    file.seek(at)
+    return bytes(file.read(size))
+
+
+def _by_requests(file: pa.NativeFile, places: Sequence[tuple[int, int]]) -> list[bytes]:
+    """Stretches that lie near one another come by one request."""
+    found: list[bytes] = []
+    while len(found) < len(places):
+        first, stop = len(found), 0
+        begin = places[first][0]
+        for at, size in places[first:]:
+            if stop and at > stop + GAP_BYTES:
+                break
+            stop = max(stop, at + size)
+            found.append(b"")
+        content = file.read_at(stop - begin, begin)
+        found[first:] = [content[at - begin : at - begin + size] for at, size in places[first : len(found)]]
+    return found
 
 
 def patiently(work: Callable[[], T]) -> T:
