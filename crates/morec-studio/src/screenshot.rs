@@ -189,20 +189,21 @@ pub fn draw(paths: &[PathBuf], shot: &Shot) -> Result<ColorImage, String> {
         let why = state.notices.first().map(|n| n.text.clone());
         return Err(why.unwrap_or_else(|| "nothing was opened in time".to_owned()));
     };
+    let is_kept = !store.temporary;
     if let Some(name) = &shot.clip {
         let clip = store.snapshot.clips.iter().find(|c| c.name == *name);
         let id = clip.ok_or_else(|| format!("no clip is called {name}"))?.id;
         window.command(Command::Library(LibraryCommand::Open(id)));
     }
-    prepare(&mut window, shot);
+    prepare(&mut window, shot, is_kept);
     if let Some(class) = &shot.like {
         search(&mut window, class)?;
     }
     Ok(window.picture())
 }
 
-/// Brings the panel into a state that is worth a picture.
-fn prepare(window: &mut Headless, shot: &Shot) {
+/// Brings the panel into a state that is worth a picture. A database that is kept stays as it is: nothing is proposed in it.
+fn prepare(window: &mut Headless, shot: &Shot, is_kept: bool) {
     window.command(Command::Show(shot.panel));
     window.settle();
     let has_labels = window
@@ -225,7 +226,9 @@ fn prepare(window: &mut Headless, shot: &Shot) {
                 mistake(window)
             };
         }
-        Panel::Classes if has_labels => window.command(Command::Classes(ClassCommand::Propose)),
+        Panel::Classes if has_labels && !is_kept => {
+            window.command(Command::Classes(ClassCommand::Propose));
+        }
         Panel::Live => {
             if has_labels {
                 window.command(Command::Train(TrainCommand::Train));

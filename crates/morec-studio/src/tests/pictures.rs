@@ -1,5 +1,7 @@
 //! Every panel as a picture, dark and light, from 1280 × 720 up.
 
+use morec_db::MotionDb;
+
 use super::made;
 use crate::screenshot::{Shot, draw};
 use crate::state::Panel;
@@ -33,6 +35,22 @@ fn panels_are_drawn_without_a_display() {
         assert!(colours(&image) > 1000, "{panel:?} {}", colours(&image));
         let corner = image.pixels[0];
         assert_eq!(corner.r() < 100, dark, "the theme that was asked for");
+    }
+}
+
+#[test]
+fn a_picture_leaves_the_database_as_it_is() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = made(folder.path(), 2);
+    let steps = || MotionDb::open(&path).unwrap().history().unwrap().len();
+    let before = steps();
+    for panel in [Panel::Classes, Panel::Label] {
+        let shot = Shot {
+            panel,
+            ..Shot::default()
+        };
+        draw(std::slice::from_ref(&path), &shot).unwrap();
+        assert_eq!(steps(), before, "{panel:?}");
     }
 }
 
