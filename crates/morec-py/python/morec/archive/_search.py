@@ -127,7 +127,7 @@ class Sketched:
 
 @dataclass(frozen=True)
 class Place:
-    """A clip that is read: the how manieth of those that are asked for, and where it is described."""
+    """A clip that is read: its place among those that are asked for, and where it is described."""
 
     order: int
     table: SketchTable
