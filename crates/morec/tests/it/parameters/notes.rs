@@ -273,11 +273,11 @@ pub const NOTES: &[(&str, &str)] = &[
     ("verify_people", "as `verify_samples`"),
     (
         "faster_copies",
-        "3 for fast performers: of the 12 signals of one clip at half and at two thirds of their duration 7 and 10 are recognised, 6 and 9 without; before `decode.rest_spread` F1 elsewhere was 0.949 for 0.959 (by clip), 0.889 for 0.899 (by person), 0.811 for 0.836 (sessions, same person)",
+        "3 for fast performers: of the 12 signals of one clip at half and at two thirds of their duration 7 and 10 are recognised, 6 and 8 to 9 without; F1 by clip and by person the same (0.960, 0.889), in sessions of the same person 0.829 for 0.844, of others 0.812 for 0.815",
     ),
     (
         "faster_duration",
-        "with 0.6 the 12 signals: 9 and 9; sessions, same person: 0.803",
+        "0.6 with one copy of a class: the 12 signals 7 and 9, sessions 0.839 and 0.815; 0.5 with two copies: 9 and 10, sessions 0.828 and 0.814; by clip and by person the same",
     ),
     (
         "max_negatives",
