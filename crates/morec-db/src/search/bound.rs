@@ -14,14 +14,16 @@ use super::boxes::{BoxView, roots};
 use super::candidates::{QueryDescriptor, length_cost, pace_range, step, window_lengths};
 use super::layout::ROOT_WEIGHT;
 use super::rank::probes;
-use super::sketch::{LANES, Lanes, PLACES, ROOT_LANE, Sketch, SketchBytes, SketchTables, UNIT};
+use super::sketch::{
+    LANES, PLACES, ROOT_LANE, Sketch, SketchBytes, SketchLanes, SketchTables, UNIT,
+};
 use super::summary::{MEAN, ROOT, Summary, SummaryDistance, WEIGHTS};
 use super::windows::{TRAVEL, X};
 use super::{Example, SearchOptions};
 
 /// Octaves that a sketch speaks of.
 const OCTAVES: usize = 3;
-/// Lanes that are added up side by side.
+/// SketchLanes that are added up side by side.
 const SIDE: usize = 16;
 /// Parts of a window in the last octave.
 const PARTS: usize = 1 << OCTAVES;
@@ -84,8 +86,8 @@ struct SketchQuery {
 /// The example or its mirror image, laid out by lanes.
 struct SketchProbe {
     bones: BoneSet,
-    octaves: [Lanes; OCTAVES],
-    pose: Lanes,
+    octaves: [SketchLanes; OCTAVES],
+    pose: SketchLanes,
     travel: [f32; TRAVEL],
     /// Lengths of the octaves of each bone.
     roots: [f32; SIDE],
@@ -95,7 +97,7 @@ impl SketchProbe {
     fn new(probe: &QueryDescriptor<'_>) -> Self {
         let summary: &Summary = &probe.look.summary;
         let lanes = |from: usize| {
-            let mut lanes = Lanes::ZERO;
+            let mut lanes = SketchLanes::ZERO;
             lanes.0[..X].copy_from_slice(&summary[from..from + X]);
             lanes
         };
@@ -109,17 +111,17 @@ impl SketchProbe {
     }
 }
 
-/// Lanes of bones that the example and a clip share, 1 in a mask, and the factor of lengths over them.
+/// SketchLanes of bones that the example and a clip share, 1 in a mask, and the factor of lengths over them.
 struct SharedLanes {
     bones: BoneSet,
-    mask: Lanes,
+    mask: SketchLanes,
     bone_mask: [f32; SIDE],
     scale: f32,
 }
 
 impl SharedLanes {
     fn of(bones: BoneSet) -> Self {
-        let (mut mask, mut bone_mask) = (Lanes::ZERO, [0f32; SIDE]);
+        let (mut mask, mut bone_mask) = (SketchLanes::ZERO, [0f32; SIDE]);
         for bone in bones.indices() {
             bone_mask[bone] = 1.0;
             mask.0[RowLayout::ALL.direction(bone)].fill(1.0);
@@ -287,7 +289,7 @@ struct WindowSketch {
     start: usize,
     rows: usize,
     per_row: f32,
-    ends: [Lanes; PARTS + 1],
+    ends: [SketchLanes; PARTS + 1],
     errors: [[f32; 2]; PARTS + 1],
     /// True if what lies between its halves is there.
     halved: bool,
@@ -301,7 +303,7 @@ impl Default for WindowSketch {
             start: 0,
             rows: 1,
             per_row: 1.0,
-            ends: [Lanes::ZERO; PARTS + 1],
+            ends: [SketchLanes::ZERO; PARTS + 1],
             errors: [[0.0; 2]; PARTS + 1],
             halved: false,
             complete: false,
@@ -358,10 +360,10 @@ impl WindowSketch {
 
     /// Squares of what the deviations in an octave differ by, and of what they may be off.
     #[inline(always)]
-    fn octave(&self, octave: usize, probe: &SketchProbe, squares: &mut Lanes) -> f32 {
+    fn octave(&self, octave: usize, probe: &SketchProbe, squares: &mut SketchLanes) -> f32 {
         let (pairs, width) = (1 << octave, PARTS >> octave);
         let per_row = pairs as f32 * self.per_row;
-        let mut energy = Lanes::ZERO;
+        let mut energy = SketchLanes::ZERO;
         let mut moved = 0f32;
         for pair in 0..pairs {
             let [a, b, c] = [0, width / 2, width].map(|part| pair * width + part);
@@ -385,7 +387,7 @@ impl WindowSketch {
     /// Distance of the deviations between the halves, at least.
     #[inline(always)]
     fn halves(&self, probe: &SketchProbe, shared: &SharedLanes) -> f32 {
-        let mut squares = Lanes::ZERO;
+        let mut squares = SketchLanes::ZERO;
         let moved = self.octave(0, probe, &mut squares);
         (masked_sum(&squares, shared).sqrt() - moved.sqrt()).max(0.0)
     }
@@ -393,7 +395,7 @@ impl WindowSketch {
     /// Distance of the deviations in the upper octaves, at least: of as many as give most.
     #[inline(always)]
     fn eighths(&self, probe: &SketchProbe, shared: &SharedLanes) -> f32 {
-        let (mut squares, mut moved, mut most) = (Lanes::ZERO, 0f32, 0f32);
+        let (mut squares, mut moved, mut most) = (SketchLanes::ZERO, 0f32, 0f32);
         for octave in 0..OCTAVES {
             moved += self.octave(octave, probe, &mut squares);
             most = most.max(masked_sum(&squares, shared).sqrt() - moved.sqrt());
@@ -405,7 +407,7 @@ impl WindowSketch {
     #[inline(always)]
     fn pose(&self, probe: &SketchProbe, shared: &SharedLanes) -> f32 {
         let (first, last) = (&self.ends[0].0, &self.ends[PARTS].0);
-        let mut squares = Lanes::ZERO;
+        let mut squares = SketchLanes::ZERO;
         for lane in 0..LANES {
             let mean = (last[lane] - first[lane]) * (UNIT * self.per_row);
             let apart = probe.pose.0[lane] - mean;
@@ -434,7 +436,7 @@ impl WindowSketch {
 
 /// The sum of the lanes of shared bones, by halves. Loops and no closures: these would be compiled for the oldest processor.
 #[inline(always)]
-fn masked_sum(lanes: &Lanes, shared: &SharedLanes) -> f32 {
+fn masked_sum(lanes: &SketchLanes, shared: &SharedLanes) -> f32 {
     let (lanes, mask) = (&lanes.0, &shared.mask.0);
     let mut sums = [0f32; SIDE];
     for i in 0..SIDE {

@@ -19,9 +19,9 @@ pub const LANES: usize = 48;
 /// A value for each lane, where vector loads want it.
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(64))]
-pub struct Lanes(pub [f32; LANES]);
+pub struct SketchLanes(pub [f32; LANES]);
 
-impl Lanes {
+impl SketchLanes {
     /// All zero.
     pub const ZERO: Self = Self([0.0; LANES]);
 }
@@ -153,7 +153,7 @@ pub struct Sketch {
     /// Rows of the clip.
     pub rows: usize,
     /// Prefix sums before each block and after the last, in units: whole numbers.
-    sums: Vec<Lanes>,
+    sums: Vec<SketchLanes>,
     /// Error of prefix sums within each block, Euclidean over directions and over the root.
     errors: Vec<[f32; 2]>,
 }
@@ -203,9 +203,9 @@ impl Sketch {
     pub fn read(&mut self, bytes: &SketchBytes<'_>, tables: &SketchTables) {
         let blocks = bytes.blocks;
         self.rows = bytes.rows;
-        self.sums.resize(blocks.len() + 1, Lanes::ZERO);
+        self.sums.resize(blocks.len() + 1, SketchLanes::ZERO);
         self.errors.resize(blocks.len(), [0.0; 2]);
-        let mut sum = Lanes::ZERO;
+        let mut sum = SketchLanes::ZERO;
         self.sums[0] = sum;
         let read = self.sums[1..].iter_mut().zip(&mut self.errors);
         for (block, (sums, errors)) in blocks.iter().zip(read) {
@@ -224,7 +224,7 @@ impl Sketch {
 
     /// Prefix sums before `place`, in eighths of rows, less those before the block `base`, in units.
     #[inline(always)]
-    pub fn until(&self, place: usize, base: usize, tables: &SketchTables) -> Lanes {
+    pub fn until(&self, place: usize, base: usize, tables: &SketchTables) -> SketchLanes {
         let block = self.block(place);
         let [before, within, next] = tables.weights[place - PLACES * BLOCK * block];
         let last = self.sums.len() - 2;
@@ -235,7 +235,7 @@ impl Sketch {
         let (c, d) = (lanes(block), lanes(block + 1));
         let (e, f) = (lanes(third), lanes(third + 1));
         let base = lanes(base);
-        let mut out = Lanes::ZERO;
+        let mut out = SketchLanes::ZERO;
         for lane in 0..LANES {
             // Differences of whole numbers are exact.
             out.0[lane] = (c[lane] - base[lane])
