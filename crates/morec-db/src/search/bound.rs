@@ -23,7 +23,7 @@ use super::{Example, SearchOptions};
 
 /// Octaves that a sketch speaks of.
 const OCTAVES: usize = 3;
-/// SketchLanes that are added up side by side.
+/// Lanes that are added up side by side.
 const SIDE: usize = 16;
 /// Parts of a window in the last octave.
 const PARTS: usize = 1 << OCTAVES;
@@ -111,7 +111,7 @@ impl SketchProbe {
     }
 }
 
-/// SketchLanes of bones that the example and a clip share, 1 in a mask, and the factor of lengths over them.
+/// Lanes of bones that the example and a clip share, 1 in a mask, and the factor of lengths over them.
 struct SharedLanes {
     bones: BoneSet,
     mask: SketchLanes,
