@@ -98,7 +98,8 @@ def parquet(rows: Sequence[Mapping[str, Any]], schema: pa.Schema) -> bytes:
     out = io.BytesIO()
     # Motion and rows are compressed by coders of their own; all else is small. Rows lie in the file as they are, so that
     # those of one clip can be read alone.
-    compression = {name: "none" if name == "rows" else "zstd" for name in schema.names}
+    # The stubs of pyarrow know one compression for all columns only.
+    compression: Any = {name: "none" if name == "rows" else "zstd" for name in schema.names}
     with pq.ParquetWriter(out, schema, compression=compression, use_dictionary=False) as writer:
         for start, stop in _groups([row.get("secs") or 0.0 for row in rows]):
             writer.write_table(table.slice(start, stop - start))
