@@ -147,15 +147,7 @@ pub(super) fn read(manifest: &SvrdmManifest, tables: &Tables) -> Result<SvrdmMod
 }
 
 fn profiles(tables: &Tables, width: usize) -> Result<Profiles, IndexError> {
-    let step = if tables.has("profiles.step") {
-        Some(tables.f32s("profiles.step")?)
-    } else {
-        None
-    };
-    if let Some(found) = step.as_ref().map(Vec::len).filter(|found| *found != width) {
-        let message = format!("tensor \"profiles.step\": expected {width} values, found {found}");
-        return Err(IndexError::Content(message));
-    }
+    let step = tables.steps("profiles.step", width)?;
     let classes: Result<Vec<ClassId>, _> = tables
         .u32s("profiles.classes")?
         .into_iter()

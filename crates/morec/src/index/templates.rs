@@ -106,16 +106,7 @@ fn exemplars(classes: &[Exemplars], dim: usize, step: Option<&[f32]>) -> [(Strin
 /// The model of an opened file.
 pub(super) fn read(manifest: &Manifest, tables: &Tables) -> Result<TemplateModel, IndexError> {
     let dim = RowLayout::of(manifest.bones).dim();
-    let step = if tables.has("rows.step") {
-        Some(tables.f32s("rows.step")?)
-    } else {
-        None
-    };
-    if let Some(found) = step.as_ref().map(Vec::len).filter(|found| *found != dim) {
-        return Err(IndexError::Content(format!(
-            "tensor \"rows.step\": expected {dim} values, found {found}"
-        )));
-    }
+    let step = tables.steps("rows.step", dim)?;
     let lengths = tables.u32s("templates.lengths")?;
     let classes = tables.u32s("templates.classes")?;
     if classes.len() != lengths.len() {

@@ -162,6 +162,27 @@ impl Tables {
         self.0.contains_key(name)
     }
 
+    /// The steps of `width` columns in which rows are stored, if the file has this tensor. A step is 0 or more.
+    pub fn steps(&self, name: &str, width: usize) -> Result<Option<Vec<f32>>, IndexError> {
+        if !self.has(name) {
+            return Ok(None);
+        }
+        let step = self.f32s(name)?;
+        if step.len() != width {
+            return Err(IndexError::Content(format!(
+                "tensor {name:?}: expected {width} values, found {}",
+                step.len()
+            )));
+        }
+        match step.iter().position(|s| *s < 0.0) {
+            None => Ok(Some(step)),
+            Some(column) => Err(IndexError::Content(format!(
+                "tensor {name:?}: expected steps of 0 or more, found {} in column {column}",
+                step[column]
+            ))),
+        }
+    }
+
     /// A table of rows of `dim` values, stored in steps of `step` or in full, cut into pieces of `lengths` rows.
     pub fn pieces(
         &self,
@@ -223,5 +244,21 @@ mod tests {
         assert_eq!(pieces(&[1.0, 1.0]).unwrap()[1].row(0), [3.0, 4.0]);
         let error = pieces(&[1.0, f32::MAX]).err().unwrap().to_string();
         assert!(error.contains("not finite"), "{error}");
+    }
+
+    #[test]
+    fn steps_that_could_not_be_written_again_are_refused() {
+        let steps = |values: &[f32]| {
+            let tables = Tables(BTreeMap::from([(
+                "step".to_owned(),
+                Tensor::of_f32(values),
+            )]));
+            tables.steps("step", 2)
+        };
+        assert_eq!(steps(&[0.0, 0.5]).unwrap(), Some(vec![0.0, 0.5]));
+        let refused = |values: &[f32]| steps(values).unwrap_err().to_string();
+        let error = refused(&[0.5, -0.25]);
+        assert!(error.contains("found -0.25 in column 1"), "{error}");
+        assert!(refused(&[0.5]).contains("expected 2 values, found 1"));
     }
 }
