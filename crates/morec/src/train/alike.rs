@@ -34,7 +34,8 @@ pub fn alike_classes(
 ) -> Vec<AlikeClasses> {
     let classes = set.classes.len();
     let (mut matched, mut shown) = (vec![0; classes * classes], vec![0; classes]);
-    let originals = samples.iter().filter(|s| !set.streams[s.stream].is_copy);
+    let is_original = |s: &&TrainSample| !s.is_faster && !set.streams[s.stream].is_copy;
+    let originals = samples.iter().filter(is_original);
     for sample in originals {
         let of_class =
             nearest_by_class(sample, samples, &distances[sample.stream], classes, params);

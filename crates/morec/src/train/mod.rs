@@ -5,6 +5,7 @@ mod alike;
 mod clips;
 mod data;
 mod examples;
+mod faster;
 mod from_clips;
 mod mining;
 mod mirror;

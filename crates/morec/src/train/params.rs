@@ -12,10 +12,13 @@ pub struct TrainParams {
     pub decode: DecodeParams,
     /// Ridge of the metric, as a share of the mean variance; .15 to .5 are alike.
     pub rho: f64,
-    /// Templates of a class that are copied faster at most, from its people in turn; the copies are templates too.
+    /// Samples of a class that are copied faster at most, those of median duration; the copies are templates too, but for
+    /// those that match beginnings of samples.
     pub faster_copies: usize,
     /// Duration of those copies, as a share of the sample's.
     pub faster_duration: f64,
+    /// People that must show a class for copies of it: whoever teaches alone performs at the speed that was taught.
+    pub faster_people: usize,
     /// Sample pairs a class's scatter is estimated from at most.
     pub max_pairs: usize,
     /// The threshold is this times the smallest distance from a template to background motion.
@@ -88,6 +91,7 @@ impl Default for TrainParams {
             features: FeatureParams::default(),
             decode: DecodeParams::default(),
             class_share: 0.0,
+            faster_copies: 1,
             alarms_per_minute: 0.3,
             max_threshold: 2.8,
             max_templates: 24,
@@ -110,7 +114,8 @@ impl TrainParams {
             decode: DecodeParams::reference(),
             rho: 0.3,
             faster_copies: 0,
-            faster_duration: 0.7,
+            faster_duration: 0.65,
+            faster_people: 2,
             max_pairs: 200,
             background_share: 0.85,
             class_share: 0.0,

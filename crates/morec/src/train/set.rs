@@ -69,6 +69,8 @@ pub struct TrainSample {
     pub ticks: Range<usize>,
     /// Those rows.
     pub rows: Rows,
+    /// True for a faster copy, whose rows are not those of its ticks.
+    pub is_faster: bool,
 }
 
 /// Everything to train from.
@@ -104,6 +106,7 @@ impl TrainSet {
                         stream: index,
                         ticks,
                         rows,
+                        is_faster: false,
                     });
                 }
             }

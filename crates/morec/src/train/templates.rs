@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 
 use crate::classes::ClassInfo;
-use crate::features::{BoneSet, Rows, retimed_rows};
+use crate::features::{BoneSet, Rows};
 use crate::progress::Progress;
 use crate::templates::{
     ALARM_RATES, Calibration, Matcher, Metric, OperatingPoint, PackedSymmetric, TemplateModel,
@@ -15,6 +15,7 @@ use crate::templates::{
 
 use super::alike::{AlikeClasses, alike_classes};
 use super::examples::{self, CandidateFinder, LeaveOneOutView, VerifierExample};
+use super::faster::{faster_copies, without_early};
 use super::mining::{NearMiss, TemplateDistances, hard_negatives};
 use super::operating::AlarmCurve;
 use super::params::TrainParams;
@@ -104,14 +105,14 @@ pub fn train(
     let metric = Metric::new(&ridged, &total);
     let classes = class_infos(set, &samples);
     let (samples, quiet) = moving(samples, &metric, params);
-    let samples = templates_of(samples, set.classes.len(), params.max_templates);
-    let samples = with_faster(samples, bones, set.classes.len(), params);
+    let mut samples = templates_of(samples, set.classes.len(), params.max_templates);
     let step = TrainingContext {
         set,
         metric: &metric,
         params,
         progress,
     };
+    samples.extend(step.faster_copies(&samples, bones)?);
     let matchers = step.matchers(samples.iter().map(|s| &s.rows));
     let mut distances = step.distances(&matchers, "comparing clips", |stream| {
         vec![true; set.streams[stream].rows.len()]
@@ -280,6 +281,26 @@ impl TrainingContext<'_> {
         streams.map_init(|| matchers.to_vec(), compare).collect()
     }
 
+    /// Faster copies of samples, for templates.
+    fn faster_copies(
+        &self,
+        samples: &[TrainSample],
+        bones: BoneSet,
+    ) -> Result<Vec<TrainSample>, TrainError> {
+        let copies = faster_copies(self.set, samples, bones, self.params);
+        if copies.is_empty() {
+            return Ok(copies);
+        }
+        let matchers = self.matchers(copies.iter().map(|s| &s.rows));
+        let teaching: BTreeSet<usize> = samples.iter().map(|s| s.stream).collect();
+        let mut distances = self.distances(&matchers, "comparing faster copies", |stream| {
+            vec![teaching.contains(&stream); self.set.streams[stream].rows.len()]
+        })?;
+        set_rest_share(&mut distances, self.params.decode.rest_gate);
+        let threshold = self.params.max_threshold;
+        Ok(without_early(copies, samples, &distances, threshold))
+    }
+
     /// Bound of the threshold at a rate of false alarms. It moves with the rate, or it would be all there is where no
     /// background comes near.
     fn most_at(&self, rate: f64) -> f64 {
@@ -435,26 +456,6 @@ fn templates_of(samples: Vec<TrainSample>, classes: usize, most: usize) -> Vec<T
         .filter(|(i, _)| kept.contains(i))
         .map(|(_, s)| s)
         .collect()
-}
-
-/// `samples` and faster copies of some of them, as templates. A template matches motion of half to twice its duration, but
-/// a fast motion has other velocities; a slow one is matched without help.
-fn with_faster(
-    mut samples: Vec<TrainSample>,
-    bones: BoneSet,
-    classes: usize,
-    params: &TrainParams,
-) -> Vec<TrainSample> {
-    if params.faster_copies == 0 {
-        return samples;
-    }
-    let mut copied = templates_of(samples.clone(), classes, params.faster_copies);
-    for sample in &mut copied {
-        let factor = params.faster_duration;
-        sample.rows = retimed_rows(&sample.rows, bones, &params.features, factor);
-    }
-    samples.extend(copied);
-    samples
 }
 
 /// Arguments of [`Metric::new`] from the samples of a set: `S_w + ρ tr(S_t)/d · I` and `S_t`. With no two samples of any class

@@ -9,6 +9,7 @@ mod conformance;
 mod cuts;
 mod diagnosis;
 mod engines;
+mod faster_copies;
 #[cfg(feature = "fbx")]
 mod fbx;
 mod for_ever;
