@@ -88,7 +88,7 @@ def test_some_of_many_clips_are_searched_first(
 ) -> None:
     many.add_sketches()
     monkeypatch.setattr("morec.archive._search.GLANCED_AT", 100)
-    monkeypatch.setattr("morec.archive._search.SOME", 3)
+    monkeypatch.setattr("morec.archive._search.SOME", (6, 3))
     for wanted in HOW:
         fast, slow = found(many, clips[0], 2.0, 3.5, wanted)
         assert fast.hits == slow.hits and len(fast.hits) > 0

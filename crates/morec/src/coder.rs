@@ -150,11 +150,15 @@ impl<'a> Reader<'a> {
         } else {
             self.range = bound;
         }
+        self.widen();
+        bit
+    }
+
+    fn widen(&mut self) {
         while self.range < LEAST_RANGE {
             self.range <<= 8;
             self.next_byte();
         }
-        bit
     }
 }
 
@@ -166,7 +170,14 @@ impl Coder for Reader<'_> {
     }
 
     fn even(&mut self, _: bool) -> bool {
-        self.narrow(self.range >> 1)
+        // No branch: the bit is as likely 0 as 1, so that every second prediction would be wrong.
+        let bound = self.range >> 1;
+        let bit = self.code >= bound;
+        let all = u32::from(bit).wrapping_neg();
+        self.code -= bound & all;
+        self.range = bound + (self.range & 1 & all);
+        self.widen();
+        bit
     }
 
     fn is_beyond_end(&self) -> bool {
@@ -245,11 +256,12 @@ impl Whole {
     /// A number of either sign.
     pub fn signed(&mut self, coder: &mut impl Coder, value: i64) -> i64 {
         let size = self.natural(coder, value.unsigned_abs()) as i64;
-        if size != 0 && coder.even(value < 0) {
-            -size
-        } else {
-            size
+        if size == 0 {
+            return 0;
         }
+        // All ones turn the number into its negative less 1.
+        let all = -i64::from(coder.even(value < 0));
+        (size ^ all) - all
     }
 }
 

@@ -14,9 +14,7 @@ use super::boxes::{BoxView, roots};
 use super::candidates::{QueryDescriptor, length_cost, pace_range, step, window_lengths};
 use super::layout::ROOT_WEIGHT;
 use super::rank::probes;
-use super::sketch::{
-    LANES, PLACES, ROOT_LANE, Sketch, SketchBytes, SketchLanes, SketchTables, UNIT,
-};
+use super::sketch::{LANES, PLACES, ROOT_LANE, Sketch, SketchBytes, SketchLanes, SketchTables};
 use super::summary::{MEAN, ROOT, Summary, SummaryDistance, WEIGHTS};
 use super::windows::{TRAVEL, X};
 use super::{Example, SearchOptions};
@@ -284,7 +282,7 @@ fn least_bound(
     query.least_of(work, bytes, depth, beyond)
 }
 
-/// A window in a sketch: prefix sums at the ends of its eighths, in units, and their errors, in rows.
+/// A window in a sketch: prefix sums at the ends of its eighths, and their errors.
 struct WindowSketch {
     start: usize,
     rows: usize,
@@ -370,7 +368,7 @@ impl WindowSketch {
             let [left, middle, right] = [&self.ends[a].0, &self.ends[b].0, &self.ends[c].0];
             for lane in 0..LANES {
                 // Half of what the means of the two halves differ by.
-                let h = (2.0 * middle[lane] - left[lane] - right[lane]) * (UNIT * per_row);
+                let h = (2.0 * middle[lane] - left[lane] - right[lane]) * per_row;
                 energy.0[lane] += h * h;
             }
             let error = self.errors[a][0] + 2.0 * self.errors[b][0] + self.errors[c][0];
@@ -409,7 +407,7 @@ impl WindowSketch {
         let (first, last) = (&self.ends[0].0, &self.ends[PARTS].0);
         let mut squares = SketchLanes::ZERO;
         for lane in 0..LANES {
-            let mean = (last[lane] - first[lane]) * (UNIT * self.per_row);
+            let mean = (last[lane] - first[lane]) * self.per_row;
             let apart = probe.pose.0[lane] - mean;
             squares.0[lane] = apart * apart;
         }
@@ -424,7 +422,7 @@ impl WindowSketch {
         let per_row = self.per_row / ROOT_WEIGHT as f32;
         let mut squares = 0f32;
         for i in 0..TRAVEL {
-            let mean = (last[ROOT_LANE + i] - first[ROOT_LANE + i]) * (UNIT * per_row);
+            let mean = (last[ROOT_LANE + i] - first[ROOT_LANE + i]) * per_row;
             let apart = probe.travel[i] - asinh(mean);
             squares += apart * apart;
         }

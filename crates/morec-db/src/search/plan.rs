@@ -7,8 +7,8 @@ use crate::ClipId;
 /// Clips for each window that is wanted of which the bound by eighths is taken before anything has been found.
 const LOOKED_AT_FIRST: usize = 4;
 
-/// Clips that are read at once, after the first time: so many may be read in vain.
-const BATCH: usize = 256;
+/// Clips that are read at once: so many may be read in vain.
+const BATCH: usize = 128;
 
 /// Distances within this factor of the last that counts are ranked with it.
 const TIES: f32 = 1.0 + 1e-4;
@@ -27,7 +27,6 @@ pub struct SearchPlan {
     /// The nearest windows so far: their distances and clips, nearest first.
     found: Vec<(f32, ClipId)>,
     wanted: usize,
-    begun: bool,
 }
 
 impl SearchPlan {
@@ -50,7 +49,6 @@ impl SearchPlan {
                 .collect(),
             found: Vec::new(),
             wanted: windows_wanted(options),
-            begun: false,
         }
     }
 
@@ -91,15 +89,13 @@ impl SearchPlan {
     /// Takes what another plan, for some of the clips, has found: windows of clips that were read, by their places in this one.
     pub fn known(&mut self, read: &[usize], windows: &[(ClipId, f32)]) {
         read.iter().for_each(|at| self.read[*at] = true);
-        self.begun = true;
         self.found(windows);
     }
 
     /// Clips, by their places, that have to be read now; none if enough has been read. They count as read.
     pub fn next_to_read(&mut self) -> Vec<usize> {
         let mut clips = self.left_within(self.reach(), BoundDepth::Eighths);
-        self.least(&mut clips, if self.begun { BATCH } else { self.wanted });
-        self.begun = true;
+        self.least(&mut clips, BATCH);
         clips.iter().for_each(|at| self.read[*at] = true);
         clips
     }

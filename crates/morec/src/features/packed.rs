@@ -64,6 +64,15 @@ fn level(value: f64) -> i64 {
     ((value / STEP).round() as i64).clamp(-LIMIT, LIMIT)
 }
 
+/// The nearest whole number within the limit, halves away from zero; 0 of what is no number. `f64::round` would be a call to the
+/// C library, because the oldest x86-64 processors have no instruction for it.
+fn rounded(value: f64) -> i64 {
+    let value = value.clamp(-LIMIT as f64, LIMIT as f64);
+    let whole = value as i64;
+    let rest = value - whole as f64;
+    whole + i64::from(rest >= 0.5) - i64::from(rest <= -0.5)
+}
+
 /// Forecast of the next row, and past errors of forecasts of each kind.
 struct Forecast {
     layout: RowLayout,
@@ -210,7 +219,7 @@ impl Misses {
         level: i64,
         around: u64,
     ) -> i64 {
-        let expected = (expected.round() as i64).clamp(-LIMIT, LIMIT);
+        let expected = rounded(expected);
         let digits = u64::BITS - (2 * channel.missed + around).leading_zeros();
         let whole = &mut self.0[(digits as usize).min(11)];
         let level = expected
@@ -256,6 +265,14 @@ mod tests {
             for (a, b) in rows.values().iter().zip(again.values()) {
                 let held = if a.is_nan() { 0.0 } else { a.clamp(-(1 << 18) as f32, (1 << 18) as f32) };
                 prop_assert!((held - b).abs() <= 0.5 * STEP as f32 + held.abs() * 1e-6);
+            }
+        }
+
+        #[test]
+        fn rounding_is_that_of_the_standard_library(value in any::<f64>(), near in -300.0..300f64, halves in -100i32..100) {
+            let half = f64::from(halves) / 2.0;
+            for value in [value, near, half, half.next_up(), half.next_down(), f64::INFINITY, f64::NAN] {
+                prop_assert_eq!(rounded(value), (value.round() as i64).clamp(-LIMIT, LIMIT), "{}", value);
             }
         }
 

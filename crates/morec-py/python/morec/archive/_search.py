@@ -21,8 +21,10 @@ from ._sketches import SketchTable
 from ._store import Store, patiently
 from ._tasks import Example, Nearest
 
-#: Archives of more clips are searched in one of so many clips first.
-GLANCED_AT, SOME = 1 << 14, 64
+#: Archives of more clips are searched in one of so many clips first, then in one of fewer.
+GLANCED_AT, SOME = 1 << 14, (64, 8)
+#: So often clips are read among some before all are looked at.
+ROUNDS = 3
 
 #: A clip's number, bones and packed rows.
 KeptRows = tuple[int, int, bytes]
@@ -61,15 +63,7 @@ def search(
     found = Found([], len(sketches), 0, 0)
     rows: dict[int, KeptRows] = {}
     names: dict[int, Names] = {}
-    if len(sketches) > GLANCED_AT:
-        # Among some of the clips the nearest windows are further, but so near that of most others a glance is enough.
-        some = np.arange(0, len(sketches), SOME)
-        first = ask.plan(math.inf, some)
-        which, windows = ask.read_next(first, some, found, rows)
-        plan = ask.plan(first.reach(), None)
-        plan.known(some[which], windows)
-    else:
-        plan = ask.plan(math.inf, None)
+    plan = ask.plan_of_all(found, rows)
     if unsketched is not None:
         for row, name in _nearest_of(unsketched, example, wanted):
             rows[row[0]], names[row[0]] = row, name
@@ -165,6 +159,26 @@ class Asked:
         """Once it is known how near windows must be, those that are near enough are few: they are compared closely at once."""
         closely = reach < math.inf
         return _morec.SearchPlan(self.bounds(closely, reach, places), *self.wanted.native(), closely)
+
+    def plan_of_all(self, found: Found, rows: dict[int, KeptRows]) -> _morec.SearchPlan:
+        """The plan for all clips; of many, some have been read.
+
+        Among some of the clips the nearest windows are farther, but so near that of most others a glance is enough.
+        """
+        reach, read = math.inf, np.zeros(0, np.int64)
+        windows: list[tuple[int, float]] = []
+        for step in SOME if len(self.sketches) > GLANCED_AT else ():
+            some = np.arange(0, len(self.sketches), step)
+            plan = self.plan(reach, some)
+            # Each step divides the one before it.
+            plan.known(read // step, windows)
+            for _ in range(ROUNDS):
+                which, near = self.read_next(plan, some, found, rows)
+                read, windows = np.concatenate([read, some[which]]), windows + near
+            reach = plan.reach()
+        plan = self.plan(reach, None)
+        plan.known(read, windows)
+        return plan
 
     def read_next(
         self, plan: _morec.SearchPlan, places: Any, found: Found, rows: dict[int, KeptRows]

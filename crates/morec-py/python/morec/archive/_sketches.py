@@ -23,7 +23,7 @@ from ._store import Store, patiently
 
 SKETCHES = "sketches"
 #: Version of what sketches hold; others are not used.
-VERSION = 2
+VERSION = 3
 _ABOUT = b"morec"
 _ENDING = ".arrow"
 SCHEMA = pa.schema(
