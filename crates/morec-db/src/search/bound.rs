@@ -10,7 +10,7 @@ use morec::features::{BoneSet, RowLayout};
 use multiversion::multiversion;
 use rayon::prelude::*;
 
-use super::boxes::{BoxView, roots};
+use super::boxes::{BoxView, roots, total};
 use super::candidates::{QueryDescriptor, length_cost, pace_range, step, window_lengths};
 use super::layout::ROOT_WEIGHT;
 use super::rank::probes;
@@ -23,6 +23,8 @@ use super::{Example, SearchOptions};
 const OCTAVES: usize = 3;
 /// Lanes that are added up side by side.
 const SIDE: usize = 16;
+/// Windows that are looked at side by side: their travel fills a vector.
+const GROUP: usize = SIDE / TRAVEL;
 /// Parts of a window in the last octave.
 const PARTS: usize = 1 << OCTAVES;
 
@@ -190,9 +192,15 @@ impl SketchQuery {
         work.sketch.read(&bytes, &self.tables);
         for length in lengths {
             let cost = length_cost(*length, self.rows, pace_range()) + excess;
-            for start in (0..=rows - length).step_by(step(*length)) {
-                work.window.turn(start, *length);
-                self.compare(work, depth, cost, &mut least);
+            let (step, last) = (step(*length), rows - length);
+            let mut start = 0;
+            while start <= last {
+                let count = ((last - start) / step + 1).min(GROUP);
+                for at in 0..count {
+                    work.windows[at].turn(start + at * step, *length);
+                }
+                self.compare(work, count, depth, cost, &mut least);
+                start += count * step;
             }
         }
         Some(least)
@@ -229,33 +237,55 @@ impl SketchQuery {
         true
     }
 
-    /// Lowers `least` to the bound of the window that is turned to, at a cost of its length, if that is less.
+    /// Lowers `least` to the least bound of the windows that are turned to, at a cost of their length, if that is less.
     #[inline(always)]
-    fn compare(&self, work: &mut Workspace, depth: BoundDepth, cost: f32, least: &mut f32) {
+    fn compare(
+        &self,
+        work: &mut Workspace,
+        count: usize,
+        depth: BoundDepth,
+        cost: f32,
+        least: &mut f32,
+    ) {
         let Workspace {
             sketch,
-            window,
+            windows,
             shared,
             ..
         } = work;
-        window.take(sketch, &self.tables, [0, PARTS]);
-        for at in 0..self.probes.len() {
-            let (probe, shared) = (&self.probes[at], &shared[at]);
-            // Each part of the distance is a bound of the whole: as soon as they exceed what is known, the rest is not
-            // computed. Pose and travel need the window's ends alone, and tell most windows from most examples.
-            let pose = WEIGHTS.pose * shared.scale * window.pose(probe, shared);
-            let still = cost + pose + WEIGHTS.travel * window.travel(probe);
-            if still >= *least {
-                continue;
+        let mut travels = [0f32; SIDE];
+        for at in 0..count {
+            windows[at].take(sketch, &self.tables, [0, PARTS]);
+            let travel = windows[at].mean_travel();
+            for i in 0..TRAVEL {
+                travels[TRAVEL * at + i] = travel[i];
             }
-            window.take_halves(sketch, &self.tables);
-            let weight = WEIGHTS.motion * shared.scale;
-            let mut bound = still + weight * window.halves(probe, shared);
-            if bound < *least && depth == BoundDepth::Eighths {
-                window.take_eighths(sketch, &self.tables);
-                bound = still + weight * window.eighths(probe, shared);
+        }
+        let travels = asinh(&travels);
+        for at in 0..count {
+            let window = &mut windows[at];
+            for probe in 0..self.probes.len() {
+                let (probe, shared) = (&self.probes[probe], &shared[probe]);
+                // Each part of the distance is a bound of the whole: as soon as they exceed what is known, the rest is not
+                // computed. Pose and travel need the window's ends alone, and tell most windows from most examples.
+                let travel = WEIGHTS.travel * window.travel(probe, &travels, TRAVEL * at);
+                if cost + travel >= *least {
+                    continue;
+                }
+                let pose = WEIGHTS.pose * shared.scale * window.pose(probe, shared);
+                let still = cost + travel + pose;
+                if still >= *least {
+                    continue;
+                }
+                window.take_halves(sketch, &self.tables);
+                let weight = WEIGHTS.motion * shared.scale;
+                let mut bound = still + weight * window.halves(probe, shared);
+                if bound < *least && depth == BoundDepth::Eighths {
+                    window.take_eighths(sketch, &self.tables);
+                    bound = still + weight * window.eighths(probe, shared);
+                }
+                *least = least.min(bound);
             }
-            *least = least.min(bound);
         }
     }
 }
@@ -264,7 +294,7 @@ impl SketchQuery {
 #[derive(Default)]
 struct Workspace {
     sketch: Sketch,
-    window: WindowSketch,
+    windows: [WindowSketch; GROUP],
     /// Of the last clip, and what it shares with each probe: most clips show the same bones.
     bones: Option<BoneSet>,
     shared: Vec<SharedLanes>,
@@ -415,18 +445,28 @@ impl WindowSketch {
         (masked_sum(&squares, shared).sqrt() - moved).max(0.0)
     }
 
-    /// Distance of the travel, at least.
+    /// Mean root motion.
     #[inline(always)]
-    fn travel(&self, probe: &SketchProbe) -> f32 {
+    fn mean_travel(&self) -> [f32; TRAVEL] {
         let (first, last) = (&self.ends[0].0, &self.ends[PARTS].0);
         let per_row = self.per_row / ROOT_WEIGHT as f32;
+        let mut mean = [0f32; TRAVEL];
+        for i in 0..TRAVEL {
+            mean[i] = (last[ROOT_LANE + i] - first[ROOT_LANE + i]) * per_row;
+        }
+        mean
+    }
+
+    /// Distance of the travel, at least; that of the window begins at `at` in `travels`.
+    #[inline(always)]
+    fn travel(&self, probe: &SketchProbe, travels: &[f32; SIDE], at: usize) -> f32 {
         let mut squares = 0f32;
         for i in 0..TRAVEL {
-            let mean = (last[ROOT_LANE + i] - first[ROOT_LANE + i]) * per_row;
-            let apart = probe.travel[i] - asinh(mean);
+            let apart = probe.travel[i] - travels[at + i];
             squares += apart * apart;
         }
         // The inverse hyperbolic sine is nowhere steeper than 1; of four values each may be off.
+        let per_row = self.per_row / ROOT_WEIGHT as f32;
         let moved = (self.errors[0][1] + self.errors[PARTS][1]) * per_row + 2.0 * ASINH_ERROR;
         (squares.sqrt() - moved).max(0.0)
     }
@@ -436,38 +476,40 @@ impl WindowSketch {
 #[inline(always)]
 fn masked_sum(lanes: &SketchLanes, shared: &SharedLanes) -> f32 {
     let (lanes, mask) = (&lanes.0, &shared.mask.0);
-    let mut sums = [0f32; SIDE];
+    let mut sixteen = [0f32; SIDE];
     for i in 0..SIDE {
-        sums[i] = lanes[i] * mask[i] + lanes[16 + i] * mask[16 + i] + lanes[32 + i] * mask[32 + i];
+        sixteen[i] =
+            lanes[i] * mask[i] + lanes[16 + i] * mask[16 + i] + lanes[32 + i] * mask[32 + i];
     }
-    for width in [8, 4, 2, 1] {
-        for i in 0..width {
-            sums[i] += sums[width + i];
-        }
-    }
-    sums[0]
+    total(&sixteen)
 }
 
 /// How far [`asinh`] may be off.
 const ASINH_ERROR: f32 = 2e-5;
 
-/// The inverse hyperbolic sine of root motion, in few operations and none that branches.
+/// Inverse hyperbolic sines of root motion, in few operations and none that branches.
 #[inline(always)]
-fn asinh(x: f32) -> f32 {
-    // asinh |x| = ln y = e ln 2 + ln m, of which the last is a polynomial in m, from 1 to 2.
-    let y = x.abs() + (x * x + 1.0).sqrt();
-    let bits = y.to_bits();
-    let exponent = ((bits >> 23) as i32 - 127) as f32;
-    let m = f32::from_bits((bits & 0x007F_FFFF) | 0x3F80_0000);
-    let ln = [
+fn asinh(values: &[f32; SIDE]) -> [f32; SIDE] {
+    const LN: [f32; 6] = [
         0.030_449,
         -0.283_826_85,
         1.116_09,
         -2.440_029_8,
         3.514_087_3,
+        -1.936_759_7,
     ];
-    let ln = (((((ln[0] * m + ln[1]) * m + ln[2]) * m + ln[3]) * m + ln[4]) * m) - 1.936_759_7;
-    (exponent * std::f32::consts::LN_2 + ln).copysign(x)
+    let mut out = [0f32; SIDE];
+    for i in 0..SIDE {
+        let x = values[i];
+        // asinh |x| = ln y = e ln 2 + ln m, of which the last is a polynomial in m, from 1 to 2.
+        let y = x.abs() + (x * x + 1.0).sqrt();
+        let bits = y.to_bits();
+        let exponent = ((bits >> 23) as i32 - 127) as f32;
+        let m = f32::from_bits((bits & 0x007F_FFFF) | 0x3F80_0000);
+        let ln = ((((LN[0] * m + LN[1]) * m + LN[2]) * m + LN[3]) * m + LN[4]) * m + LN[5];
+        out[i] = (exponent * std::f32::consts::LN_2 + ln).copysign(x);
+    }
+    out
 }
 
 #[cfg(test)]
@@ -480,7 +522,7 @@ mod tests {
             let x = (i as f32 / 20_000.0 - 10.0).exp();
             for x in [x, -x, 0.0, 1.0 / x] {
                 let exact = f64::from(x).asinh();
-                let off = f64::from(asinh(x)) - exact;
+                let off = f64::from(asinh(&[x; SIDE])[3]) - exact;
                 assert!(off.abs() <= f64::from(ASINH_ERROR), "{x}: {off}");
             }
         }
