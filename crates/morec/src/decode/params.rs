@@ -77,7 +77,7 @@ impl Default for DecodeParams {
             overlap_share: 0.5,
             hold_ticks: 2,
             spread_exponent: 0.85,
-            rest_gate: 0.62,
+            rest_gate: 0.60,
             rest_gate_verified: 0.85,
             rest_spread: 0.5,
             once: true,

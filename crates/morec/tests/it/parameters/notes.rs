@@ -215,7 +215,7 @@ pub const NOTES: &[(&str, &str)] = &[
     ),
     (
         "decode.rest_gate",
-        "with `decode.rest_spread` at 0.5, F1 on referee by clip and by person, Kinect sessions by the same person and by others: 0.58: 0.917, 0.750, 0.855, 0.813; 0.62: 0.960, 0.889, 0.841, 0.808; 0.64: 0.960, 0.901, 0.818, 0.800; 0.66: 0.960, 0.901, 0.807, 0.774; 0 in older indexes",
+        "with `decode.rest_spread` at 0.5, F1 on referee by clip and by person, Kinect sessions by the same person and by others: 0.58: 0.917, 0.750, 0.855, 0.813; 0.60 (two faster copies): 0.949, 0.864, 0.855, 0.805; 0.62: 0.960, 0.889, 0.841, 0.808; 0.64: 0.960, 0.901, 0.818, 0.800; 0.66: 0.960, 0.901, 0.807, 0.774; 0 in older indexes",
     ),
     (
         "decode.rest_gate_verified",
@@ -273,15 +273,15 @@ pub const NOTES: &[(&str, &str)] = &[
     ("verify_people", "as `verify_samples`"),
     (
         "faster_copies",
-        "of the 12 signals of one clip at half and at two thirds of their duration 7 and 10 are recognised, 6 and 8 without; all 49 signals there F1 0.926 and 0.959 for 0.889 and 0.948; by clip and by person, sessions of the same person and of others the same (0.960, 0.889, 0.844, 0.815); gestures by person 0.975 right for 0.973; half splits of 17 referee classes 0.933 / 0.934 for 0.934 / 0.934, seeds 11 to 18 0.936 / 0.938 for 0.937 / 0.939",
+        "of the 12 signals of one clip at half and at two thirds of their duration 7 and 9 are recognised, 6 and 7 without, 6 and 8 by one copy; all 49 signals there F1 0.926 and 0.939 for 0.889 and 0.926; by clip and by person, sessions of the same person the same (0.949, 0.864, 0.855), by others 0.805 for 0.813; half splits of 17 referee classes 0.938 / 0.939 for 0.936 / 0.937",
     ),
     (
         "faster_duration",
-        "0.55, 0.60, 0.65, 0.70 with copies of the first sample, for whoever teaches alone too: all 49 signals at half their duration F1 0.915, 0.915, 0.926, 0.903; sessions of others 0.817, 0.815, 0.815, 0.812; by clip and by person the same",
+        "0.50, 0.55, 0.60, 0.65 with two copies, of the 12 signals of one clip at half and at two thirds of their duration: 8 and 8, 7 and 9, 7 and 9, 6 and 9; half splits of 17 referee classes 0.937 / 0.938 with 0.55, 0.938 / 0.939 with 0.60; sessions by others alike",
     ),
     (
         "faster_people",
-        "1: sessions of the same person 0.840, calibration 0.128; 2: 0.844 and 0.121",
+        "1: sessions of the same person 0.840, calibration 0.128; 2: 0.844 and 0.121; both with `decode.rest_gate` 0.62 and one copy",
     ),
     (
         "max_negatives",
