@@ -109,7 +109,8 @@ impl LaneScale {
         for sum in in_units(sums, lane, code).skip(1) {
             (least, greatest) = (least.min(sum - before), greatest.max(sum - before));
             before = sum;
-            if greatest - least > 2.0 * most || !(sum.abs() < EXACT) {
+            let is_exact = sum.abs() < EXACT;
+            if greatest - least > 2.0 * most || !is_exact {
                 return None;
             }
         }
