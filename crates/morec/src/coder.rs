@@ -173,9 +173,9 @@ impl Coder for Reader<'_> {
         // No branch: the bit is as likely 0 as 1, so that every second prediction would be wrong.
         let bound = self.range >> 1;
         let bit = self.code >= bound;
-        let all = u32::from(bit).wrapping_neg();
-        self.code -= bound & all;
-        self.range = bound + (self.range & 1 & all);
+        let mask = u32::from(bit).wrapping_neg();
+        self.code -= bound & mask;
+        self.range = bound + (self.range & 1 & mask);
         self.widen();
         bit
     }
@@ -259,9 +259,9 @@ impl Whole {
         if size == 0 {
             return 0;
         }
-        // All ones turn the number into its negative less 1.
-        let all = -i64::from(coder.even(value < 0));
-        (size ^ all) - all
+        // Negation in two's complement where the mask is all ones, the number itself where it is 0.
+        let mask = -i64::from(coder.even(value < 0));
+        (size ^ mask) - mask
     }
 }
 

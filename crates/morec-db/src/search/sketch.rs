@@ -71,8 +71,8 @@ fn weights_at_row(row: usize) -> BlockWeights {
 }
 
 /// How the prefix sums of a lane are kept.
-#[derive(Debug, Clone, Copy, Default)]
 struct LaneScale {
+    /// Of its [unit](unit_of).
     code: u8,
     /// Subtracted from what each block adds, in units.
     centre: i16,

@@ -60,8 +60,7 @@ impl Rows {
 }
 
 fn level(value: f64) -> i64 {
-    // A cast of what is no number gives 0.
-    ((value / STEP).round() as i64).clamp(-LIMIT, LIMIT)
+    rounded(value / STEP)
 }
 
 /// The nearest whole number within the limit, halves away from zero; 0 of what is no number. `f64::round` would be a call to the

@@ -21,9 +21,9 @@ from ._sketches import SketchTable
 from ._store import Store, patiently
 from ._tasks import Example, Nearest
 
-#: Archives of more clips are searched in one of so many clips first, then in one of fewer.
+#: Archives of more than GLANCED_AT clips are searched in every 64th clip first, then in every 8th, then in all.
 GLANCED_AT, SOME = 1 << 14, (64, 8)
-#: So often clips are read among some before all are looked at.
+#: Batches of clips that are read in each of these first searches.
 ROUNDS = 3
 
 #: A clip's number, bones and packed rows.
