@@ -75,8 +75,10 @@ impl Studio {
 }
 
 /// Under which name the layout is remembered.
+#[cfg(feature = "window")]
 pub const LAYOUT: &str = "layout";
 
+#[cfg(feature = "window")]
 impl eframe::App for Studio {
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
         eframe::set_value(storage, LAYOUT, &self.state.layout());

@@ -43,6 +43,14 @@ pub trait Chooser: Send + Sync {
 /// The dialogs of the system.
 pub struct SystemDialogs;
 
+#[cfg(not(feature = "window"))]
+impl Chooser for SystemDialogs {
+    fn choose(&self, _: &Dialog) -> Vec<PathBuf> {
+        Vec::new()
+    }
+}
+
+#[cfg(feature = "window")]
 impl Chooser for SystemDialogs {
     fn choose(&self, dialog: &Dialog) -> Vec<PathBuf> {
         let mut shown = rfd::FileDialog::new().set_title(dialog.title);

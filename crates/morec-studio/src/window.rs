@@ -5,10 +5,8 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
-use crate::app::{LAYOUT, Studio};
 use crate::screenshot::{self, Shot};
 use crate::state::Panel;
-use crate::state::layout::Layout;
 
 /// See motions, cut, sort and label them, train, and watch them recognised live
 ///
@@ -111,7 +109,16 @@ fn picture(args: &Args, path: &std::path::Path) -> Result<(), String> {
     screenshot::write(&screenshot::draw(&args.paths, &shot)?, path)
 }
 
+#[cfg(not(feature = "window"))]
+fn window(_: &Args) -> Result<(), String> {
+    Err("this build has no window (feature `window`); `--screenshot` draws a panel without one".to_owned())
+}
+
+#[cfg(feature = "window")]
 fn window(args: &Args) -> Result<(), String> {
+    use crate::app::{LAYOUT, Studio};
+    use crate::state::layout::Layout;
+
     let options = eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default()
             .with_title("morec studio")

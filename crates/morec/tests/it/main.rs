@@ -4,6 +4,9 @@
 #![allow(clippy::unwrap_used, clippy::print_stderr)]
 
 mod alike;
+mod bvh_real;
+mod bvh_roundtrip;
+mod bvh_traps;
 mod cases;
 mod conformance;
 mod cuts;

@@ -188,6 +188,7 @@ fn commands_of_readme_and_guide_run() {
 }
 
 #[test]
+#[ignore = "takes long and finds little that synthetic clips do not; .ci/nightly runs it"]
 fn commands_on_real_clips_run_and_print_what_is_shown() {
     let Some(data) = kit::data() else { return };
     run_documents(&guide(), &Fixture::real(&data), |block| match block.check {

@@ -1,5 +1,4 @@
 //! Reads every BVH file of the motion data that lies beside the project, if it is there.
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use std::path::PathBuf;
 
@@ -8,9 +7,7 @@ use morec::formats::bvh::{self, BvhOptions};
 use morec::formats::{Limits, Warning};
 use morec::kinematics::WorldPose;
 
-mod testing;
-
-use testing::data;
+use crate::kit::data;
 
 /// The clips of one folder with the number of lines in each table, counted the plain way.
 fn clips(folder: &str) -> Vec<(Clip, Vec<Warning>, usize)> {

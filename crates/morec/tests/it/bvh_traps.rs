@@ -1,5 +1,4 @@
 //! One small file for each way in which BVH files differ or are broken, and what is read from it.
-#![allow(clippy::unwrap_used, clippy::single_range_in_vec_init)]
 
 use std::path::PathBuf;
 

@@ -1,5 +1,4 @@
 //! Clips that are written as BVH are read back the same.
-#![allow(clippy::unwrap_used)]
 
 use morec::clip::{Clip, Joint, JointTrack, Points, Skeleton};
 use morec::formats::Limits;

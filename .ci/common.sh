@@ -1,0 +1,94 @@
+# What `.ci/run` and `.ci/nightly` share: steps with their seconds, and what a bare machine lacks.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+# One folder for everything that is compiled, the fuzz targets among it.
+export CARGO_TARGET_DIR=$PWD/target
+
+steps=()
+begun=
+
+step() {
+    ended
+    begun=$SECONDS name=$*
+    printf '\n== %s\n' "$*"
+}
+
+ended() {
+    [ -z "$begun" ] || steps+=("$(printf '%5d s  %s' $((SECONDS - begun)) "$name")")
+    begun=
+}
+
+# The seconds of each step, also of one that failed.
+report() {
+    ended
+    printf '\n== Seconds of each step\n'
+    printf '%s\n' "${steps[@]}"
+    printf '%5d s  in all\n' "$SECONDS"
+}
+trap report EXIT
+
+run() {
+    printf '$ %s\n' "$*"
+    "$@"
+}
+
+# A toolchain installed with the minimal profile lacks these two.
+component() {
+    "cargo-$1" --version >/dev/null 2>&1 && return
+    if ! command -v rustup >/dev/null; then
+        echo "cargo-$1 is missing, and there is no rustup to install it with" >&2
+        return 1
+    fi
+    run rustup component add "$2"
+}
+
+# The first interpreter that is new enough.
+python_of() {
+    local name
+    for name in python3 python3.14 python3.13 python3.12 python3.11 python3.10; do
+        if "$name" -c 'import sys; raise SystemExit(sys.version_info < (3, 10))' 2>/dev/null; then
+            command -v "$name"
+            return
+        fi
+    done
+    return 1
+}
+
+# Sets `venv` to a fresh environment with what the given files list; to nothing where there is no Python and none can be installed.
+python_environment() {
+    local python
+    venv=
+    python=$(python_of || true)
+    if [ -z "$python" ] && command -v apt-get >/dev/null && [ "$(id -u)" = 0 ]; then
+        run apt-get update -q
+        run apt-get install -q -y --no-install-recommends python3 python3-venv
+        python=$(python_of || true)
+    fi
+    if [ -z "$python" ]; then
+        echo "there is no Python 3.10 or newer here, and none can be installed"
+        return
+    fi
+    venv=$PWD/target/python
+    if ! "$python" -m venv --clear "$venv" >/dev/null 2>&1; then
+        # Debian keeps what venv needs apart.
+        run apt-get update -q
+        run apt-get install -q -y --no-install-recommends python3-venv
+        run "$python" -m venv --clear "$venv"
+    fi
+    local file
+    for file in "$@"; do
+        run "$venv/bin/pip" install -q -r "$file"
+    done
+}
+
+# Builds the Python package with the given profile and installs it into the environment.
+install_wheel() {
+    rm -rf target/wheels
+    (
+        cd crates/morec-py
+        PATH="$venv/bin:$PATH" run maturin build --profile "$1" --out ../../target/wheels
+    )
+    run "$venv/bin/pip" install -q --force-reinstall --no-deps target/wheels/morec-*.whl
+    ls -l target/wheels
+}
