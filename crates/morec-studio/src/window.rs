@@ -111,7 +111,10 @@ fn picture(args: &Args, path: &std::path::Path) -> Result<(), String> {
 
 #[cfg(not(feature = "window"))]
 fn window(_: &Args) -> Result<(), String> {
-    Err("this build has no window (feature `window`); `--screenshot` draws a panel without one".to_owned())
+    Err(
+        "this build has no window (feature `window`); `--screenshot` draws a panel without one"
+            .to_owned(),
+    )
 }
 
 #[cfg(feature = "window")]
