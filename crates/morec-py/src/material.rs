@@ -203,11 +203,11 @@ pub fn recipe(given: &Bound<'_, PyDict>) -> PyResult<Recipe> {
             bones: word("bones")?
                 .parse()
                 .map_err(|error| value_error(format!("bones: {error}")))?,
-            params: with_figures(TrainParams::default(), &params)?,
+            params: with_parameters(TrainParams::default(), &params)?,
         }
         .into()),
         "svrdm" => Ok(SvrdmOptions {
-            params: with_figures(setting.params(), &params)?,
+            params: with_parameters(setting.params(), &params)?,
             unlabelled_is_background,
         }
         .into()),
@@ -216,7 +216,7 @@ pub fn recipe(given: &Bound<'_, PyDict>) -> PyResult<Recipe> {
 }
 
 /// `params` with figures replaced, each named by its path.
-fn with_figures<P: Serialize + DeserializeOwned>(
+fn with_parameters<P: Serialize + DeserializeOwned>(
     params: P,
     settings: &[(String, String)],
 ) -> PyResult<P> {

@@ -91,7 +91,7 @@ def train(
     Parameters
     ----------
     clips : clips or paths
-        Clips that the labels speak of, by name.
+        Clips that the labels refer to, by name.
     labels : DataFrame, path, Table or list of spans
         Columns clip, class and start, stop (frames, stop exclusive) or start_secs, stop_secs, or neither: then the whole
         clip is one sample, its still ends trimmed. Perhaps person. Spans are (clip, class, start_secs, stop_secs).
@@ -178,7 +178,7 @@ def crossval(
     unknown : clips, paths or names of clips, optional
         Clips that hold none of the classes: what is recognised in them is a false alarm.
     samples : int, optional
-        Let at most so many samples of each class teach, from its people in turn.
+        Let at most N samples of each class teach, from its people in turn.
     perturb : sequence of str
         Also test copies that are worse in one way each, as ``"cam:1"``, ``"rate:30"``.
     sensitivities : sequence of float

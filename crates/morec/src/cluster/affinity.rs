@@ -12,7 +12,7 @@ pub struct AffinityParams {
     pub preference: f64,
     /// Messages are passed so often at most.
     pub rounds: usize,
-    /// Exemplars that stay the same for so many rounds are final.
+    /// Exemplars that stay the same for this many rounds are final.
     pub settled: usize,
 }
 

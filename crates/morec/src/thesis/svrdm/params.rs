@@ -82,7 +82,7 @@ impl SegmentDistance {
         }
     }
 
-    /// Rows in the profile of a segment of so many frames.
+    /// Rows in the profile of a segment of this many frames.
     pub fn rows(self, frames: usize) -> usize {
         frames.div_ceil(self.every())
     }
