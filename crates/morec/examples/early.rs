@@ -51,7 +51,7 @@ fn set(params: &mut EarlyDetectionParams, arg: &str) {
         "gate" => params.gate = value,
         "rival" => params.rival = value,
         "streak" => params.streak = value as usize,
-        _ => panic!("no figure is called {name}"),
+        _ => panic!("no parameter is called {name}"),
     }
 }
 

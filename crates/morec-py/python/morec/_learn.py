@@ -106,7 +106,7 @@ def train(
     method : {"templates", "svrdm"}
         Gestures and cycles matched elastically, or the method of the thesis of 2009.
     svrdm : {"tuned", "faithful"}
-        The figures of the method svrdm.
+        The parameters of the method svrdm.
     unlabelled : {"background", "ignore"}
         What the unlabelled parts of labelled clips are: motion that is none of the classes, or nothing to go by.
     everyday : {"auto", "always", "never"}
@@ -120,7 +120,7 @@ def train(
     bones : str or sequence of str
         Which parts of the body count (templates only): all, upper, arms, or names of bones.
     params : dict, optional
-        Figures of the method by their path, as ``{"rho": 0.4, "decode.lag_ticks": 2}``.
+        Parameters of the method by their path, as ``{"rho": 0.4, "decode.lag_ticks": 2}``.
     progress : bool or callable, optional
 
     Returns

@@ -35,7 +35,7 @@ class MotionClassifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
     rejected : str
         What is predicted then.
     params : dict, optional
-        Figures of the method, as in `morec.train`.
+        Parameters of the method, as in `morec.train`.
 
     Attributes
     ----------

@@ -3,7 +3,7 @@
 
 use super::Clusters;
 
-/// Figures of [`affinity_propagation`].
+/// Parameters of [`affinity_propagation`].
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct AffinityParams {
     /// Share of the old message that stays, 0.5 to below 1.

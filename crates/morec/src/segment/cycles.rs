@@ -2,7 +2,7 @@
 
 use crate::features::Rows;
 
-/// Figures of [`cycles`].
+/// Parameters of [`cycles`].
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct CycleParams {
     /// No repetition is shorter.

@@ -1,4 +1,4 @@
-//! The figures of training.
+//! The parameters of training.
 
 use crate::decode::DecodeParams;
 use crate::features::FeatureParams;

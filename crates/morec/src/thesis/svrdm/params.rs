@@ -1,4 +1,4 @@
-//! The figures of the live stages.
+//! The parameters of the live stages.
 
 use super::Descent;
 
