@@ -223,8 +223,8 @@ fn with_parameters<P: Serialize + DeserializeOwned>(
     let mut tree = serde_json::to_value(&params).map_err(value_error)?;
     for (name, value) in settings {
         let parameter = tree.pointer_mut(&format!("/{}", name.replace('.', "/")));
-        let parameter =
-            parameter.ok_or_else(|| value_error(format!("params: no parameter is called {name}")))?;
+        let parameter = parameter
+            .ok_or_else(|| value_error(format!("params: no parameter is called {name}")))?;
         *parameter = serde_json::from_str(value).map_err(value_error)?;
     }
     serde_json::from_value(tree).map_err(|error| value_error(format!("params: {error}")))
