@@ -18,7 +18,7 @@ def main(morec, database):
     def run(*arguments):
         return subprocess.run([morec, *arguments], check=True, capture_output=True, text=True).stdout
 
-    # The labels of clips are told by their files: `morec:clip` in the header.
+    # The labels of clips are given by their files: `morec:clip` in the header.
     expected = collections.Counter()
     for sample in json.loads(run("db", "samples", database, "--state", "accepted", "--limit", "1000000", "--json")):
         start, stop = (round(1000 * sample[key]) for key in ("start_secs", "stop_secs"))

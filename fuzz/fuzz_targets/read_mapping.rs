@@ -39,7 +39,7 @@ fuzz_target!(|bytes: &[u8]| {
     let mut sorted = names.clone();
     sorted.sort_unstable();
     let twice = sorted.windows(2).any(|w| w[0] == w[1]);
-    // Such names cannot be told from others in a mapping file.
+    // Such names cannot be distinguished from others in a mapping file.
     if twice || names.iter().any(unlike) || names.iter().any(|n| n.contains('\r')) {
         return;
     }

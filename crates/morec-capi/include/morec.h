@@ -502,8 +502,8 @@ typedef struct MorecOptions {
      */
     size_t event_capacity;
     /**
-     * A motion of the same class that ends less than this after the one before it is not told, but counted. 0: every
-     * motion is told once.
+     * A motion of the same class that ends less than this after the one before it is not reported, but counted. 0: every
+     * motion is reported once.
      */
     double refractory_secs;
     /**
@@ -622,7 +622,7 @@ typedef struct MorecStats {
      */
     uint64_t lost_events;
     /**
-     * Motions not told because of `refractory_secs`.
+     * Motions not reported because of `refractory_secs`.
      */
     uint64_t suppressed_motions;
     /**
@@ -793,7 +793,7 @@ MorecStatus morec_recognizer_joint_of_role(const struct MorecRecognizer *recogni
 /**
  * Takes a frame. What it settles waits to be polled. Takes no memory after the first frame, unless it fails.
  *
- * Refused with `MOREC_STATUS_QUEUE_FULL` while so many events wait that there might not be room for what it settles:
+ * Refused with `MOREC_STATUS_QUEUE_FULL` while too many events wait for there to be room for what it settles:
  * nothing is ever lost.
  *
  * # Safety

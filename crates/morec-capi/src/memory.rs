@@ -9,7 +9,7 @@ use std::mem::size_of;
 use crate::MorecStatus;
 use crate::status::CallError;
 
-/// A struct may be so many bytes longer than this release's at most; more than that is not a size.
+/// A struct may be this many bytes longer than this release's at most; more than that is not a size.
 const LONGEST_STRUCT: usize = 1024;
 
 /// A struct whose first field is `struct_size`, which says how much of it the caller knows.

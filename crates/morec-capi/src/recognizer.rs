@@ -37,8 +37,8 @@ pub struct MorecOptions {
     pub flags: u32,
     /// Events that can wait to be polled, 128 to 1048576; 0 for 256. Memory is taken for as many.
     pub event_capacity: usize,
-    /// A motion of the same class that ends less than this after the one before it is not told, but counted. 0: every
-    /// motion is told once.
+    /// A motion of the same class that ends less than this after the one before it is not reported, but counted. 0: every
+    /// motion is reported once.
     pub refractory_secs: f64,
     /// Sensitivity: false alarms a minute that background motion may raise, as in training, 0.1 strict … 1 generous.
     /// 0: as trained. (Not in the first version of this struct.)
@@ -65,7 +65,7 @@ pub struct MorecStats {
     pub events: u64,
     /// Events for which there was no room in the queue. Frames are refused before that happens: 0.
     pub lost_events: u64,
-    /// Motions not told because of `refractory_secs`.
+    /// Motions not reported because of `refractory_secs`.
     pub suppressed_motions: u64,
     /// From the end of a motion to its event at the earliest, on the clock of the frames.
     pub latency_secs: f64,
@@ -188,7 +188,7 @@ pub unsafe extern "C" fn morec_recognizer_joint_of_role(
 
 /// Takes a frame. What it settles waits to be polled. Takes no memory after the first frame, unless it fails.
 ///
-/// Refused with `MOREC_STATUS_QUEUE_FULL` while so many events wait that there might not be room for what it settles:
+/// Refused with `MOREC_STATUS_QUEUE_FULL` while too many events wait for there to be room for what it settles:
 /// nothing is ever lost.
 ///
 /// # Safety

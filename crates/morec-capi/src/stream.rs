@@ -262,7 +262,7 @@ impl EventOutput<'_> {
         *self.sequence += 1;
         event.sequence = *self.sequence;
         self.counts.events.fetch_add(1, Relaxed);
-        // There is room, or the frame would not have been taken; if ever not, it is told.
+        // There is room, or the frame would not have been taken; if ever not, it is reported.
         if self.events.push(event).is_err() {
             self.counts.lost.fetch_add(1, Relaxed);
         }

@@ -1,11 +1,11 @@
-//! Ctrl-C as a wish to end, told to whatever runs.
+//! Ctrl-C as a request to end, passed to whatever runs.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::{Context, Result};
 
-/// Exit code of a command that was told to stop by Ctrl-C.
+/// Exit code of a command that was stopped by Ctrl-C.
 pub const STOPPED: u8 = 130;
 
 /// Set when somebody wants the program to end.

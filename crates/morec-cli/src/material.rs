@@ -28,7 +28,7 @@ use crate::labels;
 /// Training data: clips, labels, background.
 #[derive(Args, Debug)]
 pub struct MaterialArgs {
-    /// Clips, or folders of clips, that the labels speak of
+    /// Clips, or folders of clips, that the labels refer to
     #[arg(long, value_name = "DIR|CLIP", num_args = 1.., required_unless_present = "db")]
     pub clips: Vec<PathBuf>,
     /// Clips and accepted samples of this database, in place of --clips and --labels; its clips with the tag `background` are
@@ -55,7 +55,7 @@ pub struct MaterialArgs {
     /// The method of recognition
     #[arg(long, value_enum, default_value = "templates")]
     pub method: Method,
-    /// With --method svrdm: its figures as the thesis has them, or tuned to accept what was not seen
+    /// With --method svrdm: the thesis' parameters, or parameters tuned to accept what was not seen
     #[arg(long, value_enum, default_value = "tuned")]
     pub svrdm: ThesisSetting,
     /// Use of the unlabelled parts of labelled clips: motion that is none of the classes, or nothing to go by

@@ -12,7 +12,7 @@ use crate::files::{ReadArgs, expand};
 
 /// Frames of a clip: two minutes at 30 a second; of longer ones not every frame is kept.
 const FRAMES: usize = 3600;
-/// A report takes no more clips when they have so many bytes: a browser must still open it.
+/// A report takes no more clips when they have this many bytes: a browser must still open it.
 const MOST_BYTES: usize = 48 << 20;
 
 /// Clips in which something was labelled or found, with both.

@@ -245,7 +245,7 @@ fn keep_other_kind(path: &Path, written: &[u8]) -> Result<()> {
     let kept = free_name(path);
     fs::rename(path, &kept)?;
     eprintln!(
-        "morec: {}: was {was} and is {is} now; what was there is kept as {}",
+        "morec: {}: was {was}, now {is}; the old file is kept as {}",
         path.display(),
         kept.display()
     );

@@ -20,7 +20,7 @@ const EXCEPTIONS: [(&str, &str); 8] = [
     ),
     (
         "plot",
-        "`smooth` draws one of many channels, and is told which",
+        "`smooth` draws one of many channels, and is given which",
     ),
     (
         "remove",
@@ -43,7 +43,7 @@ const EXCEPTIONS: [(&str, &str); 8] = [
 /// Beginning of the help of an option, wherever there is one.
 const MEANINGS: [(&str, &[&str]); 9] = [
     ("json", &["Print one JSON array", "Print one JSON object"]),
-    ("limit", &["At most so many", "List at most so many"]),
+    ("limit", &["At most N", "List at most N"]),
     ("report", &["Write a page "]),
     (
         "clip",

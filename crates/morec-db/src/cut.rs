@@ -203,7 +203,7 @@ impl MotionDb {
     }
 }
 
-/// A clip that was cut: what is told of it and what is kept.
+/// A clip that was cut: what is reported of it and what is kept.
 type Done = (ClipCuts, Vec<Segment>);
 
 fn nothing(clip: &ClipInfo) -> ClipCuts {

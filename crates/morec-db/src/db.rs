@@ -189,7 +189,7 @@ impl MotionDb {
         })
     }
 
-    /// Lets the file grow to so many bytes at most, until it is closed; what is there already stays. What needs more fails as on a
+    /// Lets the file grow to this many bytes at most, until it is closed; what is there already stays. What needs more fails as on a
     /// full disk, with [`DbError::Full`].
     pub fn limit_bytes(&mut self, bytes: u64) -> Result<(), DbError> {
         let page: i64 = self

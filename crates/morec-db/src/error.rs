@@ -55,7 +55,7 @@ pub enum DbError {
     #[error("the database is busy: another program is writing to it; try again when it is done")]
     Busy,
     /// No room is left.
-    #[error("the disk is full: nothing of the last step was kept, what was there before is whole")]
+    #[error("the disk is full: the last change was rolled back")]
     Full,
     /// The file is damaged.
     #[error("the database is damaged: {0}")]

@@ -2,7 +2,7 @@
 //!
 //! All of them are read as [`Annotation`]s. Times are seconds from the clip's beginning; forms that count in
 //! less (milliseconds in ELAN) come back to whole frames of the clip ([`snap`]). Forms that know one recording a file (ELAN, Audacity) need to be
-//! told the clip, unless morec wrote them.
+//! given the clip, unless morec wrote them.
 //!
 //! | form | times | keeps |
 //! |---|---|---|
@@ -34,7 +34,7 @@ use annotation::text;
 pub use annotation::{Annotation, ClipLengths, LabelFormat, ReadLabels, snap};
 
 impl LabelFormat {
-    /// The form that a file's ending says; text files are Audacity's, JSON is told apart by its content.
+    /// The form that a file's ending says; text files are Audacity's, JSON is distinguished by its content.
     pub fn of_file(name: &str, bytes: &[u8]) -> Option<Self> {
         match name.rsplit_once('.')?.1.to_ascii_lowercase().as_str() {
             "tsv" => Some(LabelFormat::Tsv),
@@ -47,7 +47,7 @@ impl LabelFormat {
     }
 }
 
-/// Reads labels. `clip` is the clip that a file of one clip speaks of.
+/// Reads labels. `clip` is the clip that a file of one clip refers to.
 ///
 /// # Errors
 /// The place and the reason why the file cannot be read; frames of a clip that `lengths` does not know are not an error but counted.

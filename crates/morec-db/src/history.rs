@@ -17,7 +17,7 @@ use std::collections::BTreeMap;
 
 use rusqlite::{Connection, OptionalExtension, Row, params};
 
-pub use turn::{Effect, Turned};
+pub use turn::{Effect, ReplayedStep};
 
 use crate::time::now_secs;
 use crate::{DbError, MotionDb};
@@ -98,7 +98,7 @@ pub(crate) fn recorded(
         "UPDATE edits SET open = 0, what = ?2 WHERE id = ?1",
         params![step, what],
     )?;
-    weigh(conn, step)?;
+    measure_bytes(conn, step)?;
     conn.execute(
         "DELETE FROM edits WHERE undone = 1 AND id <> ?1",
         params![step],
@@ -108,7 +108,7 @@ pub(crate) fn recorded(
 }
 
 /// Notes how much motion a step keeps.
-fn weigh(conn: &Connection, step: i64) -> Result<(), DbError> {
+fn measure_bytes(conn: &Connection, step: i64) -> Result<(), DbError> {
     conn.execute(
         "UPDATE edits SET bytes = (SELECT coalesce(sum(coalesce(length(CASE tab WHEN 'clips' THEN c16 \
          WHEN 'indexes' THEN c4 END), 0)), 0) FROM was WHERE edit = ?1) WHERE id = ?1",
@@ -157,7 +157,7 @@ impl MotionDb {
     }
 
     /// Runs `change` and leaves everything as it was.
-    pub(crate) fn rehearse<T>(
+    pub(crate) fn dry_run<T>(
         &mut self,
         change: impl FnOnce(&Connection) -> Result<T, DbError>,
     ) -> Result<T, DbError> {

@@ -14,7 +14,7 @@ use crate::kept::{FileContent, KeptClip, KeptFile, packed_rows, rows_recipe};
 use crate::time::now_secs;
 use crate::{ClipId, ClipUpdate, DbError, MotionDb, history, rows};
 
-/// Files in one transaction: a crash loses the work of so many at most, and nothing that was committed.
+/// Files in one transaction: a crash loses the work of this many at most, and nothing that was committed.
 const BATCH: usize = 32;
 
 /// Outcome of importing one file.
@@ -418,7 +418,7 @@ pub(crate) fn skeleton_of(conn: &Connection, clip: &KeptClip) -> Result<i64, DbE
 }
 
 /// A name that tables and terminals can hold: control characters are blanks, and it neither begins nor ends with one.
-fn speakable(name: &str) -> String {
+fn sanitized_name(name: &str) -> String {
     let plain: String = name
         .chars()
         .map(|sign| if sign.is_control() { ' ' } else { sign })
@@ -431,7 +431,7 @@ fn speakable(name: &str) -> String {
 
 /// The clip's own name, else with its folder before it, else with a number behind it.
 fn free_name(conn: &Connection, path: &Path, name: &str) -> Result<String, DbError> {
-    let name = &speakable(name);
+    let name = &sanitized_name(name);
     let taken = |name: &str| {
         conn.prepare_cached("SELECT 1 FROM clips WHERE name = ?1")?
             .exists(params![name])
@@ -439,7 +439,7 @@ fn free_name(conn: &Connection, path: &Path, name: &str) -> Result<String, DbErr
     let folder = path
         .parent()
         .and_then(Path::file_name)
-        .map(|f| format!("{}/{name}", speakable(&f.to_string_lossy())));
+        .map(|f| format!("{}/{name}", sanitized_name(&f.to_string_lossy())));
     let numbered = (2..).map(|number| format!("{name}~{number}"));
     for candidate in [name.to_owned()].into_iter().chain(folder).chain(numbered) {
         if !taken(&candidate)? {

@@ -54,7 +54,7 @@ pub struct KeptClip {
     pub motion: Vec<u8>,
     /// Recipe of the feature rows.
     pub recipe: String,
-    /// The bones that rows speak of, a bit each.
+    /// The bones that rows cover, a bit each.
     pub bones: i64,
     /// Feature rows, [packed](Rows::to_packed).
     pub rows: Vec<u8>,

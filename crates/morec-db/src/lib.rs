@@ -52,7 +52,7 @@ pub use cut::{BY_HAND, ClipCuts, CutReport, Cutter, Still};
 pub use db::{DbSummary, MotionDb};
 pub use error::DbError;
 pub use health::Health;
-pub use history::{Effect, HistoryStep, STEPS_KEPT, Turned};
+pub use history::{Effect, HistoryStep, ReplayedStep, STEPS_KEPT};
 pub use import::{ImportCounts, ImportLog, ImportOutcome, Refused};
 pub use indexes::IndexInfo;
 pub use kept::{KeptClip, KeptFile, clip_rows, packed_rows, rows_recipe, stored_clip};

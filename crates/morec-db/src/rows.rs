@@ -22,7 +22,7 @@ pub(crate) fn recipe(params: &FeatureParams) -> String {
     )
 }
 
-/// A clip's rows and the bones they speak of.
+/// A clip's rows and the bones they cover.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ClipRows {
     /// The clip.

@@ -10,7 +10,7 @@ use tempfile::TempDir;
 
 use crate::{ClipUpdate, MotionDb};
 
-/// Takes of so many people, each waving twice.
+/// Takes of this many people, each waving twice.
 pub fn waves(people: usize) -> Vec<SyntheticTake> {
     let spec = DatabaseSpec {
         people,
@@ -29,7 +29,7 @@ pub fn write_bvh(folder: &Path, name: &str, clip: &Clip) -> PathBuf {
     path
 }
 
-/// A database with a clip for each of so many people, in a folder that lives as long as the first value.
+/// A database with a clip for each of this many people, in a folder that lives as long as the first value.
 pub fn database_of_waves(people: usize) -> (TempDir, MotionDb) {
     let folder = TempDir::new().unwrap();
     let paths: Vec<PathBuf> = waves(people)

@@ -150,7 +150,7 @@ fn clips_of_one_name_are_told_apart() {
     assert_eq!(names, ["b/walk", "walk", "walk~2"]);
 }
 
-/// Cancels once so many files were reported.
+/// Cancels once this many files were reported.
 struct CancelAfter(usize, std::sync::atomic::AtomicUsize);
 
 impl Progress for CancelAfter {

@@ -19,7 +19,7 @@ const NAP: Duration = Duration::from_millis(20);
 /// Plays clips, one after the other.
 pub struct ClipSource {
     clips: Arc<Vec<PlayableClip>>,
-    /// So many times as fast as it was performed; infinite is as fast as it goes.
+    /// This many times as fast as it was performed; infinite is as fast as it goes.
     speed: f64,
     laps: u64,
     loss: f64,
@@ -56,21 +56,21 @@ impl ClipSource {
         }
     }
 
-    /// So many laps; 0 is without end.
+    /// This many laps; 0 is without end.
     #[must_use]
     pub fn laps(mut self, laps: u64) -> Self {
         self.laps = laps;
         self
     }
 
-    /// So many times as fast as it was performed.
+    /// This many times as fast as it was performed.
     #[must_use]
     pub fn speed(mut self, speed: f64) -> Self {
         self.speed = speed;
         self
     }
 
-    /// Opens `clip://FILE` with the options speed (0: as fast as it goes), loop (so many laps), loss (a share),
+    /// Opens `clip://FILE` with the options speed (0: as fast as it goes), loop (this many laps), loss (a share),
     /// jitter (milliseconds).
     ///
     /// # Errors

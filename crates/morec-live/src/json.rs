@@ -323,7 +323,7 @@ mod tests {
         format!("{{\"actor\": {actor}, \"positions\": {{{places}}}}}\n")
     }
 
-    /// Sends `line` over and over, and connects anew when it is turned away, until it is told to stop.
+    /// Sends `line` over and over, and connects anew when it is turned away, until it is stopped.
     fn busy(at: std::net::SocketAddr, line: &str, stop: &AtomicBool) {
         while !stop.load(Ordering::Relaxed) {
             let Ok(mut stream) = TcpStream::connect(at) else {

@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// So many different ones are shown.
+/// This many different ones are shown.
 const MAX_SHOWN: usize = 8;
 
 /// Texts that a source has left for whoever shows them; copies share them.

@@ -41,7 +41,7 @@ pub fn load(
     }
     all.retain(|playable| playable.clip.frames > playable.first);
     if all.is_empty() {
-        let text = "no clip with a frame of motion among what was named";
+        let text = "none of the named files contains motion";
         return Err(LiveError::Clip(text.to_owned()));
     }
     Ok(all)

@@ -20,7 +20,10 @@ pub fn summary(source: &str, status: &Status) -> String {
             "frames of a rest pose or without tracking",
         ),
         (counts.interruptions, "interruptions"),
-        (status.dropped_frames, "frames dropped for want of time"),
+        (
+            status.dropped_frames,
+            "frames dropped: recognition too slow",
+        ),
         (status.unusable_frames, "frames without a bone of the index"),
         (status.dropped_events, "events dropped"),
         (status.suppressed, "motions within the refractory time"),

@@ -87,7 +87,7 @@ impl Source for VmcSource {
                 self.name_refused();
             }
             Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => {}
-            // A sender's port that is closed may be told here; it concerns packets that were never sent by us.
+            // A sender's port that is closed may be reported here; it concerns packets that were never sent by us.
             Err(_) => std::thread::sleep(WAIT),
         }
         self.receiver.tick(wall_now_secs());

@@ -1,6 +1,6 @@
 //! Events for whoever connects with a WebSocket: browsers, engines, scripts.
 //!
-//! Limits are there for those who mean no good, or hang: so many listeners, so many that say hello at once and so long
+//! Limits are there for those who mean no good, or hang: of listeners, of connections that say hello at once, and of how long
 //! for it, messages of a few kilobytes, slow listeners let go. A page in a browser is served only if it comes from this
 //! machine, or from the origin that `?origin=` names: any page that somebody looks at could listen otherwise.
 

@@ -2,7 +2,7 @@
 
     python archive.py FOLDER INDEX [--command path/of/morec] [--times N] [--ray]
 
-FOLDER holds clips; they are imported, then recognised, cut and searched. With --times the archive holds every clip so many times, under
+FOLDER holds clips; they are imported, then recognised, cut and searched. With --times the archive holds every clip N times, under
 other keys, for searching among more.
 """
 

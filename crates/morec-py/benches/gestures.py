@@ -1,4 +1,4 @@
-"""The gestures by person: the figure of docs/figures.md (row 4), from Python."""
+"""The gestures by person: the figure of docs/figures.md (command 4), from Python."""
 
 import os
 from pathlib import Path

@@ -3,10 +3,10 @@
     python search.py FOLDER... [--hours 1300] [--archive PATH] [--compare N] [--seed 1]
 
 The clips below the folders are imported; then their feature rows (not their motion, which importing 1,300 hours would take an
-hour for) are perturbed until there are so many hours: another pace, wider or smaller movements, poses that lean another way,
+hour for) are perturbed until there are enough hours: another pace, wider or smaller movements, poses that lean another way,
 smooth noise, beginnings and ends cut off. Rows are packed as an import packs them, in parts of an hour of motion; beside them lies
 the motion of the clip that they are from, so that files have their usual size. Then it searches by stretches of the clips as
-they were: movements at random, the quietest and the liveliest one, and whole clips. With --compare so many of the answers are compared with those of
+they were: movements at random, the quietest and the liveliest one, and whole clips. With --compare N, N of the answers are compared with those of
 reading all rows.
 """
 

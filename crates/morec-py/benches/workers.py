@@ -48,7 +48,7 @@ def main() -> None:
     parser.add_argument("index")
     parser.add_argument("--times", type=int, default=40)
     parser.add_argument("--repeats", type=int, default=3)
-    parser.add_argument("--workers", type=int, help="recognise the archive FOLDER once with so many")
+    parser.add_argument("--workers", type=int, help="recognise the archive FOLDER once with N workers")
     args = parser.parse_args()
     if args.workers:
         recognise(args.folder, args.index, args.workers)

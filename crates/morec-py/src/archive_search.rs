@@ -273,7 +273,7 @@ impl SketchedClips {
     }
 }
 
-/// Windows that a search for so many hits looks at.
+/// Windows that a search for this many hits looks at.
 #[pyfunction]
 pub fn search_windows(limit: usize) -> usize {
     windows_wanted(&options(limit, false, false))

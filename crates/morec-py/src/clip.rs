@@ -260,7 +260,7 @@ impl PyClip {
     }
 
     fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        let module = slf.py().import("morec._figure")?;
+        let module = slf.py().import("morec._drawing")?;
         module.call_method1("html", (slf,))
     }
 

@@ -90,7 +90,7 @@ impl LiveSession {
         &self.address
     }
 
-    /// The next event within so many seconds.
+    /// The next event within this many seconds.
     fn wait<'py>(&self, py: Python<'py>, secs: f64) -> PyResult<Option<Bound<'py, PyDict>>> {
         let most = Duration::from_secs_f64(secs.clamp(0.0, 3600.0));
         let event = py.detach(|| held(&self.reader).wait(most));

@@ -150,7 +150,7 @@ impl TrainingInput {
 /// Options of training, from the words of the command.
 ///
 /// # Errors
-/// A word that is none of them, a figure that there is not.
+/// A word that is none of them, a parameter that there is not.
 pub fn recipe(given: &Bound<'_, PyDict>) -> PyResult<Recipe> {
     let word = |name: &str| -> PyResult<String> {
         let value = given
@@ -203,11 +203,11 @@ pub fn recipe(given: &Bound<'_, PyDict>) -> PyResult<Recipe> {
             bones: word("bones")?
                 .parse()
                 .map_err(|error| value_error(format!("bones: {error}")))?,
-            params: with_figures(TrainParams::default(), &params)?,
+            params: with_parameters(TrainParams::default(), &params)?,
         }
         .into()),
         "svrdm" => Ok(SvrdmOptions {
-            params: with_figures(setting.params(), &params)?,
+            params: with_parameters(setting.params(), &params)?,
             unlabelled_is_background,
         }
         .into()),
@@ -215,17 +215,17 @@ pub fn recipe(given: &Bound<'_, PyDict>) -> PyResult<Recipe> {
     }
 }
 
-/// `params` with figures replaced, each named by its path.
-fn with_figures<P: Serialize + DeserializeOwned>(
+/// `params` with values replaced, each named by its path.
+fn with_parameters<P: Serialize + DeserializeOwned>(
     params: P,
     settings: &[(String, String)],
 ) -> PyResult<P> {
     let mut tree = serde_json::to_value(&params).map_err(value_error)?;
     for (name, value) in settings {
-        let figure = tree.pointer_mut(&format!("/{}", name.replace('.', "/")));
-        let figure =
-            figure.ok_or_else(|| value_error(format!("params: no figure is called {name}")))?;
-        *figure = serde_json::from_str(value).map_err(value_error)?;
+        let parameter = tree.pointer_mut(&format!("/{}", name.replace('.', "/")));
+        let parameter = parameter
+            .ok_or_else(|| value_error(format!("params: no parameter is called {name}")))?;
+        *parameter = serde_json::from_str(value).map_err(value_error)?;
     }
     serde_json::from_value(tree).map_err(|error| value_error(format!("params: {error}")))
 }

@@ -220,7 +220,7 @@ def test_a_file_of_another_ending_is_refused(clips: list[morec.Clip], tmp_path: 
         clips[0].save(tmp_path / "nowhere" / "clip.bvh")
 
 
-def test_notebooks_show_a_moving_figure(clips: list[morec.Clip]) -> None:
+def test_notebooks_show_a_moving_drawing(clips: list[morec.Clip]) -> None:
     import xml.etree.ElementTree as ET
 
     html = clips[0]._repr_html_()  # type: ignore[operator]

@@ -1,4 +1,4 @@
-//! From a mark on the live stream to the index that knows it, with about a hundred samples: of made people, or of a
+//! From a mark on the live stream to the index that knows it, with about a hundred samples: of synthetic people, or of a
 //! database that is named.
 #![allow(clippy::print_stdout)] // An example prints.
 
@@ -43,7 +43,7 @@ fn measure(folder: &Path) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// A database of five made people, four gestures each five times: 100 samples.
+/// A database of five synthetic people, four gestures each five times: 100 samples.
 fn made(folder: &Path, path: &Path) -> Result<(), Box<dyn Error>> {
     let spec = DatabaseSpec {
         people: 5,

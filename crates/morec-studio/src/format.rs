@@ -8,7 +8,7 @@ pub fn secs(secs: f64) -> String {
     }
 }
 
-/// Minutes and seconds, with so many decimals.
+/// Minutes and seconds, with this many decimals.
 pub fn clock(secs: f64, decimals: usize) -> String {
     let sign = if secs < 0.0 { "-" } else { "" };
     // Rounded before it is divided: 59.999 s is 1:00.

@@ -171,7 +171,7 @@ fn over(top: Rgba, bottom: Color32) -> Color32 {
     Color32::from_rgba_premultiplied(r, g, b, a)
 }
 
-/// Every so many pixels as one: their mean.
+/// Every N pixels as one: their mean.
 pub fn smaller(image: &ColorImage, times: usize) -> ColorImage {
     let [width, height] = [image.size[0] / times, image.size[1] / times];
     let mut out = ColorImage::filled([width, height], Color32::BLACK);

@@ -10,7 +10,7 @@ use crate::state::Panel;
 
 /// See motions, cut, sort and label them, train, and watch them recognised live
 ///
-/// A window over a motion database. Without a file it opens an example of made people.
+/// A window over a motion database. Without a file it opens an example with synthetic people.
 #[derive(Debug, Clone, Parser)]
 #[command(
     name = "morec-studio",

@@ -42,7 +42,7 @@ mod bank {
     use super::*;
     use morec::templates::TemplateBank;
 
-    /// The bank's step over so many template rows.
+    /// The bank's step over this many template rows.
     #[divan::bench(args = [600, 1800])]
     fn step(bencher: Bencher, template_rows: usize) {
         let (mut bank, stream) = (

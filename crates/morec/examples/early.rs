@@ -2,8 +2,8 @@
 //!
 //! Two sets of real clips (`MOREC_DATA`): the three referee clips with signals, each by an index of the others and background; and
 //! sessions before a Kinect, each by an index of two samples of each gesture by the same person. At the middle of every sample:
-//! is its class being told? And of all that is told as half done or more: how much is right? Arguments `name=value` set a
-//! figure of `EarlyDetectionParams`.
+//! is its class being reported? And of all that is reported as half done or more: how much is right? Arguments `name=value` set a
+//! parameter of `EarlyDetectionParams`.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, clippy::print_stderr)]
 
@@ -51,7 +51,7 @@ fn set(params: &mut EarlyDetectionParams, arg: &str) {
         "gate" => params.gate = value,
         "rival" => params.rival = value,
         "streak" => params.streak = value as usize,
-        _ => panic!("no figure is called {name}"),
+        _ => panic!("no parameter is called {name}"),
     }
 }
 
@@ -104,12 +104,12 @@ fn sessions(data: &Path, params: EarlyDetectionParams) -> Counts {
 #[derive(Default)]
 struct Counts {
     samples: usize,
-    /// Samples whose class is told at their middle.
+    /// Samples whose class is reported at their middle.
     known: usize,
-    /// Motions told as half done, and those of them that are.
+    /// Motions reported as half done, and those of them that are.
     told: usize,
     right: usize,
-    /// Those told in clips that hold none of the classes, and the length of these.
+    /// Those reported in clips that hold none of the classes, and the length of these.
     told_elsewhere: usize,
     elsewhere_secs: f64,
 }
@@ -119,7 +119,7 @@ impl std::fmt::Display for Counts {
         let share = |part: usize, of: usize| part as f64 / of.max(1) as f64;
         write!(
             f,
-            "{} of {} samples known at the middle (recall {:.2}); {} of {} told as half done are right (precision {:.2})",
+            "{} of {} samples known at the middle (recall {:.2}); {} of {} reported as half done are right (precision {:.2})",
             self.known,
             self.samples,
             share(self.known, self.samples),
@@ -131,7 +131,7 @@ impl std::fmt::Display for Counts {
             let minutes = self.elsewhere_secs / 60.0;
             write!(
                 f,
-                "; {} told in {minutes:.1} min without any",
+                "; {} reported in {minutes:.1} min without any",
                 self.told_elsewhere
             )?;
         }

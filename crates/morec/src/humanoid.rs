@@ -6,7 +6,7 @@ use crate::roles::Role;
 /// Number of bones.
 pub const HUMANOID_BONES: usize = 55;
 
-/// A bone that senders may speak of.
+/// A bone that senders may name.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HumanoidBone {
     /// Its name on the wire: Unity's `HumanBodyBones`.
@@ -155,7 +155,7 @@ pub fn mirrored(bone: usize) -> usize {
 /// Bones as a set: bit `b` is bone `b`.
 pub type BoneMask = u64;
 
-/// A body shows its hips, and so many other joints that play a role.
+/// A body shows its hips, and this many other joints that play a role.
 const BODY_JOINTS: u32 = 5;
 
 /// True if bones make a body that can be recognised, and not only some message in the form of one.

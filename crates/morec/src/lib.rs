@@ -192,6 +192,15 @@ pub mod report;
 #[path = "../tests/testing/mod.rs"]
 mod testing;
 
+/// The Rust of README and of the guide, so that it compiles.
+#[cfg(all(doctest, feature = "files", feature = "train"))]
+mod documents {
+    #[doc = include_str!("../../../README.md")]
+    mod readme {}
+    #[doc = include_str!("../../../docs/guide/rust-library.md")]
+    mod guide {}
+}
+
 pub use classes::{ClassId, ClassInfo};
 pub use clip::{Clip, Skeleton};
 #[cfg(any(feature = "formats", feature = "live"))]

@@ -1,6 +1,6 @@
 //! Progress and cancellation of long jobs.
 
-/// Told about a long job's progress; asked whether to go on.
+/// Takes a long job's progress; is asked whether to go on.
 ///
 /// Every method has a default that does nothing, so `()` is the silent listener.
 pub trait Progress: Sync {

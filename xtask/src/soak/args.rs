@@ -29,13 +29,13 @@ pub struct Args {
     /// Clips, or folders of clips
     #[arg(required = true, value_name = "CLIP")]
     pub(super) clips: Vec<PathBuf>,
-    /// End after so many hours of stream
+    /// End after N hours of stream
     #[arg(long, value_name = "HOURS", default_value = "24")]
     pub(super) hours: f64,
-    /// End after so many seconds of real time
+    /// End after N seconds of real time
     #[arg(long = "for", value_name = "SECS")]
     pub(super) secs: Option<f64>,
-    /// So many streams at once, in real time
+    /// N streams at once, in real time
     #[arg(long, value_name = "N", conflicts_with = "wire")]
     pub(super) streams: Option<usize>,
     /// Threads for --streams

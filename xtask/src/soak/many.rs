@@ -24,7 +24,7 @@ const ON_TIME_SECS: f64 = 0.050;
 const WARM_UP_SECS: f64 = 2.0;
 /// Every second each stream is looked at once, a part of them at a time.
 const LOOKS: usize = 10;
-/// Within so many frames every stream has begun.
+/// Within this many frames every stream has begun.
 const BEGIN_FRAMES: usize = 64;
 
 pub fn run(

@@ -26,10 +26,10 @@ use morec_live::summary;
 
 /// Somebody stands still before the performance, until the receiver knows the skeleton.
 const BEFORE_SECS: f64 = 1.0;
-/// A motion that was told so far from a label's end is not that label's.
+/// A motion that was reported so far from a label's end is not that label's.
 const NEAR_SECS: f64 = 1.0;
 
-/// A motion that was told: its class, the wall clock when it ended and when the event left.
+/// A motion that was reported: its class, the wall clock when it ended and when the event left.
 struct ReceivedEvent {
     class: String,
     ended_wall_secs: f64,

@@ -7,7 +7,7 @@ use std::path::Path;
 fn the_header_is_current() {
     let crate_folder = Path::new(env!("CARGO_MANIFEST_DIR"));
     let config = cbindgen::Config::from_file(crate_folder.join("cbindgen.toml")).unwrap();
-    // By its source: told the crate instead, cbindgen would ask cargo for every dependency of every platform.
+    // By its source: given the crate instead, cbindgen would ask cargo for every dependency of every platform.
     let builder = cbindgen::Builder::new().with_src(crate_folder.join("src/lib.rs"));
     let mut made = Vec::new();
     builder

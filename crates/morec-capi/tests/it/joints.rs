@@ -1,4 +1,4 @@
-//! Skeletons of named joints: however they are told, the same motions are recognised.
+//! Skeletons of named joints: however they are given, the same motions are recognised.
 
 use std::ffi::CString;
 use std::ptr::null;

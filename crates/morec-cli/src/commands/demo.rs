@@ -36,7 +36,7 @@ pub struct Args {
     /// Folder for everything; one that is not empty must be an earlier demo's
     #[arg(long, value_name = "DIR", default_value = "morec-demo")]
     folder: std::path::PathBuf,
-    /// Play the stream so many times as fast as it was performed
+    /// Play the stream N times as fast as it was performed
     #[arg(long, value_name = "TIMES", default_value = "4", value_parser = speed)]
     speed: f64,
     /// Synthetic people in place of real ones

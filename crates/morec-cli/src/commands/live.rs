@@ -67,7 +67,7 @@ pub struct Args {
     emit: Vec<Address>,
     #[command(flatten)]
     tracker: TrackerArgs,
-    /// Do not tell a motion that ends within so many seconds of the last of its class
+    /// Minimum seconds between two events of a class
     #[arg(long, value_name = "SECS", default_value = "0", value_parser = secs)]
     refractory: f64,
     /// Tell motions at their end only
@@ -76,7 +76,7 @@ pub struct Args {
     /// Distribution of recognition over threads; detections are the same
     #[arg(long, value_enum, default_value = "inline")]
     layout: LayoutArg,
-    /// End after so many seconds
+    /// End after N seconds
     #[arg(long = "for", value_name = "SECS", value_parser = secs)]
     secs: Option<f64>,
     /// No status line

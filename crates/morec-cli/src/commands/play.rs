@@ -74,7 +74,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     }
     takes.retain(|take| take.clip.frames > 0);
     if takes.is_empty() {
-        bail!("no clip with a frame of motion among what was named");
+        bail!("none of the named files contains motion");
     }
     let mut labelled = labels(args.labels.as_deref(), &takes)?;
     let mut played = Vec::with_capacity(takes.len());

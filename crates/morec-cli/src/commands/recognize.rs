@@ -58,7 +58,7 @@ pub struct Args {
     /// Distribution of recognition over threads; detections are the same
     #[arg(long, value_enum, default_value = "inline")]
     layout: LayoutArg,
-    /// Recognise clips as if they had come over VMC at so many frames a second, with the accidents below
+    /// Recognise clips as if they had come over VMC at N frames a second, with the accidents below
     #[arg(long, value_name = "HZ", value_parser = rate)]
     over_vmc: Option<f64>,
     /// Bundling of messages into datagrams, for --over-vmc: whole, single or a number of bytes

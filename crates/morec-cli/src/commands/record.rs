@@ -41,10 +41,10 @@ pub struct Args {
     /// what is none of the classes
     #[arg(long = "tag", value_name = "WORD")]
     tags: Vec<String>,
-    /// Record so many takes, one after the other
+    /// Record N takes, one after the other
     #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u32).range(1..=9999))]
     takes: u32,
-    /// End a take after so many seconds of stream
+    /// End a take after N seconds of stream
     #[arg(long, value_name = "SECS", value_parser = secs)]
     secs: Option<f64>,
     /// Write over files that are there

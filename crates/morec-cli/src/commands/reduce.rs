@@ -31,7 +31,7 @@ pub struct Args {
     /// Share of the variance to keep
     #[arg(long, value_name = "SHARE", default_value_t = 0.99)]
     quality: f64,
-    /// Keep so many dimensions instead
+    /// Keep N dimensions instead
     #[arg(long, value_name = "N", conflicts_with = "quality")]
     dims: Option<usize>,
     /// Print one JSON object: the table, and the components with their mean

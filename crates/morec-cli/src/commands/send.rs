@@ -47,7 +47,7 @@ pub struct Args {
     /// Frames a second
     #[arg(long, value_name = "HZ", default_value = "60", value_parser = rate)]
     rate: f64,
-    /// Play so many times as fast as it was performed
+    /// Play N times as fast as it was performed
     #[arg(long, value_name = "TIMES", default_value = "1", value_parser = rate)]
     speed: f64,
     /// Begin again at the end, until Ctrl-C

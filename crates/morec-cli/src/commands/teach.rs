@@ -42,16 +42,16 @@ pub struct Args {
     /// Teach gestures of these names in turn and ask for none
     #[arg(long = "name", value_name = "NAME", value_parser = gesture_name)]
     names: Vec<String>,
-    /// Perform each so many times
+    /// Perform each N times
     #[arg(long, value_name = "N", default_value = "3", value_parser = clap::value_parser!(u32).range(1..=99))]
     repetitions: u32,
-    /// A repetition lasts so many seconds at most
+    /// A repetition lasts at most N seconds
     #[arg(long, value_name = "SECS", default_value = "3", value_parser = secs)]
     secs: f64,
     /// Sink of events, as in `morec live` [default: terminal:-]
     #[arg(long, value_name = "SINK")]
     emit: Vec<Address>,
-    /// End after so many seconds
+    /// End after N seconds
     #[arg(long = "for", value_name = "SECS", value_parser = secs)]
     until: Option<f64>,
     #[command(flatten)]

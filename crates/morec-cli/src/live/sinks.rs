@@ -42,7 +42,7 @@ impl Sink for Terminal {
         let mut out = io::stdout().lock();
         writeln!(
             out,
-            "{:9.2} to {:7.2} s  {:20} {:.2}  said {:.2} s after its end{}",
+            "{:9.2} to {:7.2} s  {:20} {:.2}  reported {:.2} s after its end{}",
             e.start_secs,
             e.stop_secs,
             event.class,
@@ -92,7 +92,7 @@ impl CountedSink {
     pub fn farewell(&self) -> Option<String> {
         (self.failures > 0).then(|| {
             format!(
-                "{}: {} events could not be told",
+                "{}: {} events could not be delivered",
                 self.address, self.failures
             )
         })

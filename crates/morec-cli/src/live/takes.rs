@@ -17,7 +17,7 @@ pub const SHORTEST_SECS: f64 = 0.3;
 /// Options of takes.
 #[derive(clap::Args, Debug)]
 pub struct TakeArgs {
-    /// Count down so many seconds before each take
+    /// Countdown before each take, in seconds
     #[arg(long, value_name = "SECS", default_value = "3", value_parser = secs)]
     pub count_down: f64,
     /// Number of the performer of the source, from 0

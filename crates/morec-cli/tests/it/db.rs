@@ -19,7 +19,7 @@ fn takes(people: usize) -> Vec<SyntheticTake> {
     database(3, &spec)
 }
 
-/// A folder with `clips/` and `labels.tsv` of made people.
+/// A folder with `clips/` and `labels.tsv` of synthetic people.
 pub fn studio(people: usize) -> (Folder, Vec<SyntheticTake>) {
     let folder = Folder::with(&[("clips/readme.txt", "not a clip")]);
     let takes = takes(people);

@@ -130,7 +130,7 @@ fn the_whole_job_and_then_again_by_hand() {
     );
     assert!(
         events.iter().any(|e| e["phase"] == "start"),
-        "something must be told before its end"
+        "something must be reported before its end"
     );
 
     // Training is the long step: two classes and no everyday motion show that the line works.

@@ -1,4 +1,4 @@
-//! Labels in a database: corrected, rehearsed, misspelt, taken back.
+//! Labels in a database: corrected, tried, misspelt, taken back.
 
 use serde_json::Value;
 

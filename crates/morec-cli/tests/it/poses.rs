@@ -1,4 +1,4 @@
-//! `morec cut`, `morec group` and `morec reduce`, on made people.
+//! `morec cut`, `morec group` and `morec reduce`, on synthetic people.
 
 use morec::formats::bvh;
 use morec::synth::{Person, Script};

@@ -3,7 +3,7 @@ use morec::synth::{DatabaseSpec, database};
 
 use crate::kit::{Folder, WAVE_BVH, data};
 
-/// Two made people waving.
+/// Two synthetic people waving.
 fn folder() -> Folder {
     let spec = DatabaseSpec {
         people: 2,

@@ -107,7 +107,7 @@ pub struct ReadLabels {
     pub annotations: Vec<Annotation>,
     /// Omissions and doubts.
     pub warnings: Vec<Warning>,
-    /// Clips that are not known and whose frames can therefore not be told in seconds, with how many labels each had.
+    /// Clips that are not known and whose frames can therefore not be given in seconds, with how many labels each had.
     pub absent: BTreeMap<String, usize>,
 }
 

@@ -9,7 +9,7 @@ pub fn read(text: &str, clip: Option<&str>) -> Result<ReadLabels, ParseError> {
     let clip = clip.ok_or_else(|| {
         ParseError::new(
             Place::File,
-            "to be told the clip (a label track does not name it)",
+            "to be given the clip (a label track does not name it)",
             "no clip given",
         )
     })?;

@@ -42,7 +42,7 @@ pub fn read(text: &str, clip: Option<&str>) -> Result<ReadLabels, ParseError> {
         None => {
             return Err(ParseError::new(
                 Place::File,
-                "to be told the clip",
+                "to be given the clip",
                 "no media file and no clip given",
             ));
         }

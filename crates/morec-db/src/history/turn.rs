@@ -3,7 +3,7 @@
 use rusqlite::{Connection, OptionalExtension, Transaction, params};
 
 use super::tracked::{TRACKED, tracked};
-use super::{HistoryStep, digest, record, step, weigh};
+use super::{HistoryStep, digest, measure_bytes, record, step};
 use crate::{DbError, MotionDb};
 
 /// Effect of undoing or redoing a step on a table.
@@ -21,7 +21,7 @@ pub struct Effect {
 
 /// A step that was taken back or done again, or would be.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
-pub struct Turned {
+pub struct ReplayedStep {
     /// The step.
     #[serde(flatten)]
     pub step: HistoryStep,
@@ -41,15 +41,15 @@ impl MotionDb {
     /// # Errors
     /// There is no such step; it has been taken back; later steps changed the same rows or need them. Nothing is changed
     /// then.
-    pub fn undo(&mut self, step: Option<i64>) -> Result<Option<Turned>, DbError> {
+    pub fn undo(&mut self, step: Option<i64>) -> Result<Option<ReplayedStep>, DbError> {
         self.turn(Way::Undo, step, true)
     }
 
     /// Does a step again that was taken back: the one of this number, or the earliest. `None` if there is none.
     ///
     /// # Errors
-    /// There is no such step; it has not been taken back; what it changed is not as it was. Nothing is changed then.
-    pub fn redo(&mut self, step: Option<i64>) -> Result<Option<Turned>, DbError> {
+    /// There is no such step; it has not been taken back; its rows changed since. Nothing is changed then.
+    pub fn redo(&mut self, step: Option<i64>) -> Result<Option<ReplayedStep>, DbError> {
         self.turn(Way::Redo, step, true)
     }
 
@@ -57,7 +57,7 @@ impl MotionDb {
     ///
     /// # Errors
     /// As there.
-    pub fn preview_undo(&mut self, step: Option<i64>) -> Result<Option<Turned>, DbError> {
+    pub fn preview_undo(&mut self, step: Option<i64>) -> Result<Option<ReplayedStep>, DbError> {
         self.turn(Way::Undo, step, false)
     }
 
@@ -65,7 +65,7 @@ impl MotionDb {
     ///
     /// # Errors
     /// As there.
-    pub fn preview_redo(&mut self, step: Option<i64>) -> Result<Option<Turned>, DbError> {
+    pub fn preview_redo(&mut self, step: Option<i64>) -> Result<Option<ReplayedStep>, DbError> {
         self.turn(Way::Redo, step, false)
     }
 
@@ -74,7 +74,7 @@ impl MotionDb {
         way: Way,
         wanted: Option<i64>,
         for_good: bool,
-    ) -> Result<Option<Turned>, DbError> {
+    ) -> Result<Option<ReplayedStep>, DbError> {
         let tx = self.write()?;
         // Rows come back in the reverse of the order in which they went: children before parents.
         tx.pragma_update(None, "defer_foreign_keys", true)?;
@@ -92,7 +92,7 @@ impl MotionDb {
         if for_good {
             tx.commit().map_err(|error| needed(&step, error.into()))?;
         }
-        Ok(Some(Turned { step, effects }))
+        Ok(Some(ReplayedStep { step, effects }))
     }
 }
 
@@ -156,7 +156,7 @@ fn needed(step: &HistoryStep, error: DbError) -> DbError {
             if code.code == rusqlite::ErrorCode::ConstraintViolation =>
         {
             DbError::Invalid(format!(
-                "step {} ({}): what it changed is not as it was, or is needed; nothing was done",
+                "step {} ({}): its rows changed since or are in use; nothing was undone",
                 step.id, step.what
             ))
         }
@@ -204,7 +204,7 @@ fn swap(tx: &Transaction<'_>, way: Way, step: &HistoryStep) -> Result<Vec<Effect
     tx.execute(sql, params![step.id, recording.step])?;
     let sql = "DELETE FROM edits WHERE id = ?1";
     tx.execute(sql, params![recording.step])?;
-    weigh(tx, step.id)?;
+    measure_bytes(tx, step.id)?;
     Ok(effects)
 }
 

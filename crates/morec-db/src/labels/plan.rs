@@ -134,7 +134,7 @@ impl MotionDb {
             Ok(done)
         };
         match options.dry_run {
-            true => self.rehearse(change),
+            true => self.dry_run(change),
             false => self.edit(&what, change),
         }
     }

@@ -179,7 +179,7 @@ fn samples_outside_their_clip_and_wild_names_are_refused_whole() {
     }
 }
 
-/// Whoever is told a stretch's class knows what it is not.
+/// An answer that gives a stretch's class says what it is not.
 #[test]
 fn another_class_for_a_proposed_stretch_rejects_the_proposal() {
     let (_folder, mut db) = database_of_waves(1);
@@ -253,7 +253,7 @@ fn labels_take_the_place_of_what_was_there() {
         sample("jog", 25, SampleState::Accepted),
     ];
     let plan = db.label(&new, &replace(true)).unwrap();
-    assert_eq!(seen(&db), before, "a rehearsal changes nothing");
+    assert_eq!(seen(&db), before, "a dry run changes nothing");
     let done = db.label(&new, &replace(false)).unwrap();
     assert_eq!(plan, done);
     let counts = done.counts;

@@ -18,7 +18,7 @@ const STRAY: [f64; FEATURES] = [0.7, 0.5, 0.5, 0.5];
 const APART: f64 = 0.3;
 /// The same where the next class is the nearest anywhere in a clip, not at one place.
 const APART_WHOLE: f64 = 0.7;
-/// Distances of the classes together count as so many of a class's own.
+/// Distances of the classes together count as this many of a class's own.
 const SHARED: f64 = 2.0;
 /// Ratios beyond these say no more.
 const BOUNDS: (f64, f64) = (-2.0, 2.5);

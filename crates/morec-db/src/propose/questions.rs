@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::Proposal;
 
-/// The places of `most` proposals whose answers tell most, the most telling first: the least certain ones, classes in
+/// The places of `most` most informative proposals, the best first: the least certain ones, classes in
 /// turn, as several answers about one class at once tell less each.
 pub fn most_informative(proposals: &[Proposal], most: usize) -> Vec<usize> {
     let doubt = |p: &Proposal| f64::from(p.score * (1.0 - p.score)).max(1e-6);
@@ -50,7 +50,7 @@ mod tests {
         assert_eq!(
             most_informative(&all, 99).len(),
             5,
-            "all of them, if so many are asked for"
+            "all of them, if that many are asked for"
         );
         assert!(most_informative(&[], 3).is_empty());
     }

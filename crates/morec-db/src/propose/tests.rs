@@ -1,4 +1,4 @@
-//! A made user over made people.
+//! A simulated user over synthetic people.
 
 use std::collections::BTreeSet;
 

@@ -19,7 +19,7 @@ use super::summary::{MEAN, ROOT, Summary, SummaryDistance, WEIGHTS};
 use super::windows::{TRAVEL, X};
 use super::{Example, SearchOptions};
 
-/// Octaves that a sketch speaks of.
+/// Octaves that a sketch covers.
 const OCTAVES: usize = 3;
 /// Lanes that are added up side by side.
 const SIDE: usize = 16;
@@ -45,7 +45,7 @@ pub enum BoundDepth {
 pub struct SketchedClip<'a> {
     /// Bytes of [`sketch_of`](super::sketch_of); empty if it has none.
     pub sketch: &'a [u8],
-    /// Bones that its rows speak of.
+    /// Bones that its rows cover.
     pub bones: BoneSet,
 }
 

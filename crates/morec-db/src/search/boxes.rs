@@ -1,4 +1,4 @@
-//! What a clip's rows and windows lie within, in few bytes: most clips are told from most examples before any of their windows is
+//! Bounding boxes of a clip's rows and windows, used to skip clips in a search: most clips are excluded for most examples before any of their windows is
 //! looked at.
 //!
 //! The mean of a window's rows lies between the least and the greatest row in every coordinate, so the distance of the example's
@@ -152,7 +152,7 @@ impl<'a> BoxView<'a> {
         sum
     }
 
-    /// Of the octaves of all bones of windows of so many rows: `roots` are the lengths of the example's, 0 in `mask` what is not
+    /// Of the octaves of all bones of windows of this many rows: `roots` are the lengths of the example's, 0 in `mask` what is not
     /// shared.
     #[inline(always)]
     pub fn octaves(&self, rows: usize, roots: &[f32; 16], mask: &[f32; 16]) -> f32 {

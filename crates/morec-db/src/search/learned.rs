@@ -23,7 +23,7 @@ const INPUT: usize = SUMMARY + 1;
 const COMPONENTS: usize = 80;
 /// Share of the identity in the covariance within classes, `γ`.
 const SHRINKAGE: f64 = 0.3;
-/// Pairs that say how long learned distances are, at most so many squared.
+/// Pairs that say how long learned distances are, at most this many squared.
 const SCALED_ON: usize = 200;
 
 /// A learned metric: a projection.
@@ -129,7 +129,7 @@ impl LearnedMetric {
         self.samples
     }
 
-    /// Place of a stretch of so many rows. Bones that it does not show are taken to be average.
+    /// Place of a stretch of this many rows. Bones that it does not show are taken to be average.
     pub fn place(&self, summary: &Summary, rows: usize, bones: BoneSet) -> Embedding {
         let input = input(summary, rows, bones, &self.mean);
         Embedding(

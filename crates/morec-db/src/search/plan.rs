@@ -7,7 +7,7 @@ use crate::ClipId;
 /// Clips for each window that is wanted of which the bound by eighths is taken before anything has been found.
 const LOOKED_AT_FIRST: usize = 4;
 
-/// Clips that are read at once: so many may be read in vain.
+/// Clips that are read at once: this many may be read in vain.
 const BATCH: usize = 128;
 
 /// Distances within this factor of the last that counts are ranked with it.
@@ -109,7 +109,7 @@ impl SearchPlan {
         self.left.iter().filter(within).copied().collect()
     }
 
-    /// So many of these clips, those of the least bounds, in the order of their places.
+    /// This many of these clips, those of the least bounds, in the order of their places.
     fn least(&self, clips: &mut Vec<usize>, count: usize) {
         if clips.len() > count {
             let bound = |at: &usize| self.bounds[*at].0;

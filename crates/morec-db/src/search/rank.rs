@@ -58,7 +58,7 @@ pub struct Hit {
     pub mirrored: bool,
 }
 
-/// Windows that the graph links at least, as far as there are so many, and at most: distances of all pairs are taken.
+/// Windows that the graph links at least, as far as there are that many, and at most: distances of all pairs are taken.
 const LINKED: std::ops::RangeInclusive<usize> = 300..=1200;
 
 /// Weight of the neighbourhood score, which is the logarithm of its share.
@@ -112,7 +112,7 @@ impl SearchIndex {
         kept
     }
 
-    /// The clips in which the nearest windows lie, nearest first, and how near these are: so many that a search among them
+    /// The clips in which the nearest windows lie, nearest first, and how near these are: enough that a search among them
     /// alone gives what a search among all clips gives. For searching in parts: the nearest clips of the nearest clips of
     /// each part are those of the whole.
     pub fn nearest_clips(&self, example: &Example, options: &SearchOptions) -> Vec<(ClipId, f32)> {

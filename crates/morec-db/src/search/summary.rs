@@ -235,7 +235,7 @@ pub fn mirrored_summary(of: &Summary) -> Summary {
     out
 }
 
-/// The bone that value `i` of a summary speaks of; `None` for the root's.
+/// The bone that value `i` of a summary belongs to; `None` for the root's.
 pub fn bone_of(i: usize) -> Option<usize> {
     (i < ROOT).then_some(i % X / 3)
 }

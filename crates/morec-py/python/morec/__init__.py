@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from . import plot, synth
 from ._files import read, read_all, read_folder
-from ._figure import animation
+from ._drawing import animation
 from ._learn import crossval, evaluate, train
 from ._live import listen
 from ._morec import (

@@ -91,7 +91,7 @@ def train(
     Parameters
     ----------
     clips : clips or paths
-        Clips that the labels speak of, by name.
+        Clips that the labels refer to, by name.
     labels : DataFrame, path, Table or list of spans
         Columns clip, class and start, stop (frames, stop exclusive) or start_secs, stop_secs, or neither: then the whole
         clip is one sample, its still ends trimmed. Perhaps person. Spans are (clip, class, start_secs, stop_secs).
@@ -106,7 +106,7 @@ def train(
     method : {"templates", "svrdm"}
         Gestures and cycles matched elastically, or the method of the thesis of 2009.
     svrdm : {"tuned", "faithful"}
-        The figures of the method svrdm.
+        The parameters of the method svrdm.
     unlabelled : {"background", "ignore"}
         What the unlabelled parts of labelled clips are: motion that is none of the classes, or nothing to go by.
     everyday : {"auto", "always", "never"}
@@ -120,7 +120,7 @@ def train(
     bones : str or sequence of str
         Which parts of the body count (templates only): all, upper, arms, or names of bones.
     params : dict, optional
-        Figures of the method by their path, as ``{"rho": 0.4, "decode.lag_ticks": 2}``.
+        Parameters of the method by their path, as ``{"rho": 0.4, "decode.lag_ticks": 2}``.
     progress : bool or callable, optional
 
     Returns
@@ -178,7 +178,7 @@ def crossval(
     unknown : clips, paths or names of clips, optional
         Clips that hold none of the classes: what is recognised in them is a false alarm.
     samples : int, optional
-        Let at most so many samples of each class teach, from its people in turn.
+        Let at most N samples of each class teach, from its people in turn.
     perturb : sequence of str
         Also test copies that are worse in one way each, as ``"cam:1"``, ``"rate:30"``.
     sensitivities : sequence of float

@@ -35,7 +35,7 @@ class listen:
     tentative : bool
         Also what seems to be under way: events of the phases start, update and cancel.
     timeout : float, optional
-        End after so many seconds without an event.
+        End after this many seconds without an event.
 
     Yields
     ------

@@ -61,7 +61,7 @@ class Clip:
         rate_hz : float
             Frames a second.
         name : str
-            What the clip is called, by which labels speak of it.
+            What the clip is called, by which labels refer to it.
         unit : float, optional
             Metres in the unit of `positions`; inferred by default.
         up : {"x", "y", "z", "-x", "-y", "-z"}, optional

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._figure import lines
+from ._drawing import lines
 from ._morec import Clip, Crossval
 from ._rows import cut
 

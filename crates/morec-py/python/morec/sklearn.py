@@ -35,7 +35,7 @@ class MotionClassifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
     rejected : str
         What is predicted then.
     params : dict, optional
-        Figures of the method, as in `morec.train`.
+        Parameters of the method, as in `morec.train`.
 
     Attributes
     ----------
@@ -84,7 +84,7 @@ class MotionClassifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
         self.classes_, codes = np.unique(names, return_inverse=True)
         if len(self.classes_) < 2:
             raise ValueError(f"expected at least two classes, found {len(self.classes_)}")
-        # Labels speak of clips by name: every sample gets its own.
+        # Labels refer to clips by name: every sample gets its own.
         clips = [clip.renamed(f"{number}") for number, clip in enumerate(clips)]
         people = None if groups is None else {f"{number}": str(group) for number, group in enumerate(groups)}
         labels = [(clip.name, f"{code:05d}") for clip, code in zip(clips, codes)]

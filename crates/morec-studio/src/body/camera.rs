@@ -49,14 +49,14 @@ impl Camera {
     pub const NEAREST: f64 = 0.6;
     pub const FARTHEST: f64 = 40.0;
 
-    /// Turns by a drag over so many points.
+    /// Turns by a drag over this many points.
     pub fn orbit(&mut self, drag: Vec2) {
         self.yaw -= f64::from(drag.x) * 0.008;
         self.pitch =
             (self.pitch + f64::from(drag.y) * 0.008).clamp(-Self::STEEPEST, Self::STEEPEST);
     }
 
-    /// Moves the target by a drag over so many points of a picture of this height.
+    /// Moves the target by a drag over this many points of a picture of this height.
     pub fn pan(&mut self, drag: Vec2, height: f32) {
         let metres = self.distance * 0.9 / f64::from(height.max(1.0));
         let (right, up, _) = self.axes();

@@ -13,7 +13,7 @@ pub fn aside(motion: &ClipMotion, secs: f64) -> Vec3 {
 }
 
 /// The companion's pose when the performer of `motion` is at `secs`: turned as the performer is turned and standing on the same
-/// place where both stretches begin, moved `aside` by so many metres.
+/// place where both stretches begin, moved `aside` by this many metres.
 pub fn pose(aligned: &Aligned, motion: &ClipMotion, secs: f64, apart: f64) -> WorldPose {
     let (other, of) = (&aligned.motion, aligned.of.start_secs);
     let begin = other.pose(aligned.with.start_secs);

@@ -1,4 +1,4 @@
-//! A database to begin with: made people who perform a few gestures, as `morec demo` makes them; or clips that were named.
+//! A database to begin with: synthetic people who perform a few gestures, as `morec demo` makes them; or clips that were named.
 
 use std::path::{Path, PathBuf};
 

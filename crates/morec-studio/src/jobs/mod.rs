@@ -1,4 +1,4 @@
-//! Long work on threads of its own: with progress, cancelled when told to, its outcome collected frame by frame.
+//! Long work on threads of its own: with progress, cancelled on request, its outcome collected frame by frame.
 
 pub mod align;
 pub mod channel;

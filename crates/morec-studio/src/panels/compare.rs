@@ -38,7 +38,7 @@ pub fn others<'a>(state: &'a State, motion: &ClipMotion, c: &Colours) -> Vec<Oth
             Other {
                 body: &aligned.motion.body,
                 pose: companion::pose(aligned, motion, at, apart),
-                // Bodies in one place are told apart by their colour.
+                // Bodies in one place are distinguished by their colour.
                 palette: match on_top {
                     true => c.body().mixed(c.good, 0.75),
                     false => c.body().mixed(c.good, 0.25),

@@ -13,7 +13,7 @@ use crate::theme::Colours;
 
 /// A cut is held so far from its line, points.
 const REACH: f32 = 4.0;
-/// Cuts nearer than this to one another cannot be told apart and are not held.
+/// Cuts nearer than this to one another cannot be distinguished and are not held.
 const NARROW: f32 = 3.0;
 
 pub fn show(ui: &mut Ui, state: &State, scale: &Scale, out: Out) {

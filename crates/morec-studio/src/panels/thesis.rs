@@ -45,7 +45,7 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
 
 /// A node of the tree, and what is below it.
 fn node(ui: &mut Ui, state: &State, thesis: &Thesis, at: usize, depth: usize, out: Out) {
-    // A tree of so many classes is no deeper; a broken one ends here.
+    // A tree of this many classes is no deeper; a broken one ends here.
     if depth > 64 {
         return;
     }
@@ -129,7 +129,7 @@ fn boundary(ui: &mut Ui, state: &State, thesis: &Thesis, branch: &Boundary, out:
         widgets::named(&response, WidgetType::Button, format!("Point: {said}"), on);
         let colour = c.class(state.classes.place(&taught.class));
         let radius = if response.hovered() { 6.0 } else { 4.0 };
-        // Sides are told apart by shape too.
+        // Sides are distinguished by shape too.
         match side {
             0 => ui.painter().circle(at, radius, colour, (1.0, c.text)),
             _ => {

@@ -130,7 +130,7 @@ pub fn labels(ui: &mut Ui, state: &State, scale: &Scale, out: Out) {
     }
 }
 
-/// True if so many classes leave no room for the other tracks.
+/// True if there are too many classes to leave room for the other tracks.
 pub(super) fn are_many(state: &State) -> bool {
     state.classes.order.len() > MANY
 }

@@ -184,7 +184,7 @@ pub enum TimelineCommand {
     Split,
     Merge,
     Remove,
-    /// Moves start, stop or both of the selected label by so many frames.
+    /// Moves start, stop or both of the selected label by this many frames.
     Nudge(super::timeline::Grip, i64),
     /// Puts the start or the stop of the selected label to the playhead.
     ToPlayhead(super::timeline::Grip),

@@ -26,7 +26,7 @@ pub enum PlayCommand {
     Pause,
     /// To a moment, seconds.
     Seek(f64),
-    /// By so many frames.
+    /// By this many frames.
     Step(i64),
     Speed(f64),
     /// J and L: backwards, forwards; again is twice as fast.

@@ -51,7 +51,7 @@ fn a_database_is_opened_made_and_copied() {
     assert_eq!(person.asked().file_name, "motions.mdb");
     assert_eq!(person.database(), "new.mdb");
     assert!(person.sees("No clips yet"));
-    // What is there is not written over by a new one.
+    // An existing file is not overwritten by a new one.
     person.will_choose(&[&copy]);
     person.file("New database …");
     assert!(person.sees_part("copy.mdb: there is a file already"));

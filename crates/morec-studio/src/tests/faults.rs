@@ -117,7 +117,7 @@ fn a_full_disk_is_said_and_what_was_there_stays() {
         score: None,
     });
     person.command(Command::Edit(Edit::Label(many.collect())));
-    assert!(person.sees_part("The disk is full: nothing of the last step was kept"));
+    assert!(person.sees_part("The disk is full: the last change was rolled back"));
     assert_eq!(person.labels(), before);
     person.click("Dismiss");
     assert!(!person.sees_part("The disk is full"));

@@ -281,7 +281,7 @@ impl Person {
         self.key_event(key, false, modifiers);
     }
 
-    /// Holds a key down while so many seconds pass.
+    /// Holds a key down while this many seconds pass.
     pub fn hold(&mut self, key: Key, secs: f64) {
         self.actions += 1;
         self.key_event(key, true, Modifiers::NONE);

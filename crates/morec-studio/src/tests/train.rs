@@ -36,7 +36,7 @@ fn an_index_is_trained_kept_and_its_mistakes_are_found() {
         .iter()
         .filter(|m| m.truth.as_deref() == Some("wave") && m.is_right())
         .count();
-    assert!(waves > 0, "made people wave alike");
+    assert!(waves > 0, "synthetic people wave alike");
     let wrong = judged.false_detections();
     let said = person.sees_part("where nothing is labelled: look at them");
     assert_eq!(said, wrong > 0, "{wrong} false detections");

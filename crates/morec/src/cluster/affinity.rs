@@ -3,7 +3,7 @@
 
 use super::Clusters;
 
-/// Figures of [`affinity_propagation`].
+/// Parameters of [`affinity_propagation`].
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct AffinityParams {
     /// Share of the old message that stays, 0.5 to below 1.
@@ -12,7 +12,7 @@ pub struct AffinityParams {
     pub preference: f64,
     /// Messages are passed so often at most.
     pub rounds: usize,
-    /// Exemplars that stay the same for so many rounds are final.
+    /// Exemplars that stay the same for this many rounds are final.
     pub settled: usize,
 }
 

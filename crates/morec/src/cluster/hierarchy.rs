@@ -67,7 +67,7 @@ impl Hierarchy {
         self.after(self.merges.partition_point(|m| m.height <= height))
     }
 
-    /// So many groups, or as many as there are items.
+    /// This many groups, or as many as there are items.
     pub fn into_clusters(&self, count: usize) -> Clusters {
         self.after(
             self.items
@@ -111,7 +111,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Joins the nearest two groups until so many are left.
+    /// Joins the nearest two groups until this many are left.
     fn plain(points: &[f64], count: usize) -> Vec<Vec<usize>> {
         let mut groups: Vec<Vec<usize>> = (0..points.len()).map(|i| vec![i]).collect();
         let mean = |a: &[usize], b: &[usize]| {

@@ -352,7 +352,7 @@ impl Decoder {
         Some((candidate, 0.0))
     }
 
-    /// True if the stream ends before the peak at `tick` could be told from a class still coming nearer.
+    /// True if the stream ends before the peak at `tick` could be distinguished from a class still coming nearer.
     fn cut_off(&self, tick: i64, class: usize) -> bool {
         if tick + (self.params.peak_ticks as i64) < self.ticks || tick == 0 {
             return false;

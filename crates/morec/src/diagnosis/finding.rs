@@ -52,7 +52,7 @@ pub enum Finding {
         /// Share of the frames whose time is not after that of the frame before.
         share: f64,
     },
-    /// The hip joints are never seen, so nobody knows which way the body faces.
+    /// Neither both hip joints nor both shoulders are seen, so it is unknown which way the body faces.
     NoHeading,
     /// The body stands on its head: Y points down.
     UpsideDown {
@@ -174,7 +174,7 @@ impl Finding {
             Nobody { .. } => "nobody there",
             TimeUnit { .. } => "time is not in seconds",
             TimeStands { .. } => "time stands still",
-            NoHeading => "no hip joints",
+            NoHeading => "no hip joints or shoulders",
             UpsideDown { .. } => "upside down",
             UpIsNotY { .. } => "Y is not up",
             Tilted { .. } => "tilted",

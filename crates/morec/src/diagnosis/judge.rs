@@ -131,7 +131,10 @@ impl Diagnosis {
 
     fn body(&self, found: &mut Findings) {
         let mut missing = self.missing;
-        let blind = missing.contains(Role::LeftThigh) || missing.contains(Role::RightThigh);
+        // Where hip joints are never seen, the shoulders take their place.
+        let lacks = |left, right| missing.contains(left) || missing.contains(right);
+        let blind =
+            lacks(Role::LeftThigh, Role::RightThigh) && lacks(Role::LeftArm, Role::RightArm);
         found.add(some(blind, Finding::NoHeading));
         // Many skeletons have no shoulders and one spine joint: nothing is lost with them.
         for spare in [Role::LeftShoulder, Role::RightShoulder, Role::Torso] {

@@ -38,7 +38,7 @@ const HALF_LIFE_SECS: f64 = 5.0;
 const FADE_EVERY: u64 = 16;
 /// Bodies are looked at so often at most.
 const LOOK_SECS: f64 = 0.02;
-/// In streams faster than that, noise is looked at in so many frames in a row out of so many.
+/// In streams faster than that, noise is looked at in this many frames in a row out of this many.
 const NOISE_ROW: u64 = 8;
 const NOISE_EVERY: u64 = 24;
 /// No frame makes the past fade by more than this, whatever its time says.

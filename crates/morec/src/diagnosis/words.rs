@@ -30,7 +30,7 @@ impl fmt::Display for Finding {
                 percent(share)
             ),
             NoHeading => f.write_str(
-                "left_thigh and right_thigh (the hip joints) are never seen, so nothing says which way the body faces and nothing can be recognised: send these joints, too",
+                "neither left_thigh and right_thigh (the hip joints) nor left_arm and right_arm are seen, so it is unknown which way the body faces and nothing can be recognised: send these joints, too",
             ),
             UpsideDown { mirrored } => {
                 let send = if mirrored { "[x, -y, z]" } else { "[x, -y, -z]" };
@@ -39,7 +39,7 @@ impl fmt::Display for Finding {
             UpIsNotY { axis, negative, mirrored } => up_is_not_y(f, axis, negative, mirrored),
             Tilted { tilt_rad } => write!(
                 f,
-                "who stands upright leans by {:.0}°: level the camera, or calibrate the tracker again; recognition suffers from some 8° on",
+                "an upright performer appears tilted by {:.0}°: level the camera, or calibrate the tracker again; recognition suffers from some 8° on",
                 tilt_rad.to_degrees()
             ),
             SidesExchanged => f.write_str(

@@ -3,7 +3,7 @@
 //! [`Evaluation::of`] computes every measure, [`timelines`] says of each sample and each detection what became of
 //! it. Both are functions of their arguments alone and do not depend on the order of rows.
 //!
-//! Two kinds of streams are told apart. In *known* streams samples are labelled, and what is not labelled is
+//! Two kinds of streams are distinguished. In *known* streams samples are labelled, and what is not labelled is
 //! known to be none of the classes. *Unknown* streams ([`StreamInfo::unknown`]) hold none of the classes at all:
 //! they count towards [`UnknownFigures`] alone, so that adding hours of rest cannot raise an accuracy.
 //!

@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::EvaluatedStream;
 use super::events::right_in;
 
-/// Scores are counted in so many equal bins.
+/// Scores are counted in this many equal bins.
 pub const SCORE_BINS: usize = 10;
 
 /// Detections of about one score.

@@ -6,7 +6,7 @@ use crate::train::align;
 use super::reason::BoneOff;
 use crate::features::BoneSet;
 
-/// At most so many bones are named.
+/// At most this many bones are named.
 const MOST: usize = 3;
 /// Bones that are off by less are not named, in degrees.
 const LEAST_DEGREES: f64 = 15.0;

@@ -23,7 +23,7 @@ pub enum Reason {
         /// The bones that differ most from the nearest template.
         bones: Vec<BoneOff>,
     },
-    /// It moves too little, or too differently, to be told from a body that stands still.
+    /// It moves too little, or too differently, to be distinguished from a body that stands still.
     Still {
         /// Its distance as a share of that of a motionless body, or of one in other motion.
         share: f32,

@@ -1,4 +1,4 @@
-//! The figures that turn observations into feature rows.
+//! The parameters that turn observations into feature rows.
 
 /// Parameters of resampling, smoothing and weighting. An index keeps the values it was trained with.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]

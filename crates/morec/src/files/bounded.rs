@@ -24,7 +24,7 @@ pub(super) fn read_whole(path: &Path) -> io::Result<Vec<u8>> {
     read_stream(file)
 }
 
-/// A file of so many bytes is not held as a whole where there is another way.
+/// A file of this many bytes is not held as a whole where there is another way.
 const LARGE_FILE: u64 = 8 << 20;
 
 /// True if `path` is a file on disk so large that it is better not held as a whole, and not too large to be read.

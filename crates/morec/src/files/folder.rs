@@ -13,7 +13,7 @@ use super::{FileError, FileErrorKind};
 /// So much of a file is looked at to tell its format.
 const HEAD_BYTES: u64 = 64 * 1024;
 
-/// So many reasons are given when a folder has no clip.
+/// This many reasons are given when a folder has no clip.
 const REASONS: usize = 5;
 
 /// The clip files that paths stand for, and what folders hold besides.

@@ -122,7 +122,7 @@ fn likeliest(
     Some(Ok((best.loaded, path.clone())))
 }
 
-/// So many skeletons are compared by their bodies.
+/// This many skeletons are compared by their bodies.
 const MOST_COMPARED: usize = 8;
 
 /// A motion read with a skeleton that it fits.

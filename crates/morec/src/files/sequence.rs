@@ -29,7 +29,7 @@ pub fn read_file(path: &Path) -> io::Result<Vec<u8>> {
 const LEAST_FILES: usize = 3;
 /// A file of one frame is no larger, bytes.
 const LARGEST_FRAME: u64 = 1 << 20;
-/// So many times the files that there are may lack.
+/// This many times the files that there are may lack.
 const MOST_MISSING: u64 = 10;
 
 /// The name of a file around its number.

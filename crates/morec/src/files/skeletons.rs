@@ -8,7 +8,7 @@ use crate::formats::probe::{Format, format_of_name};
 
 use super::FileErrorKind;
 
-/// So many skeletons in one folder are a library's, and trying them all no way to find the right one.
+/// This many skeletons in one folder are a library's, and trying them all no way to find the right one.
 const MAX_PER_FOLDER: usize = 64;
 
 /// Kind of skeleton file that a motion needs.

@@ -187,7 +187,7 @@ pub(super) fn clip_names(file: &str, names: &[String]) -> Vec<String> {
 
 /// Poses (frames × joints) that are made of a file however small it is,
 const FREE_POSES: usize = 1 << 22;
-/// and so many for each of its bytes: two keys may stand far apart, and a short file could fill the memory with that.
+/// and this many for each of its bytes: two keys may stand far apart, and a short file could fill the memory with that.
 const POSES_A_BYTE: usize = 16;
 
 /// Refuses to make more frames of a file than its size lets believe.

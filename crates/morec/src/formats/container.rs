@@ -7,7 +7,7 @@ use super::{ParseError, Place};
 
 /// Bytes that are unpacked however small an archive is,
 const FREE_BYTES: u64 = 64 << 20;
-/// so many for each of its bytes (text of motion has 3 to 20, stillness some hundred),
+/// this many for each of its bytes (text of motion has 3 to 20, stillness some hundred),
 const BYTES_A_BYTE: u64 = 256;
 /// and never more than this.
 const MOST_BYTES: u64 = 4 << 30;

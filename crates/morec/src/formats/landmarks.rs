@@ -320,7 +320,7 @@ fn people_in(value: &Value, depth: usize) -> usize {
     }
 }
 
-/// A list of words beside the frames whose field speaks of names.
+/// A list of words beside the frames whose field holds names.
 fn names_in(value: &Value, depth: usize) -> Option<Vec<String>> {
     if depth == 0 {
         return None;

@@ -5,7 +5,7 @@ use crate::smooth::CompressedClip;
 
 /// Rotations that are made of a file however small it is: an hour of a body that stands still,
 const FREE_ROTATIONS: usize = 1 << 24;
-/// and so many for each of its bytes. Real motion has ten or so.
+/// and this many for each of its bytes. Real motion has ten or so.
 const ROTATIONS_A_BYTE: usize = 24;
 
 /// Reads a stored clip and samples it at its source's rate; it is called `name`. Time and memory O(frames × joints).

@@ -9,7 +9,7 @@ use crate::kinematics::WorldPose;
 use crate::math::Vec3;
 use crate::roles::{Role, RoleMap};
 
-/// The jump from a rest pose is at least so many times the usual step from frame to frame.
+/// The jump from a rest pose is at least this many times the usual step from frame to frame.
 const JUMP: f64 = 8.0;
 /// And at least this, metres a joint: people do not do that in one frame.
 const LEAST: f64 = 0.03;

@@ -21,14 +21,14 @@ pub struct Take {
 }
 
 impl Take {
-    /// The take under another name, by which labels speak of it.
+    /// The take under another name, by which labels refer to it.
     #[must_use]
     pub fn named(mut self, name: impl Into<String>) -> Self {
         self.clip.name = name.into();
         self
     }
 
-    /// The name by which labels speak of it: the stem of its file.
+    /// The name by which labels refer to it: the stem of its file.
     pub fn name(&self) -> &str {
         &self.clip.name
     }

@@ -77,7 +77,7 @@ const HEIGHT: f64 = 1.65;
 /// Size of the body as a multiple of a usual adult's, by one of the file's units a metre.
 ///
 /// Legs, arms and trunk belong to the skeleton: they are the same in every clip of it, however somebody crouches. The
-/// one in the middle is taken, so that a cartoon's legs or long arms do not decide; only a body of which they are not
+/// median is taken, so that a cartoon's legs or long arms do not decide; only a body of which they are not
 /// known is measured by its height.
 fn size(body: &BodyMeasures, up: SignedAxis) -> Option<f64> {
     let usual = [

@@ -108,7 +108,7 @@ pub struct SvrdmManifest {
 pub enum NodeWords {
     /// One class is left.
     Leaf(ClassId),
-    /// Two macro-classes are told apart.
+    /// Two macro-classes are distinguished.
     Branch(BranchWords),
 }
 

@@ -3,7 +3,7 @@
 use super::emitter::EventEmitter;
 use super::{Detection, EarlyDetection, Event, Phase};
 
-/// Progress is told again when it has grown by this.
+/// Progress is reported again when it has grown by this.
 const STEP: f64 = 0.1;
 
 /// Nothing heard of a motion for so long is the end of the early detection, seconds: it came to nothing.
@@ -18,17 +18,17 @@ pub(super) struct EarlyTracker {
 #[derive(Debug, Clone, Copy)]
 struct OpenMotion {
     motion: u64,
-    told: EarlyDetection,
+    last_reported: EarlyDetection,
     heard_secs: f64,
 }
 
 impl EarlyTracker {
     /// The last report of a motion that is still under way.
-    pub(super) fn told(&self) -> Option<EarlyDetection> {
-        self.open.map(|open| open.told)
+    pub(super) fn last_reported(&self) -> Option<EarlyDetection> {
+        self.open.map(|open| open.last_reported)
     }
 
-    /// Takes what seems to be under way at `now_secs`; nothing that began before `after_secs` is told again.
+    /// Takes what seems to be under way at `now_secs`; nothing that began before `after_secs` is reported again.
     pub(super) fn look(
         &mut self,
         early: Option<EarlyDetection>,
@@ -45,16 +45,16 @@ impl EarlyTracker {
                 say.event(Phase::Start, motion, early, now_secs);
                 self.open = Some(OpenMotion {
                     motion,
-                    told: early,
+                    last_reported: early,
                     heard_secs: now_secs,
                 });
             }
             (Some(early), Some(open)) => {
                 open.heard_secs = now_secs;
-                let news =
-                    early.class != open.told.class || early.progress >= open.told.progress + STEP;
+                let news = early.class != open.last_reported.class
+                    || early.progress >= open.last_reported.progress + STEP;
                 if news {
-                    open.told = early;
+                    open.last_reported = early;
                     let motion = open.motion;
                     say.event(Phase::Update, motion, early, now_secs);
                 }
@@ -70,7 +70,7 @@ impl EarlyTracker {
     pub(super) fn take(&mut self, detection: &Detection) -> Option<u64> {
         let open = self
             .open
-            .filter(|open| open.told.start_secs < detection.stop_secs)?;
+            .filter(|open| open.last_reported.start_secs < detection.stop_secs)?;
         self.open = None;
         Some(open.motion)
     }
@@ -85,14 +85,14 @@ impl EarlyTracker {
             say.event(
                 Phase::Cancel,
                 open.motion,
-                open.told,
+                open.last_reported,
                 now_secs.unwrap_or(open.heard_secs),
             );
         }
     }
 }
 
-/// Tails of a motion that has just ended resemble its beginning: what is told must lie mostly after it.
+/// Tails of a motion that has just ended resemble its beginning: what is reported must lie mostly after it.
 fn middle_secs(early: &EarlyDetection) -> f64 {
     0.5 * (early.start_secs + early.seen_secs)
 }

@@ -10,7 +10,7 @@ pub(super) struct EventTracker {
     actor: PerformerId,
     refractory_secs: f64,
     motions: u64,
-    /// When the last motion ended that was told: of all classes, and of each.
+    /// When the last motion ended that was reported: of all classes, and of each.
     any_secs: f64,
     class_secs: Vec<f64>,
     suppressed: u64,
@@ -76,7 +76,7 @@ impl EventTracker {
         }
     }
 
-    /// When the last motion ended that was told.
+    /// When the last motion ended that was reported.
     pub(super) fn last_stop_secs(&self) -> f64 {
         self.any_secs
     }
@@ -87,7 +87,7 @@ impl EventTracker {
         self.class_secs.fill(f64::NEG_INFINITY);
     }
 
-    /// Motions that were not told because of the refractory rule.
+    /// Motions that were not reported because of the refractory rule.
     pub(super) fn suppressed(&self) -> u64 {
         self.suppressed
     }

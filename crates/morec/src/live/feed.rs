@@ -26,7 +26,7 @@ pub(super) enum QueueItem {
     Gone(PerformerId),
 }
 
-/// Room for skeletons beside the frames, so that these are never dropped for want of it.
+/// Room for skeletons beside the frames, so that these are never dropped for lack of it.
 const BESIDE_FRAMES: usize = 16;
 
 /// The end of a feed that frames are put into. Dropping it ends the stream.

@@ -17,7 +17,7 @@ use super::{
 pub struct EventOptions {
     /// Say what seems to be under way, too.
     pub early: bool,
-    /// A motion of the same class that ends less than this after the one before it is not told (but counted), seconds.
+    /// A motion of the same class that ends less than this after the one before it is not reported (but counted), seconds.
     /// At 0 the decoder's own rule holds: motions of one performer follow each other and never share more than two
     /// ticks, so one performance is one event.
     pub refractory_secs: f64,
@@ -54,7 +54,7 @@ pub struct Performer {
 }
 
 impl Performer {
-    /// Nobody's yet: tell it a rig first.
+    /// Has no rig yet; call [`set_rig`](Self::set_rig) first.
     pub fn new<M: Clone + Into<Model>>(
         model: &M,
         actor: PerformerId,
@@ -162,7 +162,7 @@ impl Performer {
         self.dropped + self.recognizer.as_ref().map_or(0, Recognizer::dropped)
     }
 
-    /// Motions that were not told because of [`EventOptions::refractory_secs`].
+    /// Motions that were not reported because of [`EventOptions::refractory_secs`].
     pub fn suppressed(&self) -> u64 {
         self.tracker.suppressed()
     }
@@ -176,6 +176,6 @@ impl Performer {
 
     /// The motion that seems to be under way.
     pub fn early_detection(&self) -> Option<EarlyDetection> {
-        self.early.told()
+        self.early.last_reported()
     }
 }

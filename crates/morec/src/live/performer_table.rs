@@ -2,7 +2,7 @@
 
 use super::{MAX_PERFORMERS, PerformerId};
 
-/// Places of the performers of a source, whose senders are told apart by a key (`K`: a number, a connection, an address).
+/// Places of the performers of a source, whose senders are distinguished by a key (`K`: a number, a connection, an address).
 ///
 /// A sender keeps its place while it is silent, and returns to it, until another one needs it: new senders get places that
 /// nobody has had, then those of senders that have gone.

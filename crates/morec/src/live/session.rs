@@ -204,7 +204,7 @@ impl Session {
         }
     }
 
-    /// Waits until the source has ended and everything is told. Under [`OverflowPolicy::Wait`] somebody must go on reading.
+    /// Waits until the source has ended and everything is reported. Under [`OverflowPolicy::Wait`] a reader must go on reading.
     pub fn join(mut self) -> Status {
         self.wait();
         self.status()

@@ -11,7 +11,7 @@ pub enum SourceEvent {
     Frame,
     /// From now on this performer has this skeleton. Comes before its first frame, and again on every change.
     Rig(PerformerId, Arc<Rig>),
-    /// This performer has stopped sending, for now: what its last moments hold can be told.
+    /// This performer has stopped sending, for now: what its last moments hold can be reported.
     Gone(PerformerId),
     /// Nothing came in a while (some ten milliseconds); ask again.
     Quiet,

@@ -29,7 +29,7 @@ pub struct Status {
     pub dropped_events: u64,
     /// Motions that ended.
     pub motions: u64,
-    /// Motions not told because of the refractory time.
+    /// Motions not reported because of the refractory time.
     pub suppressed: u64,
     /// Counts of the source.
     pub source: SourceCounts,
@@ -37,7 +37,7 @@ pub struct Status {
     pub longest_wait_secs: f64,
     /// Waiting times of frames likewise.
     pub waits: LatencyHistogram,
-    /// True if the stream has ended and everything is told.
+    /// True if the stream has ended and everything is reported.
     pub ended: bool,
     /// The performers seen so far.
     pub actors: Vec<PerformerStatus>,

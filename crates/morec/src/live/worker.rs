@@ -52,7 +52,7 @@ pub(super) enum TurnOutcome {
     Idle,
     /// Readers must make room first.
     Blocked,
-    /// The stream has ended, and everything is told.
+    /// The stream has ended, and everything is reported.
     Ended,
 }
 

@@ -45,7 +45,7 @@ pub struct Regions {
     pub x: (f64, f64),
     /// Range along y.
     pub y: (f64, f64),
-    /// Cells along x; `kinds` holds rows of so many, from the least y up.
+    /// Cells along x; `kinds` holds rows of that many, from the least y up.
     pub columns: usize,
     /// The kind of each cell, an index into `names`.
     pub kinds: Vec<Option<u8>>,

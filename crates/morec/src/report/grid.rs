@@ -8,7 +8,7 @@ use crate::eval::{GroundTruthVerdict, Timeline};
 
 /// A clip up to this long, with at most one sample, is short.
 const SHORT_SECS: f64 = 15.0;
-/// So many short clips are drawn as squares; fewer get timelines like any other.
+/// This many short clips are drawn as squares; fewer get timelines like any other.
 const MANY: usize = 16;
 const SIDE: usize = 18;
 const STEP: usize = SIDE + 4;

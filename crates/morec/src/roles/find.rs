@@ -13,7 +13,7 @@ use crate::math::Vec3;
 /// Finds the roles of `skeleton` from its tree, its bone lengths and its names. O(joints²) at worst.
 ///
 /// Names that say nothing (`joint_7`) leave the tree and the lengths: two pairs of limbs that mirror each other, in
-/// the proportions of people. Left and right are then told by where the toes point in the zero pose.
+/// the proportions of people. Left and right then follow from where the toes point in the zero pose.
 pub fn find(skeleton: &Skeleton) -> RolesFound {
     find_moving(skeleton, &[zero_pose(skeleton)])
 }
@@ -28,7 +28,7 @@ pub(crate) fn zero_pose(skeleton: &Skeleton) -> Vec<Vec3> {
 }
 
 /// [`find`] with the joints where `poses` says, as in frames of a clip (a position for each joint, any unit): better
-/// witnesses than a zero pose that nobody ever stood in. Where knees and elbows bend, they are told from joints that
+/// witnesses than a zero pose that no person ever stood in. Where knees and elbows bend, they are distinguished from joints that
 /// halve a bone; where knees and toes point tells left from right, even against the names.
 ///
 /// # Panics

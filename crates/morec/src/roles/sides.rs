@@ -91,7 +91,7 @@ impl SideCues {
         } else {
             Side::Right
         };
-        let note = "left and right are told by where the toes point; the names do not say";
+        let note = "left and right inferred from the toes; the joint names give no side";
         (side, Some(note.to_owned()))
     }
 

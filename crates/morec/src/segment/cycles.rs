@@ -2,7 +2,7 @@
 
 use crate::features::Rows;
 
-/// Figures of [`cycles`].
+/// Parameters of [`cycles`].
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct CycleParams {
     /// No repetition is shorter.
@@ -41,7 +41,7 @@ impl Cycles {
         self.count.round().max(1.0) as usize
     }
 
-    /// Bounds of repetitions if a stretch of so many seconds is divided evenly: one more than there are.
+    /// Bounds of repetitions if a stretch of this many seconds is divided evenly: one more than there are.
     pub fn bounds(&self, secs: f64) -> Vec<f64> {
         let n = self.whole();
         (0..=n).map(|i| secs * i as f64 / n as f64).collect()

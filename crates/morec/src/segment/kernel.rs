@@ -10,7 +10,7 @@ use crate::features::{FeatureParams, Rows};
 use super::params::SegmentError;
 use super::windows::window_rows;
 
-/// Figures of [`kernel_cuts`].
+/// Parameters of [`kernel_cuts`].
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct KernelParams {
     /// Length of the windows whose statistics are compared.
@@ -62,7 +62,7 @@ impl KernelParams {
 /// O(windows · values) where segments come up regularly, O(windows²) at worst.
 ///
 /// # Errors
-/// Figures beyond all use.
+/// Parameters beyond all use.
 pub fn kernel_cuts(
     rows: &Rows,
     features: &FeatureParams,

@@ -1,4 +1,4 @@
-//! The figures of segmentation.
+//! The parameters of segmentation.
 
 /// Direction in which a clip is passed through.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]

@@ -14,7 +14,7 @@ pub enum StillKind {
     TPose,
 }
 
-/// Figures of [`still_stretches`].
+/// Parameters of [`still_stretches`].
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct StillParams {
     /// Still is slower than this: root mean square of the bones' angular speed, radians a second.

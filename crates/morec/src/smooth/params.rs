@@ -2,7 +2,7 @@
 
 /// Thresholds of [`compress`](super::compress).
 ///
-/// The thesis (§3.3.3, Alg. 1) asks for "a given (small) threshold" and prints no figure; the defaults here are
+/// The thesis (§3.3.3, Alg. 1) asks for "a given (small) threshold" and prints no value; the defaults here are
 /// half a degree and five millimetres, about what marker-based capture itself is good for.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct SmoothParams {

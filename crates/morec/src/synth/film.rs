@@ -11,7 +11,7 @@ use crate::rng::Rng;
 /// The sensors' noise has no energy far above 1 / this: what a recording system's filter leaves.
 const NOISE_SECS: f64 = 0.03;
 
-/// Films what `actor` has been told to do, from 0 to its present time, `rate_hz` frames a second.
+/// Films what `actor` has been given to do, from 0 to its present time, `rate_hz` frames a second.
 pub fn film(mut actor: Actor, name: &str, rate_hz: f64) -> Clip {
     let frames = (actor.now_secs * rate_hz).round() as usize;
     sway(&mut actor);

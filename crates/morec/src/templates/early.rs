@@ -2,12 +2,12 @@
 
 use crate::classes::ClassId;
 
-/// When a beginning is near enough to be told. Tentative: none of this has a say in detections.
+/// When a beginning is near enough to be reported. Tentative: none of this has a say in detections.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EarlyDetectionParams {
     /// A match must have come through this share of its template.
     pub least_progress: f32,
-    /// And have lasted for so many ticks.
+    /// And have lasted for this many ticks.
     pub least_ticks: usize,
     /// Its distance must be below this times the index's threshold,
     pub reach: f32,
@@ -15,7 +15,7 @@ pub struct EarlyDetectionParams {
     pub gate: f32,
     /// and below this times that of the nearest beginning of another class.
     pub rival: f32,
-    /// All that for the same class at so many ticks in a row.
+    /// All that for the same class at this many ticks in a row.
     pub streak: usize,
 }
 

@@ -17,7 +17,7 @@ use super::trim::motion_span;
 /// A clip ready for training: Y up, its joints' roles known.
 #[derive(Debug, Clone)]
 pub struct TrainClip {
-    /// Name under which labels speak of it.
+    /// Name under which labels refer to it.
     pub name: String,
     /// Skeleton and frames.
     pub clip: Clip,

@@ -13,7 +13,7 @@ pub enum Mirror {
     #[default]
     Auto,
     /// Those, and every other class is the same on both sides of the body; but a class that is named after a side, or
-    /// said to be one-sided, learns from its mirror image what it is not.
+    /// said to be one-sided, uses its mirror image as a negative.
     Yes,
     /// Not at all.
     No,

@@ -50,7 +50,7 @@ impl AlarmCurve {
     }
 
     /// The distance below which background motion comes `per_minute` times a minute, and the stream that sets it;
-    /// `None` if there is no background, or not so many events.
+    /// `None` if there is no background, or not that many events.
     pub fn distance_at(&self, per_minute: f64) -> Option<(f32, usize)> {
         let allowed = (per_minute * self.minutes) as usize;
         self.events.get(allowed).copied()

@@ -20,7 +20,7 @@ pub enum Everyday {
 /// Options of training from clips.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TrainOptions {
-    /// The figures of the method.
+    /// The parameters of the method.
     pub params: TrainParams,
     /// True if unlabelled parts of labelled clips are background.
     pub unlabelled_is_background: bool,

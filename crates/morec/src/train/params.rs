@@ -1,4 +1,4 @@
-//! The figures of training.
+//! The parameters of training.
 
 use crate::decode::DecodeParams;
 use crate::features::FeatureParams;
@@ -71,7 +71,7 @@ pub struct TrainParams {
     pub examples_per_piece: usize,
     /// Near misses of a class to learn from at most, from background and from other classes each.
     pub max_negative_examples: usize,
-    /// The nearest so many are learned from however far they are.
+    /// The nearest N are learned from however far they are.
     pub min_negative_examples: usize,
     /// Samples needed to verify at all, and to verify a class by itself.
     pub min_positives: usize,

@@ -414,7 +414,7 @@ fn moving(
     (teach, aside)
 }
 
-/// The gate against a body at rest under a verifier, if so many people showed so many samples that a verifier is better
+/// The gate against a body at rest under a verifier, if enough people showed enough samples that a verifier is better
 /// than the plain rule. With few samples the gate has to do what the verifier could not learn.
 fn verified_gate(
     classes: &[ClassInfo],

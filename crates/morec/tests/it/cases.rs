@@ -78,7 +78,7 @@ impl Case {
     /// The motion of its person at `rate_hz` frames a second.
     pub fn take(&self, rate_hz: f64) -> SyntheticTake {
         let mut person = Person::draw(self.seed, self.person);
-        // The people of the model are right-handed, as in every synthetic database unless told otherwise.
+        // The people of the model are right-handed, as in every synthetic database unless stated otherwise.
         person.hand = LimbSide::Right;
         person.height_m = self.height_m.unwrap_or(person.height_m);
         let perform = |script: Script, line: &Line| match line {

@@ -102,7 +102,12 @@ fn report_faults<'a>(
             .iter()
             .filter(|p| p.0 > d.stop_secs + 0.2 && p.0 < d.reported_secs)
             .count();
-        (between > 2).then(|| format!("said {:.3} s after its end", d.reported_secs - d.stop_secs))
+        (between > 2).then(|| {
+            format!(
+                "reported {:.3} s after its end",
+                d.reported_secs - d.stop_secs
+            )
+        })
     });
     disorder.into_iter().chain(late)
 }

@@ -5,7 +5,7 @@ use morec::train::TrainParams;
 
 use crate::made;
 
-/// Rows of every template of `class` when so many people each show it twice.
+/// Rows of every template of `class` when this many people each show it twice.
 fn lengths(people: usize, class: &'static str) -> Vec<usize> {
     let spec = DatabaseSpec {
         people,

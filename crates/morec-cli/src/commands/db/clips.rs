@@ -61,7 +61,7 @@ pub struct Args {
     /// Take a tag off
     #[arg(long, value_name = "WORD")]
     remove_tag: Vec<String>,
-    /// List at most so many
+    /// List at most N
     #[arg(long, value_name = "N")]
     limit: Option<usize>,
     /// Print one JSON array

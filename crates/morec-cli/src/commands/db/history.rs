@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Result;
-use morec_db::{Effect, Turned};
+use morec_db::{Effect, ReplayedStep};
 
 use crate::database;
 use crate::dates;
@@ -26,7 +26,7 @@ pub struct Args {
     /// The database
     #[arg(value_name = "DB")]
     db: PathBuf,
-    /// List at most so many steps
+    /// List at most N steps
     #[arg(long, value_name = "N", default_value_t = 30)]
     limit: usize,
     /// Print one JSON array
@@ -113,7 +113,7 @@ pub fn redo(args: &TurnArgs) -> Result<ExitCode> {
     )
 }
 
-fn say(args: &TurnArgs, turned: Option<&Turned>, done: &str) -> Result<ExitCode> {
+fn say(args: &TurnArgs, turned: Option<&ReplayedStep>, done: &str) -> Result<ExitCode> {
     if args.json {
         print::print_json(&turned)?;
         return Ok(ExitCode::SUCCESS);
@@ -126,7 +126,7 @@ fn say(args: &TurnArgs, turned: Option<&Turned>, done: &str) -> Result<ExitCode>
 }
 
 /// `taken back: step 4, rename bow to nod (classes: 1 changed)`.
-pub fn text(turned: &Turned, done: &str) -> String {
+pub fn text(turned: &ReplayedStep, done: &str) -> String {
     let effect = |e: &Effect| {
         let counts = [
             (e.back, "come back"),

@@ -46,7 +46,7 @@ pub struct Args {
     /// Form of the files [default: by their endings and content]
     #[arg(long, value_parser = by_name(&LabelFormat::ALL, LabelFormat::name))]
     form: Option<LabelFormat>,
-    /// The clip that a file of one clip, or --class, speaks of
+    /// The clip that a file of one clip, or --class, refers to
     #[arg(long, value_name = "CLIP")]
     clip: Option<String>,
     /// Set one sample of this class
@@ -136,7 +136,7 @@ fn code(samples: &[NewSample], absent: &Absent) -> ExitCode {
 }
 
 fn say_absent(db: &MotionDb, absent: &Absent) {
-    /// Of so many it is said which names are near.
+    /// For this many, near names are listed.
     const HINTED: usize = 5;
     if absent.is_empty() {
         return;

@@ -13,7 +13,7 @@ use crate::output;
 const POSES: usize = 8;
 /// Frames of a stretch that moves: a minute at 30 a second; of longer ones not every frame is kept.
 const FRAMES: usize = 1800;
-/// A page of so many bytes of motion takes no more: a browser must still open it.
+/// A page of this many bytes of motion takes no more: a browser must still open it.
 const MOST_BYTES: usize = 48 << 20;
 
 const STYLE: &str = "body{font:15px/1.4 system-ui,sans-serif;margin:2em auto;max-width:70em;padding:0 1em;\

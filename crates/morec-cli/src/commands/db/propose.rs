@@ -17,7 +17,7 @@ use crate::table::TextTable;
 
 /// Propose the other samples of the classes that are labelled
 ///
-/// The accepted samples look for their like in all clips; what they find is kept as proposed, with how likely it is right
+/// Searches all clips for more motions like the accepted samples; what is found is kept as proposed, with how likely it is right
 /// as far as your answers tell. Look at the sure ones in bulk and at the doubtful ones singly; what you accept teaches
 /// the next round, what you reject speaks against its like and is not asked about again. Every class goes on being asked
 /// about, however unlikely its best candidates are. Proposals of an earlier round that nobody judged are replaced;
@@ -27,7 +27,7 @@ use crate::table::TextTable;
 Examples:
   morec db propose moves.mdb
   morec db propose moves.mdb --accept 0.6             # those of this score
-  morec db propose moves.mdb --list --doubtful        # most telling first
+  morec db propose moves.mdb --list --doubtful        # most informative first
   morec db export moves.mdb ask.csv --state proposed  # edit its column state:
   morec db label moves.mdb ask.csv")]
 pub struct Args {
@@ -49,7 +49,7 @@ pub struct Args {
     /// List those whose answers tell most first: the least certain, classes in turn. Without --list after a new round
     #[arg(long)]
     doubtful: bool,
-    /// List at most so many
+    /// List at most N
     #[arg(long, value_name = "N", default_value_t = 30)]
     limit: usize,
     /// Print one JSON array

@@ -26,7 +26,7 @@ pub struct Args {
     /// Clips of this name; `*` stands for any text, `?` for one character
     #[arg(long, alias = "name", value_name = "CLIP")]
     clip: Option<String>,
-    /// At most so many clips, and so many samples of a class, as strips
+    /// At most N clips, and N samples of a class, as strips
     #[arg(long, value_name = "N", default_value_t = 40)]
     limit: usize,
     /// Print one JSON object: what was drawn

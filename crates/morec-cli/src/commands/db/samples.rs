@@ -51,7 +51,7 @@ pub struct Args {
     /// Stop, seconds
     #[arg(long, value_name = "SECS", requires = "moved")]
     stop: Option<f64>,
-    /// List at most so many
+    /// List at most N
     #[arg(long, value_name = "N")]
     limit: Option<usize>,
     /// Print one JSON array
@@ -113,7 +113,7 @@ pub fn print(samples: &[DbSample], json: bool) -> Result<ExitCode> {
     print_some(samples, samples.len(), json)
 }
 
-/// The same of some of so many.
+/// The same of some of a number.
 fn print_some(samples: &[DbSample], all: usize, json: bool) -> Result<ExitCode> {
     if json {
         print::print_json(&samples)?;

@@ -48,7 +48,7 @@ pub struct Args {
     /// Find what the example's mirror image is like, too
     #[arg(long)]
     mirror: bool,
-    /// At most so many
+    /// At most N
     #[arg(long, value_name = "N", default_value_t = 20)]
     limit: usize,
     /// Only the best of each clip

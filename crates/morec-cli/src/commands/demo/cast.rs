@@ -90,7 +90,7 @@ pub fn real() -> Cast {
 /// Seven synthetic people, the last of whom is recognised; every class twice a stream.
 ///
 /// # Errors
-/// A clip that cannot be written, for want of memory.
+/// A clip that cannot be written, for lack of memory.
 pub fn synthetic() -> Result<Cast> {
     let spec = DatabaseSpec {
         people: 7,

@@ -45,7 +45,7 @@ pub struct Args {
     /// Preference of a sample to represent a group, as a quantile of similarities (affinity)
     #[arg(long, value_name = "Q", value_parser = share, default_value_t = AffinityParams::default().preference)]
     pub(super) preference: f64,
-    /// Cut the hierarchy into so many groups
+    /// Cut the hierarchy into N groups
     #[arg(long, value_name = "N", conflicts_with = "height")]
     pub(super) groups: Option<usize>,
     /// Cut the hierarchy where groups are so far apart on average
@@ -66,7 +66,7 @@ pub struct Args {
     /// Share of the variance of all poses that is kept before samples are compared (kwas, clips in files)
     #[arg(long, value_name = "SHARE", default_value_t = 0.99)]
     pub(super) quality: f64,
-    /// Keep so many dimensions instead (kwas, clips in files)
+    /// Keep N dimensions instead (kwas, clips in files)
     #[arg(long, value_name = "N", conflicts_with = "quality")]
     pub(super) dims: Option<usize>,
     /// Propose each member of a group as a sample of the class NAME_1, NAME_2, … (databases)

@@ -106,14 +106,6 @@ fn links_lead_somewhere() {
 }
 
 #[test]
-fn front_pages_stay_short() {
-    for (name, most) in [("README.md", 8192), ("ARCHITECTURE.md", 12288)] {
-        let bytes = std::fs::metadata(root().join(name)).unwrap().len();
-        assert!(bytes <= most, "{name} has {bytes} bytes, more than {most}");
-    }
-}
-
-#[test]
 fn anchors_are_those_of_headings() {
     assert_eq!(anchor("## What misses its aim"), "what-misses-its-aim");
     assert_eq!(

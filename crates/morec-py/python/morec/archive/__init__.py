@@ -14,7 +14,7 @@ from __future__ import annotations
 import os
 from typing import Any
 
-# Daft and Ray report that they are used unless they are told not to; who wants that sets these.
+# Daft and Ray report that they are used unless this is switched off; who wants that sets these.
 os.environ.setdefault("DAFT_ANALYTICS_ENABLED", "0")
 os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")
 

@@ -364,7 +364,7 @@ class Archive:
     def sample(
         self, clips: Iterable[str] | int | DataFrame | None = None, *, seed: int = 1
     ) -> Sample:
-        """Some clips: by key or name, so many by chance, those that a DataFrame names in its column clip; or all."""
+        """Some clips: by key or name, N by chance, those that a DataFrame names in its column clip; or all."""
         if isinstance(clips, DataFrame):
             chosen: set[str] | None = {row["clip"] for row in clips.select("clip").distinct().to_pylist()}
         elif clips is None:

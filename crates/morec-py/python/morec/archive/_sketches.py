@@ -119,7 +119,7 @@ def _places(content: bytes, group: Any, packed: Sequence[bytes]) -> list[int]:
 
 
 def parts_in(metadata: Mapping[bytes, bytes] | None) -> list[Part] | None:
-    """The parts that a table of sketches speaks of; None if it is of another version."""
+    """The parts that a table of sketches refers to; None if it is of another version."""
     try:
         about = json.loads((metadata or {})[_ABOUT])
         if about["sketches"] != VERSION:
@@ -173,7 +173,7 @@ class Sketches:
 
 
 def used(tables: Sequence[SketchTable], parts: Sequence[Part]) -> tuple[list[SketchTable], list[Part]]:
-    """Tables all of whose parts are there as they were, none of them twice; and the parts that no such table speaks of."""
+    """Tables all of whose parts are there as they were, none of them twice; and the parts that no such table refers to."""
     left = dict.fromkeys(parts)
     chosen = []
     for table in tables:

@@ -89,7 +89,7 @@ class Store:
         return patiently(once)
 
     def ranges(self, name: str, places: Sequence[tuple[int, int]]) -> list[bytes]:
-        """Stretches of a file, in order of their places, each from a byte on and so many long; shorter where the file ends."""
+        """Stretches of a file, in order of their places, each from a byte on and of a given length; shorter where the file ends."""
         if not self.is_s3:
             with open(self.url(name), "rb", buffering=0) as local:
                 return [_from(local, at, size) for at, size in places]

@@ -40,13 +40,13 @@ impl Looking {
         (to - self.span_secs, to)
     }
 
-    /// Shows so many seconds; a view that stands still keeps its end.
+    /// Shows this many seconds; a view that stands still keeps its end.
     pub fn show(&mut self, span_secs: f64, now_secs: f64) {
         self.span_secs = span_secs.clamp(SHORTEST, KEPT_SECS);
         self.move_by(0.0, now_secs);
     }
 
-    /// Looks so many seconds back (negative) or on; at the present it goes on with the stream.
+    /// Looks this many seconds back (negative) or on; at the present it goes on with the stream.
     pub fn move_by(&mut self, secs: f64, now_secs: f64) {
         let (_, to) = self.extent(now_secs);
         let to = (to + secs).max(oldest(now_secs) + self.span_secs);

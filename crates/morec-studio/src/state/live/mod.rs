@@ -101,9 +101,9 @@ pub enum LiveCommand {
     Range(Option<(f64, f64)>),
     /// Selects a stretch and brings it into view.
     GoTo(f64, f64),
-    /// Shows so many seconds of the last minutes.
+    /// Shows this many seconds of the last minutes.
     Span(f64),
-    /// Looks so many seconds back (negative) or on.
+    /// Looks this many seconds back (negative) or on.
     Back(f64),
     /// The selected stretch, or the last motion, shows the class of this key.
     Mark(usize),

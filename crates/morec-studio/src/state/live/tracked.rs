@@ -49,7 +49,7 @@ impl LivePerformer {
         }
     }
 
-    /// Recognises with this model from the next frame on. What went on with the last one is told before.
+    /// Recognises with this model from the next frame on. What went on with the last one is reported before.
     pub fn recognise_with(&mut self, model: &Model, events: &mut Vec<Event>) {
         self.finish(events);
         let mut performer = Performer::new(model, self.actor, &EventOptions::default());

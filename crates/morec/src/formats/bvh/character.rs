@@ -76,7 +76,7 @@ impl Character {
         }
     }
 
-    /// Makes room for so many frames more.
+    /// Makes room for this many frames more.
     pub fn reserve(&mut self, frames: usize) {
         self.rotations.reserve(frames * self.turns.len());
         self.positions

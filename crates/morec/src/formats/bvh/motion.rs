@@ -103,7 +103,7 @@ fn value(cursor: &mut Cursor<'_>) -> Option<f64> {
 /// Joint rotations a file may ask for, for each byte of its table: ordinary files stay below a tenth, and without a limit a
 /// short file with many joints and one channel would fill the memory.
 const SAMPLES_PER_BYTE: usize = 4;
-/// And so many, however short it is: props of a hundred joints, of which one moves.
+/// And this many, however short it is: props of a hundred joints, of which one moves.
 const FREE_SAMPLES: usize = 1 << 20;
 
 /// Reads the table into `characters`, `width` numbers a frame. Returns the frames that were lost, as frame numbers

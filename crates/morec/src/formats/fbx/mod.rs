@@ -12,15 +12,15 @@ use super::{Limits, Loaded, ParseError, Place, Warning};
 use crate::clip::Clip;
 use crate::math::{Axis, Quat, Vec3};
 
-/// Memory that reading may take: so many bytes however small the file is,
+/// Memory that reading may take: this many bytes however small the file is,
 const FREE_BYTES: usize = 256 << 20;
-/// and so many for each byte of it, for arrays are compressed.
+/// and this many for each byte of it, for arrays are compressed.
 const MEMORY_A_BYTE: usize = 64;
 
 /// Reads an FBX file: a clip for each take and each skeleton that it moves, called `name` (`name#take` for several).
 ///
 /// Clips are sampled at the scene's frame rate if the keys lie on it, else at the keys' own (60 Hz for keys without a
-/// rate). Scales are worked into the positions. Axes and lengths are the file's.
+/// rate). Scales are folded into the positions. Axes and lengths are the file's.
 ///
 /// # Errors
 /// The place and the cause: no FBX, a version before 3.0 or one that cannot be read, no animation of a skeleton, more than

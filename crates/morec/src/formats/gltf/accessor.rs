@@ -28,10 +28,10 @@ pub(super) struct Numbers {
     pub(super) width: usize,
 }
 
-/// All animations of a file may have so many numbers: an hour of 100 joints at 60 Hz has 150 million.
+/// All animations of a file may have this many numbers: an hour of 100 joints at 60 Hz has 150 million.
 const MOST_NUMBERS: usize = 1 << 28;
 
-/// An accessor may stand for so many numbers without any bytes (they are zeros).
+/// An accessor may stand for this many numbers without any bytes (they are zeros).
 const MOST_ZEROS: usize = 1 << 22;
 
 impl<'a> Buffers<'a> {

@@ -25,7 +25,7 @@ use crate::clip::Clip;
 /// moves, called `name` (`name#animation` for several). `beside` finds buffers that lie in files of their own.
 ///
 /// Clips are sampled at the rate at which their keys lie (30 Hz for keys far apart, 60 Hz for keys without a rate).
-/// Joints of a humanoid are called by its bone names (`leftUpperLeg`), others as their nodes. Scales are worked into the
+/// Joints of a humanoid are called by its bone names (`leftUpperLeg`), others as their nodes. Scales are folded into the
 /// positions. Axes and lengths are the file's: by the specification Y up and metres.
 ///
 /// # Errors

@@ -27,7 +27,7 @@ pub fn write(clip: &Clip, out: &mut dyn Write) -> io::Result<()> {
 }
 
 /// Writes a clip as a VRM animation (`VRMC_vrm_animation` 1.0): the humanoid bones that play roles, with a T-pose at rest.
-/// Joints between them are worked into them; only the hips move in space, as the format wants it. `clip` is in metres and
+/// Joints between them are folded into them; only the hips move in space, as the format wants it. `clip` is in metres and
 /// Y-up. O(frames × joints) memory.
 ///
 /// # Errors

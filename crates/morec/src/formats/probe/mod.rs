@@ -292,7 +292,7 @@ pub fn probe(bytes: &[u8], name: &str) -> Result<Format, ParseError> {
         let found = format!("what by its name is {what}, which is not read: {help}");
         ParseError::new(Place::File, "a motion format that is read", found)
     };
-    // A broken C3D file is told what is wrong with it by its reader.
+    // What is wrong with a broken C3D file is reported by its reader.
     let by_name = |format: &Format| !head.is_binary() || *format == Format::C3d;
     if let Some(format) = format_of_name(name).filter(by_name) {
         return Ok(format);

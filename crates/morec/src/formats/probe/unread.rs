@@ -1,4 +1,4 @@
-//! Formats that are told by their content or their ending, only to say that they are not read and how to convert them.
+//! Formats that are recognised by content or ending only to be refused, with how to convert them.
 
 use super::head::Head;
 

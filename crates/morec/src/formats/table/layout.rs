@@ -27,7 +27,7 @@ pub(super) struct ColumnLayout {
 /// Frames: points, times, and the layout they were read by.
 pub(super) type TableFrames = (Vec<Point>, Vec<Option<f64>>, ColumnLayout);
 
-/// Times in their unit to seconds; an unknown unit is told by the usual step.
+/// Times in their unit to seconds; an unknown unit follows from the usual step.
 pub(in crate::formats) fn to_seconds(times: &mut [Option<f64>], secs: Option<f64>) {
     let known: Vec<f64> = times.iter().copied().flatten().collect();
     let mut steps: Vec<f64> = known.windows(2).map(|w| w[1] - w[0]).collect();

@@ -7,7 +7,7 @@ use crate::roles::points::numbered_counts;
 /// Rows that a table of numbers has at least to be taken for points without its name saying so.
 const LEAST_ROWS: usize = 5;
 
-/// True if a known set of landmarks has so many points.
+/// True if a known set of landmarks has this many points.
 fn is_known(count: usize) -> bool {
     numbered_counts().any(|known| known == count)
 }
@@ -24,7 +24,7 @@ pub(super) fn is_row_of_points(rows: &[TableLine]) -> bool {
     rows.len() >= LEAST_ROWS && rows.iter().all(alike) && layout(rows).is_some()
 }
 
-/// True if rows hold one point each, and every so many of them the next frame.
+/// True if rows hold one point each, and every N of them the next frame.
 pub(super) fn is_stacked(rows: &[TableLine]) -> bool {
     stride(rows).is_some()
 }

@@ -82,7 +82,7 @@ enum FrameHead {
     Short,
     /// No frame.
     None,
-    /// A frame of so many bytes.
+    /// A frame of this many bytes.
     Frame(usize),
 }
 

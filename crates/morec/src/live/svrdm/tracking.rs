@@ -29,7 +29,7 @@ struct TrackedPerformer {
     tracking: SegmentTracking,
     column: Vec<Cell>,
     tracker: EventTracker,
-    /// Nothing is told early by this method.
+    /// Nothing is reported early by this method.
     early: EarlyTracker,
 }
 

@@ -5,7 +5,7 @@
 const PULL: f64 = 0.02;
 /// A difference of more than this is no jitter: somebody paused, or a clock was set.
 const JUMP_SECS: f64 = 0.25;
-/// After so many jumps the sender's clock is no longer believed.
+/// After this many jumps the sender's clock is no longer believed.
 const PATIENCE: u32 = 5;
 
 /// Times of one sender's frames, on the receiver's clock but with the sender's evenness.

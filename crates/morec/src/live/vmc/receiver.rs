@@ -59,7 +59,7 @@ impl Default for VmcOptions {
     }
 }
 
-/// Makes frames of VMC packets, for several senders at once, told apart by where they send from (`P`: an address).
+/// Makes frames of VMC packets, for several senders at once, distinguished by where they send from (`P`: an address).
 ///
 /// Times are seconds on one clock of the caller's that never goes back; frames are stamped on the same clock, steadied by
 /// the sender's where it sends one. Takes no memory once every sender has been seen for a while.

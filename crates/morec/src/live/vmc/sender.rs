@@ -12,7 +12,7 @@ use crate::roles::RoleMap;
 pub enum Bundling {
     /// One bundle for all.
     Whole,
-    /// Bundles of at most so many bytes (the specification advises 1,500), at least one message each.
+    /// Bundles of at most this many bytes (the specification advises 1,500), at least one message each.
     Bytes(usize),
     /// Every message by itself, in no bundle.
     Single,

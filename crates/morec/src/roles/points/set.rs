@@ -95,7 +95,7 @@ impl PointSet {
     }
 }
 
-/// An entry of a table for each side it speaks of.
+/// An entry of a table for each side it names.
 fn sided((role, expression): &(&str, &str)) -> Vec<(String, String)> {
     if !role.starts_with("?_") {
         return vec![((*role).to_owned(), (*expression).to_owned())];

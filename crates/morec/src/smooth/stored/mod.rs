@@ -34,10 +34,10 @@ pub const VERSION: u16 = 2;
 const ROTATIONS: u16 = 1;
 
 const HEADER: usize = 20;
-/// A file has at most so many curves for each byte: what takes less than four bits is made up, and a curve takes two hundred
+/// A file has at most this many curves for each byte: what takes less than four bits is made up, and a curve takes two hundred
 /// bytes of memory.
 const CURVES_A_BYTE: usize = 2;
-/// And so many, however short it is.
+/// And this many, however short it is.
 const FREE_CURVES: usize = 1 << 14;
 
 impl CompressedClip {

@@ -6,7 +6,7 @@
 pub enum ComponentCount {
     /// As few as hold this share of the variance, above 0 and at most 1 (thesis Eq. 3.8: `f ≥ τ`).
     Quality(f64),
-    /// So many, or all if there are fewer.
+    /// This many, or all if there are fewer.
     Dims(usize),
 }
 
@@ -48,7 +48,7 @@ impl ComponentCount {
     }
 }
 
-/// A line of the quality table: what is kept with so many dimensions.
+/// A line of the quality table: what is kept with this many dimensions.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct QualityRow {
     /// Dimensions kept, `r`.

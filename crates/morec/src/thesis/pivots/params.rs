@@ -25,7 +25,7 @@ pub enum QuaternionSign {
     Hemisphere,
 }
 
-/// The figures of pose rows. An index keeps the values it was trained with.
+/// The parameters of pose rows. An index keeps the values it was trained with.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct PoseParams {
     /// Rows a second; every source is resampled to it. The root's Δ is one such frame.

@@ -1,5 +1,5 @@
 //! The thesis's evaluation (Bucur 2009, ch. 5) on clips and labels of today: segmentation (§5.1), clusters (§5.2),
-//! classification of cut-out samples (§5.3) and of streams (§5.4), once with the thesis's own figures and once tuned;
+//! classification of cut-out samples (§5.3) and of streams (§5.4), once with the thesis's own parameters and once tuned;
 //! its figures beside ours.
 
 mod classification;

@@ -35,7 +35,7 @@ pub struct Study<'a> {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Setting {
-    /// The thesis's own figures.
+    /// The thesis's own parameters.
     Faithful,
     /// Made to accept what was not seen.
     Tuned,
@@ -50,7 +50,7 @@ impl Setting {
         }
     }
 
-    /// The figures of training.
+    /// The parameters of training.
     pub fn params(self) -> SvrdmTrainParams {
         match self {
             Setting::Faithful => SvrdmTrainParams::faithful(),

@@ -1,4 +1,4 @@
-//! The figures of the live stages.
+//! The parameters of the live stages.
 
 use super::Descent;
 
@@ -82,7 +82,7 @@ impl SegmentDistance {
         }
     }
 
-    /// Rows in the profile of a segment of so many frames.
+    /// Rows in the profile of a segment of this many frames.
     pub fn rows(self, frames: usize) -> usize {
         frames.div_ceil(self.every())
     }

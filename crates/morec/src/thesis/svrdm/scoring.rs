@@ -155,7 +155,7 @@ impl SegmentScoring {
         }
     }
 
-    /// The most that [`score`](Self::score) can give a segment of so many frames, whatever its profile.
+    /// The most that [`score`](Self::score) can give a segment of this many frames, whatever its profile.
     pub fn most(&self, class: ClassId, frames: usize) -> f64 {
         let rows = self.comparison.rows(frames);
         let lengths = self.classes[class.index()].profiles.iter();

@@ -41,7 +41,7 @@ impl Pivots {
     }
 }
 
-/// The figures of training.
+/// The parameters of training.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SvrdmTrainParams {
     /// Joints of the pose rows.
@@ -61,7 +61,7 @@ pub struct SvrdmTrainParams {
 }
 
 impl SvrdmTrainParams {
-    /// The thesis's own figures, with no knob turned. Rejects nearly all it has not seen: Algorithm 4 settles on
+    /// The thesis's own parameters, with no knob turned. Rejects nearly all it has not seen: Algorithm 4 settles on
     /// widths so small that every sample is an island.
     pub fn faithful() -> Self {
         Self {
@@ -117,7 +117,7 @@ impl Default for SvrdmTrainParams {
 /// Options of training from clips.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SvrdmOptions {
-    /// The figures of the method.
+    /// The parameters of the method.
     pub params: SvrdmTrainParams,
     /// True if unlabelled parts of labelled clips are background.
     pub unlabelled_is_background: bool,

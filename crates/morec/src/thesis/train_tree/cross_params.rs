@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 pub struct CrossParams {
     /// Outputs from here on accept: 0.92 (thesis, §4.6.5).
     pub accept: f64,
-    /// At most so many parts, into which whole groups are dealt.
+    /// At most this many parts, into which whole groups are dealt.
     pub folds: usize,
     /// Widths of the kernel between feature vectors, as multiples of the median distance within a side.
     pub full: Multiples,

@@ -1,4 +1,4 @@
-//! The figures of training.
+//! The parameters of training.
 
 use serde::{Deserialize, Serialize};
 
@@ -13,7 +13,7 @@ pub struct TreeParams {
     pub machine: MachineParams,
     /// Rule for widths: Algorithm 4 (§4.5).
     pub sigma: SigmaRule,
-    /// The figures of Algorithm 4.
+    /// The parameters of Algorithm 4.
     pub algorithm4: Algorithm4,
     /// Parameters of the partition of classes in two.
     pub partition: PartitionParams,

@@ -39,7 +39,7 @@ pub enum SigmaRule {
     CrossValidated(CrossParams),
 }
 
-/// The figures of Algorithm 4.
+/// The parameters of Algorithm 4.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Algorithm4 {
     /// `R` is this times the mean distance of the nearest neighbour: 2.2 (§3.7.3).

@@ -29,7 +29,7 @@ impl Sphere {
 /// *minimise* `αᵀKα` with `Σα = 1`, `0 ≤ α`; the upper bound `C = 10` of the thesis never binds).
 ///
 /// Weight goes from one sample to another, the pair that gains most (Fan, Chen and Lin, *Working set selection using
-/// second order information for training support vector machines*, 2005), until no pair gains anything to speak of.
+/// second order information for training support vector machines*, 2005), until no pair gains anything notable.
 /// O(m) a step.
 pub(crate) fn smallest_enclosing_sphere(kernel: &DMatrix<f64>) -> Sphere {
     let m = kernel.nrows();

@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::qp::{BoxQp, Solution, Stop};
 
-/// The figures of a machine (thesis, §4.5).
+/// The parameters of a machine (thesis, §4.5).
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct MachineParams {
     /// `T`: what a machine should say of its own samples at least.

@@ -21,7 +21,7 @@ pub struct TreeParts {
 pub enum Node {
     /// One class is left.
     Leaf(ClassId),
-    /// Two macro-classes are told apart.
+    /// Two macro-classes are distinguished.
     Branch(Box<Branch>),
 }
 

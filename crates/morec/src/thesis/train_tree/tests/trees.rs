@@ -138,7 +138,7 @@ fn odd_samples_do_no_harm() {
             );
         }
     }
-    // The same vector in two classes cannot be told apart, and must not fail.
+    // The same vector in two classes cannot be distinguished, and must not fail.
     assert!(grow(&[one(0, 0.5), one(1, 0.5)], &[], &TreeParams::default()).is_ok());
 }
 

@@ -1,14 +1,12 @@
 //! Files of one crate that need each other: none. Somebody who reads one has an end to reach.
 
-#[path = "../sources/mod.rs"]
-mod sources;
-
 mod modules;
 mod uses;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
+use crate::sources;
 use modules::Modules;
 use uses::{Uses, uses};
 

@@ -6,7 +6,7 @@ use proc_macro2::{TokenStream, TokenTree};
 use syn::visit::{self, Visit};
 use syn::{ImplItem, Item};
 
-use crate::modules::{ModulePath, Modules, Target, attributes, attributes_within, is_test, joined};
+use super::modules::{ModulePath, Modules, Target, attributes, attributes_within, is_test, joined};
 
 /// Files, and the names that are taken from each.
 pub type Uses = BTreeMap<usize, BTreeSet<String>>;

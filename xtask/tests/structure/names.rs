@@ -1,8 +1,8 @@
 //! One type, one name; one name, one type: over all crates, private types too.
 
-mod sources;
-
 use std::collections::{BTreeMap, BTreeSet};
+
+use crate::sources;
 
 /// Names that several types may have, and why.
 const SHARED: &[(&str, &str)] = &[(

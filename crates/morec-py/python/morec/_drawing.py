@@ -1,4 +1,4 @@
-"""A moving figure: SVG that notebooks show, without scripts."""
+"""A moving drawing of a clip: SVG that notebooks show, without scripts."""
 
 from __future__ import annotations
 

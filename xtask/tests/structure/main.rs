@@ -1,0 +1,9 @@
+//! What the sources and the documents look like, in one program that links nothing of the product.
+
+mod circles;
+mod documents;
+mod figures;
+mod markdown;
+mod names;
+mod sources;
+mod words;
