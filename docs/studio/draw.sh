@@ -5,7 +5,7 @@
 set -eu
 cd "$(dirname "$0")/../.."
 if [ -z "${STUDIO:-}" ]; then
-    cargo build --release -p morec-studio
+    cargo build --release -p morec-studio --features window
     STUDIO=target/release/morec-studio
 fi
 draw() { file=$1; panel=$2; at=$3; shift 3; "$STUDIO" --screenshot "docs/studio/$file.png" --panel "$panel" --at "$at" "$@"; }
