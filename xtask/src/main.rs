@@ -1,5 +1,6 @@
 //! Tools of morec's developers: `cargo xtask --help`.
 
+mod judge;
 mod soak;
 
 use std::process::ExitCode;
@@ -10,12 +11,16 @@ use clap::Parser;
 #[derive(Parser)]
 #[command(name = "xtask")]
 enum Tool {
+    Judge(judge::Args),
     Soak(soak::Args),
 }
 
 fn main() -> ExitCode {
-    let Tool::Soak(args) = Tool::parse();
-    soak::run(&args).unwrap_or_else(|error| {
+    let done = match Tool::parse() {
+        Tool::Judge(args) => judge::run(&args),
+        Tool::Soak(args) => soak::run(&args),
+    };
+    done.unwrap_or_else(|error| {
         eprintln!("xtask: {error:#}");
         ExitCode::FAILURE
     })

@@ -23,6 +23,17 @@
 #define MOREC_EARLY_EVENTS 1
 
 /**
+ * Anyone performs: what one or two people taught is recognised more generously from the first frame, not only once the
+ * performer's motions show somebody unlike the teacher.
+ */
+#define MOREC_PERFORMER_ANYONE 2
+
+/**
+ * The person who taught performs: recognition stays as strict as it begins.
+ */
+#define MOREC_PERFORMER_TEACHER 4
+
+/**
  * Number of parts of the body; they are numbered from 0.
  */
 #define MOREC_ROLE_COUNT 18
@@ -494,7 +505,7 @@ typedef struct MorecOptions {
      */
     uint32_t roles;
     /**
-     * `MOREC_EARLY_EVENTS` or 0.
+     * `MOREC_EARLY_EVENTS`, and one of `MOREC_PERFORMER_ANYONE` and `MOREC_PERFORMER_TEACHER`; or 0.
      */
     uint32_t flags;
     /**

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use morec::index::MotionIndex;
 use morec::live::EventOptions;
 use morec::roles::Role;
+use morec::templates::PerformerKind;
 
 use crate::axes::Convention;
 use crate::event::MorecEvent;
@@ -18,6 +19,13 @@ use crate::words;
 
 /// Say what seems to be under way, too: starts, updates and cancellations beside the ends.
 pub const MOREC_EARLY_EVENTS: u32 = 1;
+
+/// Anyone performs: what one or two people taught is recognised more generously from the first frame, not only once the
+/// performer's motions show somebody unlike the teacher.
+pub const MOREC_PERFORMER_ANYONE: u32 = 2;
+
+/// The person who taught performs: recognition stays as strict as it begins.
+pub const MOREC_PERFORMER_TEACHER: u32 = 4;
 
 /// Options of a recogniser.
 #[repr(C)]
@@ -33,7 +41,7 @@ pub struct MorecOptions {
     pub skeleton: *const MorecSkeleton,
     /// For a stream of roles: bit `r` for each `MorecRole` `r` that it shows; 0 for all.
     pub roles: u32,
-    /// `MOREC_EARLY_EVENTS` or 0.
+    /// `MOREC_EARLY_EVENTS`, and one of `MOREC_PERFORMER_ANYONE` and `MOREC_PERFORMER_TEACHER`; or 0.
     pub flags: u32,
     /// Events that can wait to be polled, 128 to 1048576; 0 for 256. Memory is taken for as many.
     pub event_capacity: usize,
@@ -110,6 +118,7 @@ pub unsafe extern "C" fn morec_recognizer_create(
             ));
         };
         let index = with_sensitivity(index, c.alarms_per_minute)?;
+        let index = with_performer(index, c.flags)?;
         let stream = Stream::new(&index, declared, &options)?;
         // SAFETY: as promised to this function.
         unsafe { memory::put(recognizer, handles::give(stream)?, "recognizer") }
@@ -132,8 +141,29 @@ fn with_sensitivity(
     }))
 }
 
+/// The index for the performer that the flags say.
+fn with_performer(index: Arc<MotionIndex>, flags: u32) -> Result<Arc<MotionIndex>, CallError> {
+    let performer = match flags & (MOREC_PERFORMER_ANYONE | MOREC_PERFORMER_TEACHER) {
+        0 => return Ok(index),
+        MOREC_PERFORMER_ANYONE => PerformerKind::Anyone,
+        MOREC_PERFORMER_TEACHER => PerformerKind::Teacher,
+        _ => {
+            return Err(CallError::invalid(
+                "MOREC_PERFORMER_ANYONE and MOREC_PERFORMER_TEACHER exclude each other",
+            ));
+        }
+    };
+    let model = index.model.with_performer(performer);
+    let model = model.map_err(|error| CallError::invalid(format!("flags: {error}")))?;
+    Ok(Arc::new(MotionIndex {
+        model,
+        ..(*index).clone()
+    }))
+}
+
 fn stream_options(c: &MorecOptions) -> Result<StreamOptions, CallError> {
-    if c.flags & !MOREC_EARLY_EVENTS != 0 {
+    let known = MOREC_EARLY_EVENTS | MOREC_PERFORMER_ANYONE | MOREC_PERFORMER_TEACHER;
+    if c.flags & !known != 0 {
         return Err(CallError::invalid(format!(
             "flags is {:#x}, which this release does not know",
             c.flags

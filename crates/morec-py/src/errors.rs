@@ -65,6 +65,7 @@ pub fn library_error(error: morec::Error) -> PyErr {
     match error {
         morec::Error::File(error) => file_error(&error),
         morec::Error::Sensitivity(error) => value_error(format!("sensitivity: {error}")),
+        morec::Error::Performer(error) => value_error(format!("performer: {error}")),
         error => morec_error(error),
     }
 }

@@ -9,7 +9,7 @@ use morec::import::SignedAxis;
 use morec::index::MotionIndex;
 use morec::live::{Detection, Model, StartError, recognize_clip};
 use morec::roles::Role;
-use morec::templates::{Matcher, Metric, Stretches};
+use morec::templates::{MatchGate, Matcher, Metric, PerformerKind, Stretches};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use rayon::prelude::*;
@@ -85,13 +85,36 @@ fn completed(index: &MotionIndex, data: &Arc<ClipData>) -> ClipData {
 }
 
 impl PyIndex {
-    fn with_sensitivity(&self, sensitivity: Option<f64>) -> PyResult<Arc<MotionIndex>> {
-        let Some(alarms) = sensitivity else {
+    /// The index at another sensitivity, and for the performer that is expected.
+    fn tuned(
+        &self,
+        sensitivity: Option<f64>,
+        performer: Option<&str>,
+    ) -> PyResult<Arc<MotionIndex>> {
+        if sensitivity.is_none() && performer.is_none() {
             return Ok(self.index.clone());
-        };
-        let model = self.index.model.with_sensitivity(alarms);
+        }
+        let mut model = self.index.model.clone();
+        if let Some(alarms) = sensitivity {
+            let changed = model.with_sensitivity(alarms);
+            model = changed.map_err(|e| value_error(format!("sensitivity: {e}")))?;
+        }
+        if let Some(name) = performer {
+            let kind = match name {
+                "auto" => PerformerKind::Auto,
+                "teacher" => PerformerKind::Teacher,
+                "anyone" => PerformerKind::Anyone,
+                other => {
+                    return Err(value_error(format!(
+                        "performer: expected auto, teacher or anyone, found {other:?}"
+                    )));
+                }
+            };
+            let changed = model.with_performer(kind);
+            model = changed.map_err(|e| value_error(format!("performer: {e}")))?;
+        }
         Ok(Arc::new(MotionIndex {
-            model: model.map_err(|e| value_error(format!("sensitivity: {e}")))?,
+            model,
             ..(*self.index).clone()
         }))
     }
@@ -133,15 +156,16 @@ impl PyIndex {
     }
 
     /// Everything that is recognised in clips, frame by frame as in a live stream.
-    #[pyo3(signature = (clips, *, sensitivity=None, progress=None))]
+    #[pyo3(signature = (clips, *, sensitivity=None, performer=None, progress=None))]
     fn recognize<'py>(
         &self,
         py: Python<'py>,
         clips: &Bound<'py, PyAny>,
         sensitivity: Option<f64>,
+        performer: Option<&str>,
         progress: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let index = self.with_sensitivity(sensitivity)?;
+        let index = self.tuned(sensitivity, performer)?;
         let clips: Vec<Arc<ClipData>> = clips_of(clips)?
             .iter()
             .map(|clip| clip.get().data.clone())
@@ -170,7 +194,7 @@ impl PyIndex {
     }
 
     /// A recogniser for a live stream of joint positions.
-    #[pyo3(signature = (joints, *, roles=None, up=None, sensitivity=None))]
+    #[pyo3(signature = (joints, *, roles=None, up=None, sensitivity=None, performer=None))]
     fn recognizer(
         &self,
         py: Python<'_>,
@@ -178,8 +202,9 @@ impl PyIndex {
         roles: Option<&Bound<'_, PyAny>>,
         up: Option<&str>,
         sensitivity: Option<f64>,
+        performer: Option<&str>,
     ) -> PyResult<PyRecognizer> {
-        let index = self.with_sensitivity(sensitivity)?;
+        let index = self.tuned(sensitivity, performer)?;
         let up: SignedAxis = up
             .unwrap_or("y")
             .parse()
@@ -306,14 +331,14 @@ fn class_distances(index: &MotionIndex, data: &Arc<ClipData>) -> Result<Vec<f32>
         .collect();
     let mut matcher = Matcher::new(&templates, metric.dim(), &model.decode);
     let mut stretches = Stretches::new(metric.dim(), matcher.longest_match());
-    let rest_share = model.decode.rest_share(model.rule());
+    let gate = MatchGate::plain(model.decode.rest_share(model.rule()));
     let mut least = vec![f32::INFINITY; model.classes.len()];
     for row in metric.apply_all(&rows).iter() {
         matcher.step(row);
         stretches.push(row);
         for (number, sample) in model.samples.iter().enumerate() {
             let best = &mut least[sample.class.index()];
-            if let Some(found) = matcher.nearer(number, *best, rest_share, &mut stretches) {
+            if let Some(found) = matcher.nearer(number, *best, gate, &mut stretches) {
                 *best = found.distance;
             }
         }

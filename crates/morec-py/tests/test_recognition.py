@@ -175,6 +175,8 @@ def test_streams_refuse_what_makes_no_sense(index: morec.Index, newcomer: morec.
         index.recognizer(newcomer, up="sideways")
     with pytest.raises(ValueError, match="sensitivity"):
         index.recognizer(newcomer, sensitivity=-1.0)
+    with pytest.raises(ValueError, match="performer: expected auto, teacher or anyone"):
+        index.recognize(newcomer, performer="nobody")  # type: ignore[arg-type]
 
 
 def test_threads_share_an_index_and_a_recogniser(index: morec.Index, newcomer: morec.Clip) -> None:

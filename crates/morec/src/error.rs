@@ -29,6 +29,10 @@ pub enum Error {
     #[cfg(feature = "live")]
     #[error(transparent)]
     Sensitivity(#[from] crate::index::SensitivityError),
+    /// An index cannot be set to the performer that is expected.
+    #[cfg(feature = "live")]
+    #[error(transparent)]
+    Performer(#[from] crate::index::PerformerError),
     /// A recorded stream does not make a clip.
     #[cfg(feature = "live")]
     #[error(transparent)]

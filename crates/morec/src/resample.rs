@@ -13,6 +13,33 @@ pub struct RateError {
     pub to_hz: f64,
 }
 
+/// Share of the steps between frames that makes a part of the median step the usual one.
+#[cfg(any(feature = "formats", feature = "live"))]
+const USUAL_SHARE: f64 = 0.2;
+
+/// The usual one of the steps between a stream's frames: the mean of those near the median, or near a half or a third of the
+/// median if a fifth of all steps are: most steps of a stream may be longer because frames are missing. `None` without
+/// steps. O(n log n).
+#[cfg(any(feature = "formats", feature = "live"))]
+pub(crate) fn usual_step(steps: &[f64]) -> Option<f64> {
+    let mut sorted = steps.to_vec();
+    sorted.sort_unstable_by(f64::total_cmp);
+    let median = *sorted.get(sorted.len() / 2)?;
+    let near = |step: f64| {
+        // Printed times have few digits.
+        let allowed = 0.1 * step + 0.0011;
+        let near = sorted.iter().filter(|s| (*s - step).abs() <= allowed);
+        let (sum, count) = near.fold((0.0, 0usize), |(sum, n), s| (sum + s, n + 1));
+        (count > 0).then(|| (sum / count as f64, count))
+    };
+    let least = USUAL_SHARE * sorted.len() as f64;
+    let of_frames = [3.0, 2.0].into_iter().find_map(|frames| {
+        let (step, count) = near(median / frames)?;
+        (count as f64 >= least).then_some(step)
+    });
+    of_frames.or_else(|| Some(near(median)?.0))
+}
+
 /// Instants that lie this near to a frame, in frames, are that frame: rates are known to fewer digits.
 const SAME_FRAME: f64 = 1e-6;
 

@@ -13,6 +13,7 @@ use morec::labels::{FOUND_HEADER, FoundLine};
 use morec::live::vmc::Bundling;
 use morec::live::{Detection, Model, PoseExtractor, recognize_clip, recognize_clip_in_session};
 use morec::roles::Role;
+use morec::templates::PerformerKind;
 
 use super::send::bundling;
 use crate::files::{ReadArgs, expand, mapping, open, rate, read, say_doubts};
@@ -86,14 +87,40 @@ pub struct SensitivityArgs {
     /// as trained, usually 0.3]
     #[arg(long, value_name = "ALARMS")]
     sensitivity: Option<f64>,
+    /// Who performs what one or two people taught: auto is more generous once four recognised motions show a performer
+    /// unlike the teacher, anyone is so from the first frame, teacher never [default: auto]
+    #[arg(long, value_enum)]
+    performer: Option<PerformerArg>,
+}
+
+/// [`PerformerKind`] on the command line.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum PerformerArg {
+    Auto,
+    Teacher,
+    Anyone,
+}
+
+impl From<PerformerArg> for PerformerKind {
+    fn from(arg: PerformerArg) -> Self {
+        match arg {
+            PerformerArg::Auto => Self::Auto,
+            PerformerArg::Teacher => Self::Teacher,
+            PerformerArg::Anyone => Self::Anyone,
+        }
+    }
 }
 
 impl SensitivityArgs {
-    /// Sets the index's sensitivity, if one was given.
+    /// Sets the index's sensitivity and performer, if they were given.
     pub fn apply(&self, index: &mut MotionIndex) -> Result<()> {
         if let Some(alarms_per_minute) = self.sensitivity {
             let changed = index.model.with_sensitivity(alarms_per_minute);
             index.model = changed.context("--sensitivity")?;
+        }
+        if let Some(performer) = self.performer {
+            let changed = index.model.with_performer(performer.into());
+            index.model = changed.context("--performer")?;
         }
         Ok(())
     }

@@ -3,7 +3,7 @@
 import os
 from collections.abc import Callable, Sequence
 from types import TracebackType
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -160,7 +160,12 @@ class Index:
     def save(self, path: _Path) -> None:
         """Write the index file, whole or not at all."""
     def recognize(
-        self, clips: Clips, *, sensitivity: float | None = None, progress: _Progress = None
+        self,
+        clips: Clips,
+        *,
+        sensitivity: float | None = None,
+        performer: Literal["auto", "teacher", "anyone"] | None = None,
+        progress: _Progress = None,
     ) -> Table:
         """Everything that is recognised in clips, frame by frame as in a live stream.
 
@@ -170,6 +175,9 @@ class Index:
             Several are recognised in parallel.
         sensitivity : float, optional
             False alarms a minute that background motion may raise, as in training: 0.1 is strict, 1 is generous.
+        performer : {"auto", "teacher", "anyone"}, optional
+            Who performs what one or two people taught: "auto" is more generous once four recognised motions show a performer
+            unlike the teacher, "anyone" is so from the first frame, "teacher" never. "auto" by default.
         progress : callable, optional
 
         Returns
@@ -189,6 +197,7 @@ class Index:
         roles: _Roles = None,
         up: str | None = None,
         sensitivity: float | None = None,
+        performer: Literal["auto", "teacher", "anyone"] | None = None,
     ) -> Recognizer:
         """A recogniser for a live stream of joint positions.
 
@@ -202,6 +211,8 @@ class Index:
         up : {"x", "y", "z", "-x", "-y", "-z"}, optional
             Which way is up in the stream; Y by default. The unit of length does not matter.
         sensitivity : float, optional
+            As in `recognize`.
+        performer : {"auto", "teacher", "anyone"}, optional
             As in `recognize`.
 
         Raises

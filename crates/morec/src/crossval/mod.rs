@@ -428,7 +428,7 @@ fn missed<'t>(truths: &'t [GroundTruth], founds: &[ClipDetection]) -> Vec<Sought
 }
 
 /// A copy of `clip`, reproducible: the seed comes of its name.
-fn perturbed(clip: &TrainClip, perturbation: Perturbation) -> Perturbed {
+pub fn perturbed(clip: &TrainClip, perturbation: Perturbation) -> Perturbed {
     let mut poses = Vec::with_capacity(clip.clip.frames);
     for_each_pose(&clip.clip, &clip.roles, &clip.rest, |secs, pose| {
         poses.push((secs, *pose));

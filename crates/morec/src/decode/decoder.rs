@@ -151,6 +151,11 @@ impl Decoder {
             .for_each(|(mine, given)| *mine = *given);
     }
 
+    /// Sets [`DecodeParams::rival_share`].
+    pub fn set_rival_share(&mut self, share: f32) {
+        self.params.rival_share = share;
+    }
+
     /// Detections of the last [`report`](Self::report).
     pub fn found(&self) -> &[TickDetection] {
         &self.found

@@ -17,7 +17,9 @@ use crate::decode::FAR;
 use crate::features::{Rows, bones_of_clip, rows_of_clip};
 use crate::live::{Detection, Model};
 use crate::roles::RoleMap;
-use crate::templates::{Nearest, OperatingPoint, TemplateModel, Trace};
+use crate::templates::{
+    Nearest, OperatingPoint, PerformerKind, PerformerLevel, StrangerGate, TemplateModel, Trace,
+};
 use crate::train::overlap_share;
 
 pub use reason::{BoneOff, Reason};
@@ -92,6 +94,7 @@ pub fn explain(
         rows: &rows,
         trace,
         found,
+        open: None,
     };
     let reasons = sought.iter().map(|s| miss(s, stream.reason(s)));
     reasons.collect()
@@ -103,9 +106,32 @@ struct ComparedStream<'a> {
     rows: &'a Rows,
     trace: Trace<'a>,
     found: &'a [Detection],
+    /// The wider gate, where it was open at the sample.
+    open: Option<&'a StrangerGate>,
 }
 
-impl ComparedStream<'_> {
+impl<'a> ComparedStream<'a> {
+    /// The wider gate if it was open when the sample began: as the motions that were reported before let it.
+    fn open_gate(&self, sought: &Sought<'_>) -> Option<&'a StrangerGate> {
+        let gate = self.model.stranger.as_ref()?;
+        let hz = self.model.features.tick_hz();
+        let mut level = PerformerLevel::new(gate);
+        let before = self
+            .found
+            .iter()
+            .filter(|d| d.reported_secs <= sought.start_secs);
+        for detection in before.filter(|_| gate.performer == PerformerKind::Auto) {
+            let tick = (detection.stop_secs * hz).round() as usize;
+            let last = tick
+                .saturating_sub(1)
+                .min(self.trace.ticks().saturating_sub(1));
+            let near = self.trace.nearest(last, detection.class).comparison;
+            let discount = if level.is_open() { gate.discount } else { 0.0 };
+            level.note(near.discounted(discount).distance, gate);
+        }
+        level.is_open().then_some(gate)
+    }
+
     fn reason(&mut self, sought: &Sought<'_>) -> (Reason, Option<f64>) {
         let named = |c: &crate::classes::ClassInfo| c.name == sought.class;
         let Some(class) = self.model.classes.iter().position(named) else {
@@ -113,6 +139,7 @@ impl ComparedStream<'_> {
         };
         let class = ClassId(class as u16);
         let ticks = self.ticks_of(sought);
+        self.open = self.open_gate(sought);
         let Some((_, any)) = self.best(&ticks, |t| self.trace.nearest(t, class)) else {
             return (Reason::NoMatch, None);
         };
@@ -120,9 +147,10 @@ impl ComparedStream<'_> {
             Some(verifier) => verifier.reach,
             None => self.threshold(class),
         };
-        let moving = self.best(&ticks, |t| self.trace.moving(t, class));
-        let Some((tick, near)) = moving.filter(|(_, n)| n.comparison.distance < threshold) else {
-            return self.not_near(&ticks, class, any, threshold);
+        let counted = self.best(&ticks, |t| self.counted(t, class));
+        let Some((tick, near)) = counted.filter(|(_, n)| n.comparison.distance < threshold) else {
+            let unlike = self.unlike(&ticks, class).map(|reason| (reason, None));
+            return unlike.unwrap_or_else(|| self.not_near(&ticks, class, any, threshold));
         };
         let reason = match self.trace.verify(tick, class) {
             Some((score, evidence)) if score <= 0.0 => Reason::Refused {
@@ -138,6 +166,17 @@ impl ComparedStream<'_> {
         (reason, None)
     }
 
+    /// The sample would have been near enough under the wider gate, which was closed.
+    fn unlike(&self, ticks: &Range<usize>, class: ClassId) -> Option<Reason> {
+        let gate = self.model.stranger.as_ref()?;
+        let (_, near) = self.best(ticks, |t| self.trace.wide(t, class))?;
+        let distance = near.comparison.distance;
+        (self.open.is_none() && distance < gate.threshold).then_some(Reason::Unlike {
+            distance,
+            threshold: gate.threshold,
+        })
+    }
+
     /// The ticks of a sample that lie in the stream.
     fn ticks_of(&self, sought: &Sought<'_>) -> Range<usize> {
         let hz = self.model.features.tick_hz();
@@ -145,7 +184,18 @@ impl ComparedStream<'_> {
         tick(sought.start_secs)..tick(sought.stop_secs)
     }
 
+    /// The nearest match of a class that ends at `tick` and passes the gate that held at the sample.
+    fn counted(&self, tick: usize, class: ClassId) -> Nearest {
+        match self.open {
+            Some(_) => self.trace.wide(tick, class),
+            None => self.trace.moving(tick, class),
+        }
+    }
+
     fn threshold(&self, class: ClassId) -> f32 {
+        if let Some(gate) = self.open {
+            return gate.threshold;
+        }
         let own = self.model.class_thresholds.get(class.index());
         own.copied().unwrap_or(self.model.threshold)
     }
@@ -175,7 +225,15 @@ impl ComparedStream<'_> {
         any: Nearest,
         threshold: f32,
     ) -> (Reason, Option<f64>) {
-        let gate = self.model.decode.rest_share(self.model.rule());
+        let plain = self.model.decode.rest_share(self.model.rule());
+        let (gate, discount) = match self.open {
+            Some(open) => (open.rest_gate, open.discount),
+            None => (plain, 0.0),
+        };
+        let any = Nearest {
+            comparison: any.comparison.discounted(discount),
+            ..any
+        };
         if any.comparison.distance < threshold && !any.comparison.moves(gate) {
             let reason = Reason::Still {
                 share: any.comparison.rest_share,
@@ -183,7 +241,7 @@ impl ComparedStream<'_> {
             };
             return (reason, None);
         }
-        let moving = self.best(ticks, |t| self.trace.moving(t, class));
+        let moving = self.best(ticks, |t| self.counted(t, class));
         let near_any = |t| self.trace.nearest(t, class);
         let Some((tick, near)) = moving.or_else(|| self.best(ticks, near_any)) else {
             return (Reason::NoMatch, None);
@@ -203,7 +261,12 @@ impl ComparedStream<'_> {
         // Under a verifier, other rates move its bar; what is too far to be looked at stays so.
         let rate = match self.model.verifier {
             Some(_) => None,
-            None => least_rate(&self.model.operating, distance),
+            None => {
+                let points = self
+                    .open
+                    .map_or(&self.model.operating, |gate| &gate.operating);
+                least_rate(points, distance)
+            }
         };
         (reason, rate)
     }
@@ -212,7 +275,10 @@ impl ComparedStream<'_> {
     fn nearer_elsewhere(&self, tick: usize, class: ClassId, near: Nearest) -> Option<Reason> {
         let decode = &self.model.decode;
         let distance = near.comparison.distance;
-        let negative = self.trace.negative(tick);
+        let (negative, rival_share) = match self.open {
+            Some(gate) => (self.trace.wide_negative(tick), gate.rival_share),
+            None => (self.trace.negative(tick), decode.rival_share),
+        };
         if distance >= decode.gate * negative {
             return Some(Reason::Background { distance, negative });
         }
@@ -223,10 +289,10 @@ impl ComparedStream<'_> {
             let of = ClassId(c as u16);
             around
                 .clone()
-                .map(move |t| (c, self.trace.moving(t, of).comparison.distance))
+                .map(move |t| (c, self.counted(t, of).comparison.distance))
         });
         let (rival, rival_distance) = rivals.min_by(|a, b| a.1.total_cmp(&b.1))?;
-        (rival_distance < decode.rival_share * distance).then(|| Reason::OtherClass {
+        (rival_distance < rival_share * distance).then(|| Reason::OtherClass {
             class: self.model.classes[rival].name.clone(),
             distance,
             other: rival_distance,

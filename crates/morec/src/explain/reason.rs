@@ -30,6 +30,13 @@ pub enum Reason {
         /// Shares at or above this are not reported.
         most: f32,
     },
+    /// It is near enough for a performer unlike the teacher, but what was recognised before did not show such a one.
+    Unlike {
+        /// Distance of the nearest template, without the difference of stance.
+        distance: f32,
+        /// Distances below this are reported of such a performer.
+        threshold: f32,
+    },
     /// Background motion is nearer.
     Background {
         /// Distance of the class.
@@ -88,6 +95,7 @@ impl Reason {
             Self::NoMatch => "no match",
             Self::Far { .. } => "not near enough",
             Self::Still { .. } => "hardly moves",
+            Self::Unlike { .. } => "unlike the teacher",
             Self::Background { .. } => "background is nearer",
             Self::OtherClass { .. } => "another class is as near or nearer",
             Self::Refused { .. } => "refused by the verifier",
@@ -121,6 +129,11 @@ impl fmt::Display for Reason {
             Self::Still { share, most } => write!(
                 f,
                 "hardly moves, or moves otherwise: {share:.2} of the distance of a body that stands still, below {most:.2} counts"
+            ),
+            Self::Unlike { distance, threshold } => write!(
+                f,
+                "performed unlike the samples: distance {distance:.2}, {threshold:.2} counts once four recognised motions show a \
+                 performer unlike the teacher, or with --performer anyone"
             ),
             Self::Background { distance, negative } => write!(
                 f,

@@ -125,10 +125,28 @@ fn another_class_is_far_in_the_bones_that_move() {
 fn a_motion_that_hardly_moves_is_gated() {
     let takes = takes();
     let model = trained(&takes[1..], |options| {
-        options.params.decode.rest_gate = 1e-4
+        options.params.decode.rest_gate = 1e-4;
+        options.params.stranger.rest_gate = 1e-4;
     });
     let miss = reason(&model, &takes[0], None);
     assert!(matches!(miss.reason, Reason::Still { .. }), "{miss:?}");
+}
+
+#[test]
+fn a_performer_unlike_the_teacher_is_named_as_such() {
+    let takes = takes();
+    let Model::Templates(model) = trained(&takes[1..], |options| {
+        options.params.decode.rest_gate = 1e-4;
+        options.params.stranger.rest_gate = 0.9;
+    }) else {
+        unreachable!("templates were trained")
+    };
+    let miss = reason(&Model::Templates(model.clone()), &takes[0], None);
+    assert!(matches!(miss.reason, Reason::Unlike { .. }), "{miss:?}");
+    // Where anyone is expected, nothing is missed for that.
+    let open = model.with_performer(PerformerKind::Anyone).unwrap();
+    let miss = reason(&open.into(), &takes[0], None);
+    assert!(!matches!(miss.reason, Reason::Unlike { .. }), "{miss:?}");
 }
 
 #[test]
@@ -159,6 +177,7 @@ fn a_larger_sensitivity_is_named_where_it_would_help() {
     };
     let mut strict = (*model).clone();
     strict.threshold = 1e-3;
+    strict.stranger = None;
     strict.operating = vec![
         OperatingPoint {
             alarms_per_minute: 0.1,

@@ -3,6 +3,7 @@
 use super::points::{Point, PointTable, SHORT_GAP_SECS, UNSEEN};
 use super::{Limits, Loaded, ParseError, Place, Warning};
 use crate::math::Vec3;
+use crate::resample::usual_step;
 
 /// Facts about a file's rate besides the times of its frames.
 #[derive(Debug, Clone, Copy)]
@@ -59,6 +60,8 @@ pub(super) fn rate_not_used() -> Warning {
 const IRREGULAR: f64 = 0.25;
 /// Share of irregular steps from which on frames are resampled.
 const MANY: f64 = 0.02;
+/// Rates that differ by no more than this share are one rate, measured twice.
+const SAME_RATE: f64 = 0.02;
 
 /// A fixed rate, and where its frames lie among those of the file.
 pub(super) struct Schedule {
@@ -94,15 +97,16 @@ impl Schedule {
             }
             return as_it_is(stated.unwrap_or(assumed));
         };
-        let mut steps: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
+        let steps: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
         let mean_secs = (times[times.len() - 1] - times[0]) / steps.len() as f64;
+        let usual_secs = usual_step(&steps).unwrap_or(mean_secs).max(1e-5);
         // Printed times have few digits: a step may be off by one of the last.
-        let allowed = IRREGULAR * mean_secs + 0.0011;
-        let odd = steps.iter().filter(|s| (*s - mean_secs).abs() > allowed);
-        if odd.count() as f64 > MANY * steps.len() as f64 {
-            steps.sort_by(f64::total_cmp);
-            let usual = 1.0 / steps[steps.len() / 2].max(1e-5);
-            let rate_hz = stated.unwrap_or(usual).clamp(1e-3, 1e5);
+        let allowed = IRREGULAR * usual_secs + 0.0011;
+        let odd = steps.iter().filter(|s| (*s - usual_secs).abs() > allowed);
+        // A few long pauses are no odd steps to speak of, and make another mean.
+        let paused = (mean_secs / usual_secs - 1.0).abs() > SAME_RATE;
+        if paused || odd.count() as f64 > MANY * steps.len() as f64 {
+            let rate_hz = stated.unwrap_or(rounded(1.0 / usual_secs)).clamp(1e-3, 1e5);
             warn(format!(
                 "frames are at irregular times; they are interpolated at {rate_hz:.4} Hz"
             ));
@@ -111,7 +115,7 @@ impl Schedule {
         }
         let mean = rounded((1.0 / mean_secs).clamp(1e-3, 1e5));
         match stated {
-            Some(stated) if (stated / mean - 1.0).abs() > 0.02 => {
+            Some(stated) if (stated / mean - 1.0).abs() > SAME_RATE => {
                 warn(format!(
                     "{stated} Hz is said, but the times of the frames make {mean:.4} Hz, which is taken"
                 ));
@@ -239,6 +243,24 @@ mod tests {
         for (frame, p) in positions.iter().enumerate() {
             assert!((p.x - frame as f64 / rate).abs() < 1e-9, "{frame}");
         }
+    }
+
+    #[test]
+    fn frames_that_are_missing_do_not_slow_a_clip_down() {
+        // Two in five frames are missing: two of three steps are of two frames.
+        let seen = (0..200).filter(|f| [0, 1, 3].contains(&(f % 5)));
+        let times: Vec<f64> = seen.map(|f| f as f64 / 15.0).collect();
+        let (rate, positions, said) = run(&times, &UNKNOWN);
+        assert_eq!((rate, said), (15.0, 1));
+        for (frame, p) in positions.iter().enumerate() {
+            assert!((p.x - frame as f64 / 15.0).abs() < 1e-9, "{frame}");
+        }
+        // One pause of two seconds in a minute.
+        let times: Vec<f64> = (0..900)
+            .map(|f| (f + if f > 400 { 30 } else { 0 }) as f64 / 15.0)
+            .collect();
+        let (rate, positions, _) = run(&times, &UNKNOWN);
+        assert_eq!((rate, positions.len()), (15.0, 930));
     }
 
     #[test]

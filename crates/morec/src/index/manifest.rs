@@ -6,7 +6,7 @@ use crate::classes::{ClassId, ClassInfo};
 use crate::decode::DecodeParams;
 use crate::features::{BoneSet, FeatureParams};
 use crate::roles::Role;
-use crate::templates::{Calibration, LinearScore, OperatingPoint};
+use crate::templates::{Calibration, LinearScore, OperatingPoint, StrangerGate};
 use crate::thesis::pivots::{PivotSet, PoseParams};
 use crate::thesis::svrdm::SvrdmParams;
 
@@ -46,6 +46,9 @@ pub struct Manifest {
     /// Meaning of margins.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub calibration: Option<Calibration>,
+    /// The wider gate for performers unlike the teacher.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stranger: Option<StrangerGate>,
     /// The verifier without its tables, if there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub verifier: Option<VerifierWords>,

@@ -34,7 +34,7 @@ use std::path::Path;
 use crate::roles::{Role, RoleMap};
 
 pub use error::{INDEX_VERSION, IndexError};
-pub use model::{Model, SensitivityError};
+pub use model::{Model, PerformerError, SensitivityError};
 
 /// Origin of an index.
 #[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::classes::{ClassId, ClassInfo};
 use crate::features::{ALL_BONES, BoneSet};
 use crate::roles::Role;
-use crate::templates::TemplateModel;
+use crate::templates::{PerformerKind, TemplateModel};
 use crate::thesis::pivots::PivotSet;
 use crate::thesis::svrdm::SvrdmModel;
 
@@ -77,6 +77,20 @@ impl Model {
         changed.map(Into::into).ok_or(SensitivityError::Fixed)
     }
 
+    /// The model for the performer that is expected: anyone, the person who taught, or whoever it is, as trained.
+    ///
+    /// # Errors
+    /// Anyone is expected, and the model has no gate for that: three people or more taught it, an older version trained it, or
+    /// it is of the method of the thesis.
+    pub fn with_performer(&self, performer: PerformerKind) -> Result<Self, PerformerError> {
+        let changed = match self {
+            Model::Templates(model) => model.with_performer(performer).map(Into::into),
+            Model::Svrdm(_) if performer == PerformerKind::Anyone => None,
+            Model::Svrdm(_) => Some(self.clone()),
+        };
+        changed.ok_or(PerformerError)
+    }
+
     /// True if poses must say how joints are turned; where they are is enough otherwise.
     pub fn needs_rotations(&self) -> bool {
         self.pivots().is_some()
@@ -114,6 +128,14 @@ impl From<SvrdmModel> for Model {
         Model::Svrdm(Arc::new(model))
     }
 }
+
+/// Anyone was expected, and the model cannot be set to that.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "this index has one gate for all performers: three people or more taught it, or an older version trained it; leave the choice out, \
+     or train it again"
+)]
+pub struct PerformerError;
 
 /// Why the sensitivity of a model cannot be changed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

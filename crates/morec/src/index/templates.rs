@@ -26,6 +26,7 @@ pub(super) fn manifest(model: &TemplateModel, index: &MotionIndex) -> Manifest {
         class_thresholds: model.class_thresholds.clone(),
         operating: model.operating.clone(),
         calibration: model.calibration,
+        stranger: model.stranger.clone(),
         verifier: model.verifier.as_ref().map(|v| VerifierWords {
             reach: v.reach,
             bar: v.bar,
@@ -142,6 +143,7 @@ pub(super) fn read(manifest: &Manifest, tables: &Tables) -> Result<TemplateModel
         class_thresholds: manifest.class_thresholds.clone(),
         operating: manifest.operating.clone(),
         calibration: manifest.calibration,
+        stranger: manifest.stranger.clone(),
         verifier: verifier(manifest, tables, dim, step.as_deref())?,
         step,
     };

@@ -32,6 +32,11 @@ pub(super) trait Pipeline: fmt::Debug + Send + Sync {
         None
     }
 
+    /// True while a wider gate for performers unlike the teacher is open.
+    fn admits_strangers(&self) -> bool {
+        false
+    }
+
     /// Sets the limits of [`early_detection`](Self::early_detection).
     fn set_early(&mut self, _params: EarlyDetectionParams) {}
 

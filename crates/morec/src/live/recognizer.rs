@@ -114,6 +114,12 @@ impl Recognizer {
         self.pipeline.early_detection()
     }
 
+    /// True while what the teacher did not do alike is accepted, too: the performer's recognised motions show somebody unlike the teacher, or
+    /// anyone is expected ([`Model::with_performer`]). Templates that one or two people taught only.
+    pub fn admits_strangers(&self) -> bool {
+        self.pipeline.admits_strangers()
+    }
+
     /// Sets the limits of [`early_detection`](Self::early_detection).
     pub fn set_early(&mut self, params: EarlyDetectionParams) {
         self.pipeline.set_early(params);

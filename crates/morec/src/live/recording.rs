@@ -5,6 +5,7 @@ mod tree;
 use std::sync::Arc;
 
 use crate::clip::Clip;
+use crate::resample::usual_step;
 
 use super::{Frame, Rig};
 use tree::RecordedJoints;
@@ -95,14 +96,13 @@ impl Recording {
         }
     }
 
-    /// Frames a second: one over the median interval, whole.
+    /// Frames a second: one over the usual interval, whole.
     pub fn rate_hz(&self) -> Option<f64> {
         let pairs = self.frames.windows(2);
-        let mut intervals: Vec<f64> = pairs.map(|w| w[1].time_secs - w[0].time_secs).collect();
-        intervals.sort_unstable_by(f64::total_cmp);
-        let median = intervals.get(intervals.len() / 2)?;
+        let intervals: Vec<f64> = pairs.map(|w| w[1].time_secs - w[0].time_secs).collect();
+        let usual = usual_step(&intervals)?;
         Some(
-            (1.0 / median)
+            (1.0 / usual)
                 .round()
                 .clamp(*RATES_HZ.start(), *RATES_HZ.end()),
         )

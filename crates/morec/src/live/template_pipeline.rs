@@ -138,6 +138,10 @@ impl Pipeline for TemplatePipeline {
         })
     }
 
+    fn admits_strangers(&self) -> bool {
+        self.engine.is_open()
+    }
+
     fn set_early(&mut self, params: EarlyDetectionParams) {
         self.early = params;
     }

@@ -7,7 +7,7 @@ use crate::decode::{ClassDistance, FAR};
 use crate::features::Rows;
 
 use super::early::{EarlyDetectionParams, OngoingMatch};
-use super::{Matcher, Metric, Stretches, TemplateModel};
+use super::{MatchGate, Matcher, Metric, Stretches, TemplateModel};
 
 /// Templates and negatives of a model, matched against a stream of mapped rows.
 #[derive(Debug, Clone)]
@@ -17,8 +17,7 @@ pub struct ClassMatcher {
     /// Of the mapped rows.
     stretches: Stretches,
     template_classes: Arc<[ClassId]>,
-    /// Matches count below this share: see [`Matcher`].
-    rest_share: f32,
+    gate: MatchGate,
     near: Vec<ClassDistance>,
     negative: f32,
 }
@@ -38,7 +37,7 @@ impl ClassMatcher {
             matcher,
             negatives,
             template_classes: model.samples.iter().map(|s| s.class).collect(),
-            rest_share: model.decode.rest_share(model.rule()),
+            gate: MatchGate::plain(model.decode.rest_share(model.rule())),
             near: vec![ClassDistance::NONE; model.classes.len()],
             negative: FAR,
         }
@@ -51,6 +50,11 @@ impl ClassMatcher {
         self.stretches.reset();
     }
 
+    /// From the next tick on, matches of classes count that pass `gate`; distances of negatives are discounted like them.
+    pub fn set_gate(&mut self, gate: MatchGate) {
+        self.gate = gate;
+    }
+
     /// Takes the next tick's row, mapped. O(template rows · d), no allocation.
     pub fn step(&mut self, mapped: &[f32]) {
         self.matcher.step(mapped);
@@ -58,10 +62,14 @@ impl ClassMatcher {
         self.stretches.push(mapped);
         self.match_classes();
         self.negative = FAR;
+        let all = MatchGate {
+            rest_share: 0.0,
+            ..self.gate
+        };
         for i in 0..self.negatives.bank().len() {
             let nearer = self
                 .negatives
-                .nearer(i, self.negative, 0.0, &mut self.stretches);
+                .nearer(i, self.negative, all, &mut self.stretches);
             if let Some(found) = nearer {
                 self.negative = found.distance;
             }
@@ -72,12 +80,9 @@ impl ClassMatcher {
         self.near.fill(ClassDistance::NONE);
         for (template, class) in self.template_classes.iter().enumerate() {
             let best = &mut self.near[class.index()];
-            let nearer = self.matcher.nearer(
-                template,
-                best.distance,
-                self.rest_share,
-                &mut self.stretches,
-            );
+            let nearer =
+                self.matcher
+                    .nearer(template, best.distance, self.gate, &mut self.stretches);
             if let Some(found) = nearer {
                 *best = ClassDistance {
                     distance: found.distance,

@@ -5,7 +5,10 @@ use crate::decode::{Candidate, Decoder, TickDetection};
 use super::class_matches::{ClassMatches, MatchReplay};
 use super::early::{EarlyDetectionParams, OngoingMatch};
 use super::verifier::{CandidateScorer, Evidence};
-use super::{Calibration, ClassMatcher, Metric, TemplateModel, TemplateModelError};
+use super::{
+    Calibration, ClassMatcher, MatchGate, Metric, PerformerLevel, StrangerGate, TemplateModel,
+    TemplateModelError,
+};
 
 /// The part of recognition that knows no clock: metric, templates, verifier, decoding.
 #[derive(Debug, Clone)]
@@ -18,6 +21,54 @@ pub struct TemplateEngine {
     mapped: Vec<f32>,
     threshold: f32,
     calibration: Option<Calibration>,
+    stranger: Option<Box<PerformerAdaptation>>,
+}
+
+/// The wider gate and what is known of the performer.
+#[derive(Debug, Clone)]
+struct PerformerAdaptation {
+    gate: StrangerGate,
+    level: PerformerLevel,
+    /// What holds while it is closed: the gate of matches, the share of rivals, the thresholds of classes.
+    closed: (MatchGate, f32, Vec<f32>),
+    /// The thresholds of classes while it is open.
+    open: Vec<f32>,
+}
+
+impl PerformerAdaptation {
+    fn new(gate: &StrangerGate, model: &TemplateModel) -> Self {
+        let classes = model.classes.len();
+        let mut thresholds = vec![model.threshold; classes];
+        let own = model.class_thresholds.iter();
+        thresholds
+            .iter_mut()
+            .zip(own)
+            .for_each(|(t, own)| *t = *own);
+        let rest_share = model.decode.rest_share(model.rule());
+        let plain = MatchGate::plain(rest_share);
+        Self {
+            level: PerformerLevel::new(gate),
+            closed: (plain, model.decode.rival_share, thresholds),
+            open: vec![gate.threshold; classes],
+            gate: gate.clone(),
+        }
+    }
+
+    /// The gate of matches, the share of rivals and the thresholds of classes that hold now.
+    fn rules(&self) -> (MatchGate, f32, &[f32]) {
+        let (gate, rival_share, thresholds) = &self.closed;
+        match self.level.is_open() {
+            true => (self.gate.match_gate(), self.gate.rival_share, &self.open),
+            false => (*gate, *rival_share, thresholds),
+        }
+    }
+
+    /// Takes a detection whose score is its margin below the threshold.
+    fn note(&mut self, found: &TickDetection) {
+        let threshold = self.rules().2[found.class.index()];
+        let distance = (1.0 - found.score) as f32 * threshold;
+        self.level.note(distance, &self.gate);
+    }
 }
 
 /// Source of the classes' nearest matches.
@@ -96,8 +147,13 @@ impl TemplateEngine {
         let window = model.decode.look_ahead_ticks(rule);
         let mut decoder = Decoder::new(&model.decode, rule, model.classes.len(), longest);
         decoder.set_thresholds(&model.class_thresholds);
-        Ok(Self {
-            matches: matches(&metric),
+        let matches = matches(&metric);
+        // Matches from elsewhere have passed the narrow gate.
+        let computed = matches!(matches, Matches::Computed(_)) && model.verifier.is_none();
+        let gate = model.stranger.as_ref().filter(|_| computed);
+        let stranger = gate.map(|gate| Box::new(PerformerAdaptation::new(gate, model)));
+        let mut engine = Self {
+            matches,
             judge: model
                 .verifier
                 .as_ref()
@@ -108,11 +164,31 @@ impl TemplateEngine {
             mapped: vec![0.0; dim],
             threshold: model.threshold,
             calibration: model.calibration_in_use(),
+            stranger,
             metric,
-        })
+        };
+        engine.apply_rules();
+        Ok(engine)
     }
 
-    /// Forgets the stream so far.
+    /// Lets the rules hold that fit the performer.
+    fn apply_rules(&mut self) {
+        let (Some(stranger), Matches::Computed(matcher)) = (&self.stranger, &mut self.matches)
+        else {
+            return;
+        };
+        let (gate, rival_share, thresholds) = stranger.rules();
+        matcher.set_gate(gate);
+        self.decoder.set_rival_share(rival_share);
+        self.decoder.set_thresholds(thresholds);
+    }
+
+    /// True while the wider gate is open: the performer moves unlike the teacher, or anyone is expected.
+    pub fn is_open(&self) -> bool {
+        self.stranger.as_ref().is_some_and(|s| s.level.is_open())
+    }
+
+    /// Forgets the stream so far, but not the performer.
     pub fn reset(&mut self) {
         if let Matches::Computed(matcher) = &mut self.matches {
             matcher.reset();
@@ -148,8 +224,15 @@ impl TemplateEngine {
             }
             self.decoder.decide();
         }
+        let was_open = self.is_open();
         for detection in self.decoder.report(ended) {
+            if let Some(stranger) = &mut self.stranger {
+                stranger.note(detection);
+            }
             *detection = calibrated(self.calibration, *detection);
+        }
+        if self.is_open() != was_open {
+            self.apply_rules();
         }
     }
 

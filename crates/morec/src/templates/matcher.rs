@@ -22,6 +22,9 @@ use super::stretches::Stretches;
 /// ([`DecodeParams::spread_exponent`]) from 0 (plain) to 1 (a share of the motion that is not explained) and `V_0` = [`TYPICAL_SPREAD`], which keeps their
 /// scale: a small gesture must be met more exactly than a large one.
 ///
+/// For performers unlike the teacher, a share `a` of the squared difference of means is taken as their stance and not as part of the motion
+/// ([`NormalizedMatch::discounted`]): `D' = D − a |m_T − m_S|²`, held against a body at rest without it, too.
+///
 /// Means and spreads of stretches come from [`Stretches`].
 #[derive(Debug, Clone)]
 pub struct Matcher {
@@ -47,9 +50,44 @@ pub struct NormalizedMatch {
     pub rest_share: f32,
     /// Spread of the matched stretch.
     pub spread: f32,
+    /// Squared difference of mean poses, as a share of the distance before it was normalised.
+    pub offset_share: f32,
+}
+
+/// What a match must be like to count.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MatchGate {
+    /// Share of the squared difference of mean poses that is no part of the distance; 0: it is all part of it.
+    pub discount: f32,
+    /// See [`NormalizedMatch::moves`].
+    pub rest_share: f32,
+}
+
+impl MatchGate {
+    /// Admits plain distances below this share of a body's distance at rest; 0 admits all.
+    pub fn plain(rest_share: f32) -> Self {
+        Self {
+            discount: 0.0,
+            rest_share,
+        }
+    }
 }
 
 impl NormalizedMatch {
+    /// The match without `discount` of the squared difference of mean poses, which counts at most as the whole distance.
+    pub fn discounted(self, discount: f32) -> Self {
+        if discount == 0.0 || self.distance >= FAR {
+            return self;
+        }
+        let left = 1.0 - discount * self.offset_share.min(1.0);
+        let at_rest = 1.0 / self.rest_share - discount * self.offset_share;
+        Self {
+            distance: self.distance * left,
+            rest_share: left / at_rest.max(f32::MIN_POSITIVE),
+            ..self
+        }
+    }
+
     /// True if the match is nearer than `share` of that distance; 0 admits all.
     pub fn moves(&self, share: f32) -> bool {
         share <= 0.0 || self.rest_share < share
@@ -109,31 +147,26 @@ impl Matcher {
         stretches: &mut Stretches,
     ) -> NormalizedMatch {
         let near = self.nearness(index, matched, stretches);
-        NormalizedMatch {
-            rest_share: self.rest_share(index, matched, near.spread, stretches),
-            ..near
-        }
+        self.held_against_rest(index, matched, near, stretches)
     }
 
-    /// The match of template `index` if it is nearer than `distance` and moves, see [`NormalizedMatch::moves`]. O(1) for most
-    /// templates that are not nearer.
+    /// The match of template `index` if it passes `gate` and is nearer than `distance`. O(1) for most templates that are not
+    /// nearer.
     pub fn nearer(
         &self,
         index: usize,
         distance: f32,
-        share: f32,
+        gate: MatchGate,
         stretches: &mut Stretches,
     ) -> Option<NormalizedMatch> {
         let matched = self.bank.matched(index);
         let near = self.nearness(index, matched, stretches);
-        if near.distance >= distance {
+        if near.distance * (1.0 - gate.discount) >= distance {
             return None;
         }
-        let found = NormalizedMatch {
-            rest_share: self.rest_share(index, matched, near.spread, stretches),
-            ..near
-        };
-        found.moves(share).then_some(found)
+        let found = self.held_against_rest(index, matched, near, stretches);
+        let found = found.discounted(gate.discount);
+        (found.distance < distance && found.moves(gate.rest_share)).then_some(found)
     }
 
     /// A match that is not compared with a body at rest.
@@ -148,6 +181,7 @@ impl Matcher {
             age,
             rest_share: f32::MAX,
             spread: 0.0,
+            offset_share: 0.0,
         };
         if distance < FAR {
             found.spread = stretches.spread(age);
@@ -156,19 +190,24 @@ impl Matcher {
         found
     }
 
-    /// The distance of template `index` as a share of that of a body at rest, or in other motion of this `spread`.
-    fn rest_share(
+    /// `near` with its distance as a share of that of a body at rest, or in other motion of its spread.
+    fn held_against_rest(
         &self,
         index: usize,
         Match { distance, age }: Match,
-        spread: f32,
+        near: NormalizedMatch,
         stretches: &Stretches,
-    ) -> f32 {
+    ) -> NormalizedMatch {
         if distance >= FAR {
-            return f32::MAX;
+            return near;
         }
-        let other = self.at_rest(index, age, stretches) + self.rest_spread * spread;
-        distance / other.max(f32::MIN_POSITIVE)
+        let offset = stretches.mean_offset(age, self.means.row(index));
+        let other = self.spreads[index] + offset + self.rest_spread * near.spread;
+        NormalizedMatch {
+            rest_share: distance / other.max(f32::MIN_POSITIVE),
+            offset_share: offset / distance.max(f32::MIN_POSITIVE),
+            ..near
+        }
     }
 
     /// Divisor of a distance where the mean spread is `spread`.
@@ -188,12 +227,6 @@ impl Matcher {
             distance: found.distance / self.norm(self.spreads[index]),
             ..found
         })
-    }
-
-    /// Distance from template `index` of a body that stands still in the mean pose of the last `age + 1` ticks:
-    /// `V_T + |m_T − m_S|²`. O(d).
-    fn at_rest(&self, index: usize, age: usize, stretches: &Stretches) -> f32 {
-        self.spreads[index] + stretches.mean_offset(age, self.means.row(index))
     }
 }
 
@@ -250,14 +283,21 @@ mod tests {
                 let stretch = stream.slice(t - found.age..t + 1);
                 let (mean_s, spread_s) = mean_and_spread(&stretch, 3);
                 let offset: f32 = mean_t.iter().zip(&mean_s).map(|(a, b)| (a - b) * (a - b)).sum();
-                prop_assert!((matcher.at_rest(0, found.age, &stretches) - (spread_t + offset)).abs() < 1e-3);
                 prop_assert!((stretches.spread(found.age) - spread_s).abs() < 1e-3);
                 let other = spread_t + 0.5 * spread_s + offset;
                 let share = matcher.compare(0, &mut stretches).rest_share;
                 prop_assert!((share * other - found.distance).abs() < 1e-2 * (1.0 + share));
                 let compared = matcher.compare(0, &mut stretches);
-                prop_assert!(matcher.nearer(0, FAR, 0.0, &mut stretches) == Some(compared));
-                prop_assert!(matcher.nearer(0, compared.distance, 0.0, &mut stretches).is_none());
+                prop_assert!((compared.offset_share * found.distance - offset).abs() < 1e-3);
+                let all = MatchGate::plain(0.0);
+                prop_assert!(matcher.nearer(0, FAR, all, &mut stretches) == Some(compared));
+                prop_assert!(matcher.nearer(0, compared.distance, all, &mut stretches).is_none());
+                let open = MatchGate { discount: 0.5, ..all };
+                let nearer = matcher.nearer(0, FAR, open, &mut stretches).unwrap();
+                let left = found.distance - 0.5 * offset.min(found.distance);
+                let scale = compared.distance / found.distance.max(f32::MIN_POSITIVE);
+                prop_assert!((nearer.distance - left * scale).abs() < 1e-3 * (1.0 + nearer.distance));
+                prop_assert!((nearer.rest_share * (other - 0.5 * offset) - left).abs() < 1e-2 * (1.0 + nearer.rest_share));
             }
         }
 
@@ -271,7 +311,9 @@ mod tests {
             for _ in 0..40 {
                 matcher.step(&pose);
                 stretches.push(&pose);
-                prop_assert!(matcher.compare(0, &mut stretches).rest_share > 0.99);
+                let found = matcher.compare(0, &mut stretches);
+                prop_assert!(found.rest_share > 0.99);
+                prop_assert!(found.discounted(0.5).rest_share > 0.98);
             }
         }
     }

@@ -4,7 +4,10 @@ use crate::classes::{ClassId, ClassInfo};
 use crate::decode::{CandidatePolicy, DecodeParams};
 use crate::features::{BoneSet, FeatureParams, RowLayout, Rows};
 
-use super::{Calibration, Exemplars, OperatingPoint, PackedSymmetric, Verifier, threshold_at};
+use super::{
+    Calibration, Exemplars, OperatingPoint, PackedSymmetric, PerformerKind, StrangerGate, Verifier,
+    threshold_at,
+};
 
 /// One labelled sample's rows, before the metric.
 #[derive(Debug, Clone, PartialEq)]
@@ -42,6 +45,8 @@ pub struct TemplateModel {
     pub operating: Vec<OperatingPoint>,
     /// Meaning of scores; older indexes report margins.
     pub calibration: Option<Calibration>,
+    /// The wider gate for performers unlike the teacher; none in older indexes, and where many teach.
+    pub stranger: Option<StrangerGate>,
     /// The second look at candidates, if there was enough to learn it from.
     pub verifier: Option<Verifier>,
     /// If template rows are whole multiples of a step, column by column: the steps. Files then hold bytes.
@@ -111,6 +116,9 @@ impl TemplateModel {
                 .check(self.classes.len())
                 .map_err(TemplateModelError::Value)?;
         }
+        if let Some(stranger) = &self.stranger {
+            stranger.check().map_err(TemplateModelError::Value)?;
+        }
         if !(self.threshold.is_finite() && self.threshold > 0.0) {
             let message = format!("the threshold must be above 0, found {}", self.threshold);
             return Err(TemplateModelError::Value(message));
@@ -171,8 +179,20 @@ impl TemplateModel {
         Some(Self {
             threshold,
             class_thresholds: class_thresholds.collect(),
+            stranger: (self.stranger.as_ref()).map(|s| s.with_sensitivity(alarms_per_minute)),
             ..self.clone()
         })
+    }
+
+    /// The model for this kind of performer. `None` if it is to have a wider gate and has none.
+    pub fn with_performer(&self, performer: PerformerKind) -> Option<Self> {
+        let mut model = self.clone();
+        match &mut model.stranger {
+            Some(gate) => gate.performer = performer,
+            None if performer == PerformerKind::Anyone => return None,
+            None => {}
+        }
+        Some(model)
     }
 
     /// The calibration of scores in use. Indexes from before verified scores were calibrated hold the map of plain margins beside a
@@ -239,6 +259,7 @@ impl TemplateModel {
                 })
                 .collect(),
             calibration: self.calibration,
+            stranger: self.stranger.as_ref().map(|s| s.scaled(share as f32)),
             verifier: self
                 .verifier
                 .as_ref()

@@ -7,7 +7,7 @@ use crate::features::Rows;
 use super::matcher::{Matcher, NormalizedMatch};
 use super::stretches::Stretches;
 use super::verifier::{CandidateScorer, Evidence};
-use super::{Metric, TemplateModel, TemplateModelError};
+use super::{Metric, StrangerGate, TemplateModel, TemplateModelError};
 
 /// The nearest template of a class at a tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,6 +25,7 @@ impl Nearest {
             age: 0,
             rest_share: f32::MAX,
             spread: 0.0,
+            offset_share: 0.0,
         },
         template: 0,
     };
@@ -41,6 +42,9 @@ pub struct Trace<'a> {
     /// ticks × classes; of all matches.
     all: Vec<Nearest>,
     negatives: Vec<f32>,
+    /// `moving` and `negatives` as under the wider gate; empty without one.
+    wide: Vec<Nearest>,
+    wide_negatives: Vec<f32>,
     judge: Option<CandidateScorer>,
 }
 
@@ -65,6 +69,8 @@ impl<'a> Trace<'a> {
             moving: Vec::with_capacity(rows.len() * classes),
             all: Vec::with_capacity(rows.len() * classes),
             negatives: Vec::with_capacity(rows.len()),
+            wide: Vec::new(),
+            wide_negatives: Vec::new(),
             judge: model
                 .verifier
                 .as_ref()
@@ -78,9 +84,7 @@ impl<'a> Trace<'a> {
             negatives.step(row);
             stretches.push(row);
             trace.push(&templates, rest_share, &mut stretches);
-            let distances =
-                (0..negatives.bank().len()).map(|i| negatives.compare(i, &mut stretches).distance);
-            trace.negatives.push(distances.fold(FAR, f32::min));
+            trace.push_negatives(&negatives, &mut stretches);
         }
         Ok(trace)
     }
@@ -90,6 +94,10 @@ impl<'a> Trace<'a> {
         let first = self.all.len();
         self.all.resize(first + classes, Nearest::NONE);
         self.moving.resize(first + classes, Nearest::NONE);
+        let wide = self.model.stranger.as_ref().map(StrangerGate::match_gate);
+        if wide.is_some() {
+            self.wide.resize(first + classes, Nearest::NONE);
+        }
         for (template, sample) in self.model.samples.iter().enumerate() {
             let comparison = templates.compare(template, stretches);
             let found = Nearest {
@@ -104,6 +112,29 @@ impl<'a> Trace<'a> {
             if moves && comparison.distance < self.moving[place].comparison.distance {
                 self.moving[place] = found;
             }
+            let Some(gate) = wide else { continue };
+            let comparison = comparison.discounted(gate.discount);
+            let nearer = comparison.distance < self.wide[place].comparison.distance;
+            if nearer && comparison.moves(gate.rest_share) {
+                self.wide[place] = Nearest {
+                    comparison,
+                    template,
+                };
+            }
+        }
+    }
+
+    fn push_negatives(&mut self, negatives: &Matcher, stretches: &mut Stretches) {
+        let discount = self.model.stranger.as_ref().map(|gate| gate.discount);
+        let (mut nearest, mut wide) = (FAR, FAR);
+        for i in 0..negatives.bank().len() {
+            let found = negatives.compare(i, stretches);
+            nearest = nearest.min(found.distance);
+            wide = wide.min(found.discounted(discount.unwrap_or(0.0)).distance);
+        }
+        self.negatives.push(nearest);
+        if discount.is_some() {
+            self.wide_negatives.push(wide);
         }
     }
 
@@ -115,6 +146,17 @@ impl<'a> Trace<'a> {
     /// The nearest match of a class that ends at `tick` and moves more than a body at rest.
     pub fn moving(&self, tick: usize, class: ClassId) -> Nearest {
         self.moving[tick * self.model.classes.len() + class.index()]
+    }
+
+    /// The nearest match of a class that ends at `tick` and passes the wider gate, discounted; none without such a gate.
+    pub fn wide(&self, tick: usize, class: ClassId) -> Nearest {
+        let place = tick * self.model.classes.len() + class.index();
+        self.wide.get(place).copied().unwrap_or(Nearest::NONE)
+    }
+
+    /// Smallest distance to a negative at `tick` as under the wider gate; [`FAR`] if there is none.
+    pub fn wide_negative(&self, tick: usize) -> f32 {
+        self.wide_negatives.get(tick).copied().unwrap_or(FAR)
     }
 
     /// The nearest match of a class that ends at `tick`, moving or not.

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::decode::FAR;
 use crate::features::Rows;
-use crate::templates::{Match, Matcher, NormalizedMatch, Stretches};
+use crate::templates::{Match, MatchGate, Matcher, NormalizedMatch, Stretches};
 
 use super::params::TrainParams;
 use super::set::{StreamKind, TrainSample, TrainStream, overlap_share};
@@ -13,8 +13,7 @@ use super::set::{StreamKind, TrainSample, TrainStream, overlap_share};
 pub struct TemplateDistances {
     templates: usize,
     matches: Vec<Compared>,
-    /// Matches count below this [`rest_share`](NormalizedMatch::rest_share); 0 admits all.
-    rest_share: f32,
+    gate: MatchGate,
 }
 
 /// A match, in little space: there is one for each template and tick.
@@ -23,6 +22,7 @@ struct Compared {
     distance: f32,
     age: u32,
     rest_share: f32,
+    offset_share: f32,
 }
 
 impl Compared {
@@ -30,6 +30,7 @@ impl Compared {
         distance: FAR,
         age: 0,
         rest_share: f32::MAX,
+        offset_share: 0.0,
     };
 
     fn of(found: NormalizedMatch) -> Self {
@@ -37,6 +38,17 @@ impl Compared {
             distance: found.distance,
             age: found.age as u32,
             rest_share: found.rest_share,
+            offset_share: found.offset_share,
+        }
+    }
+
+    fn found(&self) -> NormalizedMatch {
+        NormalizedMatch {
+            distance: self.distance,
+            age: self.age as usize,
+            rest_share: self.rest_share,
+            spread: 0.0,
+            offset_share: self.offset_share,
         }
     }
 }
@@ -113,7 +125,7 @@ impl TemplateDistances {
         Self {
             templates,
             matches,
-            rest_share: 0.0,
+            gate: MatchGate::plain(0.0),
         }
     }
 
@@ -123,9 +135,9 @@ impl TemplateDistances {
         (0..self.len()).map(is_near).collect()
     }
 
-    /// Lets matches count below this [`rest_share`](NormalizedMatch::rest_share) only.
-    pub fn set_rest_share(&mut self, share: f32) {
-        self.rest_share = share;
+    /// Lets matches count that pass `gate` only, discounted as it says.
+    pub fn set_gate(&mut self, gate: MatchGate) {
+        self.gate = gate;
     }
 
     /// Number of ticks.
@@ -140,10 +152,11 @@ impl TemplateDistances {
     }
 
     fn counted(&self, found: &Compared) -> Match {
-        let moves = self.rest_share <= 0.0 || found.rest_share < self.rest_share;
+        let found = found.found().discounted(self.gate.discount);
+        let counts = found.moves(self.gate.rest_share);
         Match {
-            distance: if moves { found.distance } else { FAR },
-            age: found.age as usize,
+            distance: if counts { found.distance } else { FAR },
+            age: found.age,
         }
     }
 

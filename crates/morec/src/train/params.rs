@@ -65,6 +65,8 @@ pub struct TrainParams {
     pub rest_gate_few: f32,
     /// People that must teach before candidates are verified.
     pub verify_people: usize,
+    /// The wider gate for performers unlike the teacher, where fewer than [`verify_people`](Self::verify_people) teach.
+    pub stranger: StrangerParams,
     /// Candidates are looked at up to this times the distance that nine in ten samples of new people need.
     pub reach: f64,
     /// Examples of a class and sign from one clip, or from two seconds of a long stream, at most.
@@ -85,6 +87,44 @@ pub struct TrainParams {
     pub bar_range: (f64, f64),
 }
 
+/// Parameters of the wider gate, see [`StrangerGate`](crate::templates::StrangerGate).
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct StrangerParams {
+    /// Share of the squared difference of mean poses that is the performer's stance.
+    pub discount: f32,
+    /// Matches count below this share of a body's distance at rest; 0: there is no wider gate.
+    pub rest_gate: f32,
+    /// A candidate is refused if another class is nearer than this share of its distance.
+    pub rival_share: f32,
+    /// The gate opens for a performer of this level.
+    pub open_at: f32,
+    /// It closes below this one.
+    pub close_at: f32,
+}
+
+impl Default for StrangerParams {
+    fn default() -> Self {
+        Self {
+            discount: 0.5,
+            rest_gate: 0.70,
+            rival_share: 1.15,
+            open_at: 1.1,
+            close_at: 1.0,
+        }
+    }
+}
+
+impl StrangerParams {
+    /// No wider gate.
+    pub const NONE: Self = Self {
+        discount: 0.0,
+        rest_gate: 0.0,
+        rival_share: 0.0,
+        open_at: 0.0,
+        close_at: 0.0,
+    };
+}
+
 impl Default for TrainParams {
     fn default() -> Self {
         Self {
@@ -101,6 +141,7 @@ impl Default for TrainParams {
             calibrate: true,
             verify: true,
             compact: true,
+            stranger: StrangerParams::default(),
             ..Self::reference()
         }
     }
@@ -137,6 +178,7 @@ impl TrainParams {
             many_samples: 25,
             rest_gate_few: 0.64,
             verify_people: 3,
+            stranger: StrangerParams::NONE,
             reach: 2.0,
             examples_per_piece: 3,
             max_negative_examples: 400,

@@ -9,8 +9,9 @@ use crate::classes::ClassInfo;
 use crate::features::{BoneSet, Rows};
 use crate::progress::Progress;
 use crate::templates::{
-    ALARM_RATES, Calibration, Matcher, Metric, OperatingPoint, PackedSymmetric, TemplateModel,
-    TemplateModelError, TemplateSample, Verifier, mean_and_spread,
+    ALARM_RATES, Calibration, MatchGate, Matcher, Metric, OperatingPoint, PackedSymmetric,
+    PerformerKind, StrangerGate, TemplateModel, TemplateModelError, TemplateSample, Verifier,
+    mean_and_spread,
 };
 
 use super::alike::{AlikeClasses, alike_classes};
@@ -131,17 +132,28 @@ pub fn train(
     let gate = verified_gate(&classes, &samples, params);
     let gate = gate.filter(|_| params.verify);
     let verifies = gate.is_some() && verifier::has_background(set, params);
+    let wide = wide_gate(set, &samples, params).filter(|_| !verifies);
     let most = step.largest_threshold();
+    let near_wide = step.within_wide(&mut distances, wide, most);
     let wanted = |stream: usize| {
         // The threshold looks at background only, and not beyond its bound; a verifier learns from everything.
         let is_background = set.streams[stream].source != StreamKind::Labelled;
         match is_background && !verifies {
-            true => distances[stream].ticks_within(most),
+            true => {
+                let mut wanted = distances[stream].ticks_within(most);
+                let wide = near_wide.iter().flat_map(|n| n[stream].iter());
+                wanted.iter_mut().zip(wide).for_each(|(w, wide)| *w |= wide);
+                wanted
+            }
             false => vec![verifies; set.streams[stream].rows.len()],
         }
     };
     let matchers = step.matchers(rows.iter());
-    let near_negatives = step.distances(&matchers, "comparing with near misses", wanted)?;
+    let mut near_negatives = step.distances(&matchers, "comparing with near misses", wanted)?;
+    let stranger = wide.map(|gate| {
+        let seen = (samples.as_slice(), negatives.as_slice());
+        step.stranger_gate(gate, (&mut distances, &mut near_negatives), seen)
+    });
     let seen = LeaveOneOutView {
         set,
         samples: &samples,
@@ -193,6 +205,7 @@ pub fn train(
         class_thresholds,
         operating: operating.points,
         calibration: params.calibrate.then_some(calibration),
+        stranger: stranger.filter(|_| verifier.is_none()),
         verifier,
         step: None,
     };
@@ -212,7 +225,24 @@ pub fn train(
 }
 
 fn set_rest_share(distances: &mut [TemplateDistances], share: f32) {
-    distances.iter_mut().for_each(|d| d.set_rest_share(share));
+    set_gate(distances, MatchGate::plain(share));
+}
+
+fn set_gate(distances: &mut [TemplateDistances], gate: MatchGate) {
+    distances.iter_mut().for_each(|d| d.set_gate(gate));
+}
+
+/// The wider gate of matches, if so few people teach that a stranger is likely to be unlike them. Who is not named is one person.
+fn wide_gate(set: &TrainSet, samples: &[TrainSample], params: &TrainParams) -> Option<MatchGate> {
+    let people: BTreeSet<Option<&str>> = samples
+        .iter()
+        .map(|s| set.streams[s.stream].person.as_deref())
+        .collect();
+    let few = people.len() < params.verify_people && params.alarms_per_minute > 0.0;
+    (few && params.stranger.rest_gate > 0.0).then_some(MatchGate {
+        discount: params.stranger.discount,
+        rest_share: params.stranger.rest_gate,
+    })
 }
 
 /// Exponent by which the bound of the threshold follows the rate of false alarms: 2.4 at a third of the usual rate and
@@ -356,6 +386,63 @@ impl TrainingContext<'_> {
                 |stream| format!("background clip {}", self.set.streams[stream].name),
             ),
             points: ALARM_RATES.map(point).to_vec(),
+        }
+    }
+
+    /// For each stream, the ticks at which a match that passes the wider gate is nearer than `most`; nothing without one.
+    fn within_wide(
+        &self,
+        distances: &mut [TemplateDistances],
+        wide: Option<MatchGate>,
+        most: f64,
+    ) -> Option<Vec<Vec<bool>>> {
+        let wide = wide?;
+        set_gate(distances, wide);
+        let within = |(of, stream): (&TemplateDistances, &TrainStream)| match stream.source {
+            StreamKind::Labelled => Vec::new(),
+            _ => of.ticks_within(most),
+        };
+        let near = distances
+            .iter()
+            .zip(&self.set.streams)
+            .map(within)
+            .collect();
+        set_rest_share(distances, self.params.decode.rest_gate);
+        Some(near)
+    }
+
+    /// The wider gate, with the thresholds that background motion sets when it is matched as under that gate.
+    fn stranger_gate(
+        &self,
+        gate: MatchGate,
+        (distances, near_negatives): (&mut [TemplateDistances], &mut [TemplateDistances]),
+        (samples, negatives): (&[TrainSample], &[NearMiss]),
+    ) -> StrangerGate {
+        let all = MatchGate {
+            rest_share: 0.0,
+            ..gate
+        };
+        set_gate(distances, gate);
+        set_gate(near_negatives, all);
+        let seen = LeaveOneOutView {
+            set: self.set,
+            samples,
+            negatives,
+            near_negatives,
+        };
+        let operating = self.operating(distances, Some(&seen));
+        set_rest_share(distances, self.params.decode.rest_gate);
+        set_rest_share(near_negatives, 0.0);
+        let params = &self.params.stranger;
+        StrangerGate {
+            performer: PerformerKind::Auto,
+            discount: gate.discount,
+            rest_gate: gate.rest_share,
+            rival_share: params.rival_share,
+            threshold: operating.threshold,
+            operating: operating.points,
+            open_at: params.open_at,
+            close_at: params.close_at,
         }
     }
 

@@ -29,6 +29,7 @@ mod sensitivity;
 mod session;
 mod smooth_real;
 mod stages;
+mod strangers;
 mod svrdm;
 mod thesis;
 mod thesis_method;

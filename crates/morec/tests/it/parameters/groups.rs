@@ -6,8 +6,8 @@ use morec::features::FeatureParams;
 use morec::segment::{CycleParams, KernelParams, PpcaParams, StillParams};
 use morec::smooth::SmoothParams;
 use morec::templates::EarlyDetectionParams;
-use morec::train::TrainParams;
 use morec::train::thesis::SvrdmTrainParams;
+use morec::train::{StrangerParams, TrainParams};
 
 use super::{Group, printed, serialised};
 
@@ -31,6 +31,16 @@ fn templates() -> Vec<Group> {
             values: vec![
                 ("default", serialised(&now)),
                 ("prototype", serialised(&then)),
+            ],
+        },
+        Group {
+            intro: "### The wider gate for performers unlike the teacher (`StrangerParams`)",
+            source: include_str!("../../../src/train/params.rs"),
+            name: "StrangerParams",
+            prefix: "stranger.",
+            values: vec![
+                ("default", serialised(&StrangerParams::default())),
+                ("prototype", serialised(&StrangerParams::NONE)),
             ],
         },
         Group {

@@ -1,0 +1,83 @@
+//! What one person taught, performed by others.
+
+use morec::index::{Model, MotionIndex, PerformerError};
+use morec::live::{Recognizer, recognize_poses};
+use morec::synth::{DatabaseSpec, database};
+use morec::templates::{PerformerKind, TemplateModel};
+use morec::train::{StrangerParams, TrainParams};
+
+use crate::made;
+
+/// One of the synthetic people teaches each class twice.
+fn spec(people: usize) -> DatabaseSpec {
+    DatabaseSpec {
+        people,
+        repetitions: 2,
+        rate_hz: 30.0,
+        ..Default::default()
+    }
+}
+
+fn taught_by_one() -> TemplateModel {
+    made::train(&spec(1), TrainParams::default())
+}
+
+#[test]
+fn only_few_teachers_get_a_wider_gate_and_files_keep_it() {
+    let model = taught_by_one();
+    let gate = model.stranger.clone().expect("one person taught");
+    assert!(
+        gate.threshold > 0.0
+            && gate
+                .operating
+                .is_sorted_by(|a, b| a.threshold <= b.threshold)
+    );
+    let index = MotionIndex {
+        model: model.into(),
+        roles: Default::default(),
+        provenance: Default::default(),
+    };
+    let opened = MotionIndex::from_bytes(&index.to_bytes().unwrap()).unwrap();
+    assert!(matches!(&opened.model, Model::Templates(m) if m.stranger == Some(gate)));
+
+    let many = Model::from(made::train(&spec(3), TrainParams::default()));
+    assert!(matches!(&many, Model::Templates(m) if m.stranger.is_none()));
+    let anyone = many.with_performer(PerformerKind::Anyone);
+    assert_eq!(anyone.err(), Some(PerformerError));
+    assert_eq!(many.with_performer(PerformerKind::Teacher), Ok(many));
+}
+
+#[test]
+fn for_the_teacher_the_wider_gate_changes_nothing() {
+    let with = Model::from(taught_by_one());
+    let teacher = with.with_performer(PerformerKind::Teacher).unwrap();
+    let without = TrainParams {
+        stranger: StrangerParams::NONE,
+        ..TrainParams::default()
+    };
+    let without = made::train(&spec(1), without);
+    for take in database(71, &spec(2)) {
+        let (_, poses) = made::poses(&take);
+        let found = recognize_poses(&teacher, &poses).unwrap();
+        assert_eq!(found, recognize_poses(&without, &poses).unwrap());
+        assert!(!found.is_empty());
+    }
+}
+
+#[test]
+fn for_anyone_no_fewer_motions_are_found_and_the_recogniser_says_so() {
+    let model = Model::from(taught_by_one());
+    let count = |performer: PerformerKind| {
+        let model = model.with_performer(performer).unwrap();
+        let takes = database(72, &spec(3));
+        let found = takes.iter().map(|take| {
+            let (bones, poses) = made::poses(take);
+            let recognizer = Recognizer::new(&model, bones).unwrap();
+            let open = performer == PerformerKind::Anyone;
+            assert_eq!(recognizer.admits_strangers(), open);
+            recognize_poses(&model, &poses).unwrap().len()
+        });
+        found.sum::<usize>()
+    };
+    assert!(count(PerformerKind::Anyone) >= count(PerformerKind::Teacher));
+}
