@@ -7,9 +7,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Result, bail};
 use morec::features::FeatureParams;
-use morec::labels::ClipLength;
-use morec_db::exchange::ClipLengths;
-use morec_db::{ClipFilter, ClipInfo, DbError, MotionDb};
+use morec_db::exchange::{self, ClipLengths};
+use morec_db::{ClipFilter, DbError, MotionDb};
 
 use crate::output::mark_database;
 
@@ -58,18 +57,5 @@ pub fn open_read_only(path: &Path) -> Result<MotionDb, DbError> {
 
 /// The lengths of all clips by name.
 pub fn lengths(db: &MotionDb) -> Result<ClipLengths> {
-    let length = |c: ClipInfo| {
-        (
-            c.name,
-            ClipLength {
-                frames: c.frames,
-                rate_hz: c.rate_hz,
-            },
-        )
-    };
-    Ok(db
-        .clips(&ClipFilter::default())?
-        .into_iter()
-        .map(length)
-        .collect())
+    Ok(exchange::clip_lengths(&db.clips(&ClipFilter::default())?))
 }

@@ -256,7 +256,11 @@ fn step_name(clips: usize, update: &ClipUpdate) -> String {
 }
 
 /// Changes what is known about a clip; says whether there is such a clip.
-fn describe(conn: &Connection, id: ClipId, update: &ClipUpdate) -> Result<usize, DbError> {
+pub(crate) fn describe(
+    conn: &Connection,
+    id: ClipId,
+    update: &ClipUpdate,
+) -> Result<usize, DbError> {
     let sql = "SELECT 1 FROM clips WHERE id = ?1";
     if !conn.prepare_cached(sql)?.exists(params![id.0])? {
         return Ok(0);

@@ -15,6 +15,8 @@ const WAIT: Duration = Duration::from_secs(5);
 pub struct MotionDb {
     pub(crate) conn: Connection,
     path: PathBuf,
+    /// Name under which steps are written down.
+    pub(crate) program: String,
 }
 
 /// Contents of a database in numbers.
@@ -60,6 +62,7 @@ impl MotionDb {
         Ok(Self {
             conn,
             path: path.to_owned(),
+            program: this_program(),
         })
     }
 
@@ -82,6 +85,7 @@ impl MotionDb {
         Ok(Self {
             conn,
             path: path.to_owned(),
+            program: this_program(),
         })
     }
 
@@ -109,6 +113,7 @@ impl MotionDb {
         Ok(Self {
             conn,
             path: path.to_owned(),
+            program: this_program(),
         })
     }
 
@@ -131,6 +136,7 @@ impl MotionDb {
         Ok(Self {
             conn,
             path: path.to_owned(),
+            program: this_program(),
         })
     }
 
@@ -140,6 +146,16 @@ impl MotionDb {
             .conn
             .pragma_query_value(None, "query_only", |row| row.get(0))?;
         Ok(query_only || self.conn.is_readonly("main")?)
+    }
+
+    /// Writes steps down under the name of a program; without it, under that of the file which runs.
+    pub fn set_program(&mut self, name: &str) {
+        name.clone_into(&mut self.program);
+    }
+
+    /// The name under which steps are written down.
+    pub fn program(&self) -> &str {
+        &self.program
     }
 
     /// Path of the file.
@@ -212,6 +228,13 @@ impl MotionDb {
             .execute_batch("VACUUM; PRAGMA wal_checkpoint(TRUNCATE);")?;
         Ok(())
     }
+}
+
+/// Name of the program that runs: of its file, without the ending.
+fn this_program() -> String {
+    let path = std::env::current_exe().unwrap_or_default();
+    let name = path.file_stem().unwrap_or_default();
+    name.to_string_lossy().into_owned()
 }
 
 /// Makes an empty file a database.

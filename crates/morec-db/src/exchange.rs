@@ -22,6 +22,7 @@ mod eaf;
 mod file_names;
 mod json;
 mod label_studio;
+mod resolve;
 #[cfg(test)]
 mod tests;
 mod tsv;
@@ -32,6 +33,7 @@ use morec::formats::ParseError;
 
 use annotation::text;
 pub use annotation::{Annotation, ClipLengths, LabelFormat, ReadLabels, snap};
+pub use resolve::{ResolvedLabels, clip_lengths, clip_of_file, resolve};
 
 impl LabelFormat {
     /// The form that a file's ending says; text files are Audacity's, JSON is distinguished by its content.

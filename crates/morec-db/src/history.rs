@@ -39,6 +39,8 @@ pub struct HistoryStep {
     pub set_secs: i64,
     /// True if it has been taken back.
     pub undone: bool,
+    /// Name of the program that made it; empty if it is not known.
+    pub made_by: String,
     /// Number of rows it touched, by table.
     pub rows: BTreeMap<String, usize>,
 }
@@ -55,14 +57,15 @@ pub(crate) fn counted(n: usize, what: &str) -> String {
 pub(crate) struct StepRecorder {
     pub(crate) step: i64,
     /// Rows written down before it have a number up to this.
-    after: i64,
+    pub(crate) after: i64,
 }
 
-/// Begins a step, or goes on with one that spans several transactions.
+/// Begins a step of a program, or goes on with one that spans several transactions.
 pub(crate) fn record(
     conn: &Connection,
     what: &str,
     step: Option<i64>,
+    program: &str,
 ) -> Result<StepRecorder, DbError> {
     let after = conn.query_row("SELECT coalesce(max(seq), 0) FROM was", [], |row| {
         row.get(0)
@@ -73,8 +76,8 @@ pub(crate) fn record(
             step
         }
         None => {
-            let sql = "INSERT INTO edits (what, set_secs) VALUES (?1, ?2)";
-            conn.execute(sql, params![what, now_secs()])?;
+            let sql = "INSERT INTO edits (what, set_secs, made_by) VALUES (?1, ?2, ?3)";
+            conn.execute(sql, params![what, now_secs(), program])?;
             conn.last_insert_rowid()
         }
     };
@@ -137,6 +140,7 @@ fn step(row: &Row<'_>) -> rusqlite::Result<HistoryStep> {
         what: row.get("what")?,
         set_secs: row.get("set_secs")?,
         undone: row.get("undone")?,
+        made_by: row.get("made_by")?,
         rows: BTreeMap::new(),
     })
 }
@@ -148,8 +152,9 @@ impl MotionDb {
         what: &str,
         change: impl FnOnce(&Connection) -> Result<T, DbError>,
     ) -> Result<T, DbError> {
+        let program = self.program.clone();
         let tx = self.write()?;
-        let recording = record(&tx, what, None)?;
+        let recording = record(&tx, what, None, &program)?;
         let done = change(&tx)?;
         recorded(&tx, what, &recording)?;
         tx.commit()?;
@@ -167,7 +172,7 @@ impl MotionDb {
 
     /// All steps that are remembered, the last one first.
     pub fn history(&self) -> Result<Vec<HistoryStep>, DbError> {
-        let sql = "SELECT id, what, set_secs, undone FROM edits ORDER BY id DESC";
+        let sql = "SELECT id, what, set_secs, undone, made_by FROM edits ORDER BY id DESC";
         let mut statement = self.conn.prepare(sql)?;
         let mut steps: Vec<HistoryStep> = statement
             .query_map([], step)?
@@ -190,7 +195,7 @@ impl MotionDb {
 
     /// The last step that was not taken back, without its rows.
     pub fn last_step(&self) -> Result<Option<HistoryStep>, DbError> {
-        let sql = "SELECT id, what, set_secs, undone FROM edits WHERE undone = 0 ORDER BY id DESC LIMIT 1";
+        let sql = "SELECT id, what, set_secs, undone, made_by FROM edits WHERE undone = 0 ORDER BY id DESC LIMIT 1";
         Ok(self.conn.query_row(sql, [], step).optional()?)
     }
 

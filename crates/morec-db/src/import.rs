@@ -144,8 +144,9 @@ impl MotionDb {
                     Some(made)
                 })
                 .collect();
+            let program = self.program.clone();
             let tx = self.write()?;
-            let recording = history::record(&tx, "import", step)?;
+            let recording = history::record(&tx, "import", step, &program)?;
             for (path, made) in batch.iter().zip(made) {
                 match made {
                     Some(made) => report.files.push((path.clone(), store(&tx, path, made)?)),

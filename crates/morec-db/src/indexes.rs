@@ -1,7 +1,8 @@
 //! Trained indexes, kept with what taught them.
 
-use rusqlite::{OptionalExtension, params};
+use rusqlite::{Connection, OptionalExtension, params};
 
+use crate::history::{digest, record};
 use crate::time::now_secs;
 use crate::{DbError, MotionDb, names};
 
@@ -18,6 +19,17 @@ pub struct IndexInfo {
     pub samples: usize,
     /// True if accepted samples or the clips that are background have changed since.
     pub stale: bool,
+}
+
+/// Keeps an index with what taught it.
+fn put(conn: &Connection, name: &str, taught: &str, bytes: &[u8]) -> Result<(), DbError> {
+    conn.execute(
+        "INSERT INTO indexes (name, trained_secs, samples, bytes) VALUES (?1, ?2, ?3, ?4) \
+         ON CONFLICT (name) DO UPDATE SET trained_secs = excluded.trained_secs, \
+         samples = excluded.samples, bytes = excluded.bytes",
+        params![name, now_secs(), taught, bytes],
+    )?;
+    Ok(())
 }
 
 impl MotionDb {
@@ -40,14 +52,21 @@ impl MotionDb {
     pub fn store_index(&mut self, name: &str, bytes: &[u8]) -> Result<(), DbError> {
         let taught = self.taught()?;
         self.edit(&format!("keep the index {name}"), |conn| {
-            conn.execute(
-                "INSERT INTO indexes (name, trained_secs, samples, bytes) VALUES (?1, ?2, ?3, ?4) \
-                 ON CONFLICT (name) DO UPDATE SET trained_secs = excluded.trained_secs, \
-                 samples = excluded.samples, bytes = excluded.bytes",
-                params![name, now_secs(), taught, bytes],
-            )?;
-            Ok(())
+            put(conn, name, &taught, bytes)
         })
+    }
+
+    /// Keeps the index that was trained last under a name, in place of the one before. It is no step of the history: taking back a
+    /// label after training takes back the label.
+    pub fn store_last_index(&mut self, name: &str, bytes: &[u8]) -> Result<(), DbError> {
+        let taught = self.taught()?;
+        let tx = self.write()?;
+        let recording = record(&tx, "", None, "")?;
+        put(&tx, name, &taught, bytes)?;
+        digest::follow(&tx, recording.step, recording.after)?;
+        tx.execute("DELETE FROM edits WHERE id = ?1", params![recording.step])?;
+        tx.commit()?;
+        Ok(())
     }
 
     /// The bytes of an index.

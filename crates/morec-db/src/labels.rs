@@ -8,11 +8,13 @@ mod classes;
 mod plan;
 mod sample;
 mod samples;
+mod whole;
 mod write;
 
 pub use classes::ClassCount;
 pub use plan::{ChangedLabel, LabelChange, LabelOptions, Labelled};
 pub use sample::{Added, DbSample, GROUPED_BY, NewSample, SampleFilter, SampleId, SampleState};
+pub use whole::WholeClip;
 
 #[cfg(test)]
 mod tests;

@@ -34,6 +34,7 @@ mod kept;
 pub mod labels;
 mod motion;
 mod names;
+mod places;
 mod propose;
 mod replace;
 pub mod rows;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use crate::panels;
-use crate::state::{Command, State};
+use crate::state::{Command, FileCommand, State};
 use crate::store::Wake;
 use crate::{dialogs, keys, theme};
 
@@ -19,12 +19,12 @@ pub struct Studio {
 }
 
 impl Studio {
-    /// With what was named on the command line: a database, clips, or nothing.
-    pub fn new(ctx: &egui::Context, paths: &[PathBuf]) -> Self {
+    /// With what was named on the command line: a database, clips, or nothing. Databases without a name lie in `unsaved`.
+    pub fn new(ctx: &egui::Context, paths: &[PathBuf], unsaved: PathBuf) -> Self {
         theme::install(ctx);
         let waker = ctx.clone();
         let wake: Wake = Arc::new(move || waker.request_repaint());
-        let mut state = State::new(wake);
+        let mut state = State::new(wake, unsaved);
         state.begin(paths);
         Self::of(state)
     }
@@ -38,8 +38,22 @@ impl Studio {
         }
     }
 
+    /// Asks before a window is closed whose database is not saved.
+    fn close(&mut self, ctx: &egui::Context) {
+        let requested = ctx.input(|i| i.viewport().close_requested());
+        if requested && !self.state.closing {
+            self.state.apply(Command::File(FileCommand::Close));
+            if !self.state.closing {
+                ctx.send_viewport_cmd(egui::ViewportCommand::CancelClose);
+            }
+        } else if self.state.closing && !requested {
+            ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+        }
+    }
+
     /// Draws one frame.
     pub fn frame(&mut self, ctx: &egui::Context) {
+        self.close(ctx);
         if self.themed != Some(self.state.dark) {
             self.themed = Some(self.state.dark);
             ctx.set_theme(if self.state.dark {

@@ -2,9 +2,10 @@
 //!
 //! A dialog is a value ([`Dialog`]) that a [`Chooser`] answers with paths: the system's, or one that a test gives.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
+use std::time::{Duration, Instant};
 
 use crate::state::{Ask, Command, FileCommand};
 
@@ -36,8 +37,8 @@ pub struct Dialog {
 
 /// Shows dialogs.
 pub trait Chooser: Send + Sync {
-    /// The paths that were chosen; empty if the dialog was cancelled. Called on a thread of its own.
-    fn choose(&self, dialog: &Dialog) -> Vec<PathBuf>;
+    /// The paths that were chosen, empty if the dialog was cancelled; `None` if none can be opened. Called on a thread of its own.
+    fn choose(&self, dialog: &Dialog) -> Option<Vec<PathBuf>>;
 }
 
 /// The dialogs of the system.
@@ -52,7 +53,8 @@ impl Chooser for SystemDialogs {
 
 #[cfg(feature = "window")]
 impl Chooser for SystemDialogs {
-    fn choose(&self, dialog: &Dialog) -> Vec<PathBuf> {
+    fn choose(&self, dialog: &Dialog) -> Option<Vec<PathBuf>> {
+        let begun = Instant::now();
         let mut shown = rfd::FileDialog::new().set_title(dialog.title);
         if let Some((name, ending)) = dialog.filter {
             shown = shown.add_filter(name, &[ending]);
@@ -61,12 +63,24 @@ impl Chooser for SystemDialogs {
             shown = shown.set_file_name(&dialog.file_name);
         }
         match dialog.choice {
-            DialogKind::File => shown.pick_file().into_iter().collect(),
-            DialogKind::Files => shown.pick_files().unwrap_or_default(),
-            DialogKind::Folders => shown.pick_folders().unwrap_or_default(),
-            DialogKind::Folder => shown.pick_folder().into_iter().collect(),
-            DialogKind::Save => shown.save_file().into_iter().collect(),
+            DialogKind::Files => shown.pick_files(),
+            DialogKind::Folders => shown.pick_folders(),
+            DialogKind::File => one(shown.pick_file(), begun),
+            DialogKind::Folder => one(shown.pick_folder(), begun),
+            DialogKind::Save => one(shown.save_file(), begun),
         }
+    }
+}
+
+/// Nobody sees a dialog and closes it in so short a time.
+const SOONEST: Duration = Duration::from_millis(250);
+
+/// A choice of one path. `rfd` reports a dialog that was cancelled and one that could not be opened alike: one that ended at once
+/// was not open.
+fn one(path: Option<PathBuf>, begun: Instant) -> Option<Vec<PathBuf>> {
+    match path {
+        None if begun.elapsed() < SOONEST => None,
+        path => Some(path.into_iter().collect()),
     }
 }
 
@@ -90,8 +104,11 @@ impl Dialogs {
         let (sender, answer) = channel();
         let (ctx, chooser) = (ctx.clone(), self.chooser.clone());
         let job = move || {
-            let paths = chooser.choose(&dialog(&ask));
-            if let Some(file) = command(&ask, paths) {
+            let file = match chooser.choose(&dialog(&ask)) {
+                Some(paths) => command(&ask, paths),
+                None => Some(FileCommand::NoDialog(ask)),
+            };
+            if let Some(file) = file {
                 // The window may be gone by now.
                 let _ = sender.send(Command::File(file));
             }
@@ -130,7 +147,7 @@ impl Dialogs {
 }
 
 /// The dialog of a question.
-fn dialog(ask: &Ask) -> Dialog {
+pub fn dialog(ask: &Ask) -> Dialog {
     const DATABASES: (&str, &str) = ("motion databases", "mdb");
     let shown = |choice, title, filter, name: &str| Dialog {
         choice,
@@ -145,6 +162,7 @@ fn dialog(ask: &Ask) -> Dialog {
         Ask::New => save("New database", DATABASES, "motions.mdb"),
         Ask::Import => open(DialogKind::Files, "Import clips", None),
         Ask::ImportFolder => open(DialogKind::Folders, "Import folders of clips", None),
+        Ask::ImportLabels => open(DialogKind::Files, "Import labels", None),
         Ask::Save => save("Save a copy of the database", DATABASES, "motions.mdb"),
         Ask::ExportIndex => save("Export the index", ("indexes", "index"), "studio.index"),
         Ask::ExportLabels(form) if form.is_of_one_clip() => open(
@@ -169,13 +187,41 @@ fn dialog(ask: &Ask) -> Dialog {
     }
 }
 
+/// A path as it is typed, with `~` for the home folder; `None` for nothing.
+pub fn typed_path(text: &str) -> Option<PathBuf> {
+    let text = text.trim();
+    let home = || std::env::var_os("HOME").map(PathBuf::from);
+    match text.strip_prefix("~/") {
+        Some(rest) => Some(home()?.join(rest)),
+        None => (!text.is_empty()).then(|| PathBuf::from(text)),
+    }
+}
+
+/// What speaks against a path that is typed, and the name of the button that takes it all the same, else `OK`.
+pub fn verdict(kind: DialogKind, path: &Path) -> (Option<String>, &'static str) {
+    let no = |text: &str| (Some(text.to_owned()), "OK");
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty());
+    match kind {
+        DialogKind::File | DialogKind::Files if !path.exists() => no("There is no such file."),
+        DialogKind::Folders if !path.is_dir() => no("There is no such folder."),
+        DialogKind::Save if path.is_dir() => no("This is a folder: add the name of the file."),
+        DialogKind::Save if path.exists() => {
+            let text = "There is a file already: it is written over.";
+            (Some(text.to_owned()), "Write over it")
+        }
+        DialogKind::Save if folder.is_some_and(|f| !f.is_dir()) => no("There is no such folder."),
+        _ => (None, "OK"),
+    }
+}
+
 /// The command of an answer; `None` if nothing was chosen.
-fn command(ask: &Ask, paths: Vec<PathBuf>) -> Option<FileCommand> {
+pub fn command(ask: &Ask, paths: Vec<PathBuf>) -> Option<FileCommand> {
     let first = paths.first()?.clone();
     Some(match ask {
         Ask::Open => FileCommand::Open(first),
         Ask::New => FileCommand::New(first),
         Ask::Import | Ask::ImportFolder => FileCommand::Import(paths),
+        Ask::ImportLabels => FileCommand::ImportLabels(paths),
         Ask::Save => FileCommand::Save(first),
         Ask::ExportIndex => FileCommand::ExportIndex(first),
         Ask::ExportLabels(form) => FileCommand::ExportLabels(*form, first),

@@ -55,6 +55,24 @@ pub fn utc(secs: i64) -> String {
     )
 }
 
+/// Changes of labels in words.
+pub fn changed_labels(counts: &morec_db::labels::Added) -> String {
+    let parts = [
+        (counts.added, "added"),
+        (counts.changed, "judged anew"),
+        (counts.moved, "moved"),
+        (counts.renamed, "renamed"),
+        (counts.gone, "gone"),
+        (counts.unchanged, "as before"),
+    ];
+    let parts = parts.into_iter().filter(|(n, _)| *n > 0);
+    let parts: Vec<String> = parts.map(|(n, what)| format!("{n} {what}")).collect();
+    match parts.is_empty() {
+        true => "no labels".to_owned(),
+        false => format!("labels: {}", parts.join(", ")),
+    }
+}
+
 /// One thing or several: `1 clip`, `2 clips`.
 pub fn count(n: usize, what: &str) -> String {
     // "class" becomes "classes", "stretch" "stretches".

@@ -3,8 +3,8 @@
 use egui::{Key, Modifiers};
 
 use crate::state::{
-    ClassCommand, Command, CompareCommand, CutCommand, FileCommand, Grip, LiveCommand, Panel,
-    PlayCommand, SimilarCommand, State, TimelineCommand, TrainCommand,
+    ClassCommand, Command, CompareCommand, CutCommand, FileCommand, Grip, LibraryCommand,
+    LiveCommand, Panel, PlayCommand, SimilarCommand, State, TimelineCommand, TrainCommand,
 };
 use crate::store::Edit;
 
@@ -39,6 +39,12 @@ pub const HELP: &[(&str, &str, &str)] = &[
     ),
     ("Anywhere", "Ctrl T", "train"),
     ("Anywhere", "Ctrl H, F1", "history, this page"),
+    ("Library", "Ctrl A", "select all clips of the list"),
+    (
+        "Library",
+        "1 … 9",
+        "the selected clips, as a whole, show this class",
+    ),
     (
         "Library",
         "B",
@@ -121,6 +127,10 @@ pub const HELP: &[(&str, &str, &str)] = &[
 
 /// Reads the keyboard into commands.
 pub fn read(ctx: &egui::Context, state: &State, out: &mut Vec<Command>) {
+    // A question is answered first.
+    if state.leaving.is_some() || state.undo_asks {
+        return;
+    }
     let typing = ctx.wants_keyboard_input();
     ctx.input_mut(|i| {
         commands(i, out);
@@ -185,6 +195,9 @@ fn commands(i: &mut egui::InputState, out: &mut Vec<Command>) {
 }
 
 fn library(i: &mut egui::InputState, state: &State, out: &mut Vec<Command>) {
+    if i.consume_key(Modifiers::COMMAND, Key::A) {
+        out.push(Command::Library(LibraryCommand::SelectAll));
+    }
     if !i.consume_key(Modifiers::NONE, Key::B) {
         return;
     }

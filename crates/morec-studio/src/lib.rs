@@ -11,6 +11,7 @@ mod format;
 mod jobs;
 mod keys;
 pub mod measure;
+mod name_pattern;
 mod panels;
 mod raster;
 mod screenshot;
@@ -21,6 +22,7 @@ mod stretch;
 #[cfg(test)]
 mod tests;
 mod theme;
+mod unsaved;
 mod window;
 
 pub use window::{Args, run};

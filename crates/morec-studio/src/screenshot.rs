@@ -71,7 +71,7 @@ pub struct Headless {
 impl Headless {
     pub fn new(paths: &[PathBuf], size: [usize; 2], scale: f32, dark: bool) -> Self {
         let ctx = egui::Context::default();
-        let mut studio = Studio::new(&ctx, paths);
+        let mut studio = Studio::new(&ctx, paths, std::env::temp_dir());
         studio.state.dark = dark;
         Self {
             ctx,
@@ -87,7 +87,7 @@ impl Headless {
     pub fn of(store: Store, motion: Arc<ClipMotion>, size: [usize; 2]) -> Self {
         let ctx = egui::Context::default();
         crate::theme::install(&ctx);
-        let mut state = State::new(Arc::new(|| {}));
+        let mut state = State::new(Arc::new(|| {}), std::env::temp_dir());
         state.store = Some(store);
         state.player.show(motion);
         let secs = state.player.secs();

@@ -8,6 +8,9 @@ use clap::Parser;
 use crate::screenshot::{self, Shot};
 use crate::state::Panel;
 
+/// Name of the program for the window system and for what is remembered.
+const APP: &str = "morec-studio";
+
 /// See motions, cut, sort and label them, train, and watch them recognised live
 ///
 /// A window over a motion database. Without a file it opens an example with synthetic people.
@@ -125,7 +128,7 @@ fn window(args: &Args) -> Result<(), String> {
     let options = eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default()
             .with_title("morec studio")
-            .with_app_id("morec-studio")
+            .with_app_id(APP)
             .with_inner_size([1400.0, 860.0])
             .with_min_inner_size([1000.0, 600.0])
             .with_drag_and_drop(true),
@@ -136,7 +139,10 @@ fn window(args: &Args) -> Result<(), String> {
     let (paths, light, panel) = (args.paths.clone(), args.light, args.panel);
     let make = move |cc: &eframe::CreationContext<'_>| {
         let layout: Option<Layout> = cc.storage.and_then(|s| eframe::get_value(s, LAYOUT));
-        let mut studio = Studio::new(&cc.egui_ctx, &paths);
+        // Beside the layout, where neither a restart nor a tidy temporary folder takes it away.
+        let unsaved = eframe::storage_dir(APP).map(|folder| folder.join("unsaved"));
+        let unsaved = unsaved.unwrap_or_else(std::env::temp_dir);
+        let mut studio = Studio::new(&cc.egui_ctx, &paths, unsaved);
         if let Some(layout) = &layout {
             studio.state.lay_out(layout);
             studio.state.show_again(layout);
@@ -148,7 +154,7 @@ fn window(args: &Args) -> Result<(), String> {
         }
         Ok(Box::new(studio) as Box<dyn eframe::App>)
     };
-    eframe::run_native("morec-studio", options, Box::new(make)).map_err(|error| {
+    eframe::run_native(APP, options, Box::new(make)).map_err(|error| {
         format!("no window can be opened: {error}; `--screenshot` draws a panel without one")
     })
 }

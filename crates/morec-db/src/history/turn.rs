@@ -97,7 +97,7 @@ impl MotionDb {
 }
 
 fn find(conn: &Connection, way: Way, wanted: Option<i64>) -> Result<Option<HistoryStep>, DbError> {
-    let columns = "SELECT id, what, set_secs, undone FROM edits";
+    let columns = "SELECT id, what, set_secs, undone, made_by FROM edits";
     let Some(id) = wanted else {
         let sql = match way {
             Way::Undo => format!("{columns} WHERE undone = 0 ORDER BY id DESC LIMIT 1"),
@@ -124,7 +124,7 @@ fn find(conn: &Connection, way: Way, wanted: Option<i64>) -> Result<Option<Histo
 /// Steps whose changes lie over those of a step: later ones; and, to do it again, earlier ones that are taken back.
 fn in_the_way(conn: &Connection, way: Way, id: i64) -> Result<Vec<HistoryStep>, DbError> {
     let mut statement = conn.prepare(
-        "SELECT e.id, e.what, e.set_secs, e.undone FROM edits e WHERE e.id <> ?1 \
+        "SELECT e.id, e.what, e.set_secs, e.undone, e.made_by FROM edits e WHERE e.id <> ?1 \
          AND (e.id > ?1 AND e.undone = 0 OR ?2 AND e.id < ?1 AND e.undone = 1) AND EXISTS \
          (SELECT 1 FROM was w JOIN was s ON s.tab = w.tab AND s.c0 = w.c0 WHERE w.edit = e.id AND s.edit = ?1 \
           AND (w.tab NOT IN ('tags', 'file_copies') OR w.c1 = s.c1)) ORDER BY e.id",
@@ -174,7 +174,7 @@ fn swap(tx: &Transaction<'_>, way: Way, step: &HistoryStep) -> Result<Vec<Effect
         })?;
         rows.collect::<Result<_, _>>()?
     };
-    let recording = record(tx, "", None)?;
+    let recording = record(tx, "", None, "")?;
     for (seq, table, present) in rows {
         let table = tracked(&table)
             .ok_or_else(|| DbError::Damaged(format!("history of a table {table}")))?;
@@ -211,7 +211,7 @@ fn swap(tx: &Transaction<'_>, way: Way, step: &HistoryStep) -> Result<Vec<Effect
 /// Steps whose rows went, too, though the step did not touch them.
 fn dependents(conn: &Connection, id: i64, recording: i64) -> Result<Vec<HistoryStep>, DbError> {
     let mut statement = conn.prepare(
-        "SELECT DISTINCT e.id, e.what, e.set_secs, e.undone FROM was w \
+        "SELECT DISTINCT e.id, e.what, e.set_secs, e.undone, e.made_by FROM was w \
          JOIN was o ON o.tab = w.tab AND o.c0 = w.c0 JOIN edits e ON e.id = o.edit \
          WHERE w.edit = ?2 AND e.id NOT IN (?1, ?2) AND e.undone = 0 \
          AND NOT EXISTS (SELECT 1 FROM was s WHERE s.edit = ?1 AND s.tab = w.tab AND s.c0 = w.c0) ORDER BY e.id",

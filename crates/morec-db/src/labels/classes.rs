@@ -108,6 +108,10 @@ impl MotionDb {
                 "UPDATE classes SET name = ?2 WHERE id = ?1",
                 params![id, to],
             )?;
+            // Its place goes with it; the old name keeps it too, for undoing.
+            let sql = "INSERT OR REPLACE INTO class_places (name, place) \
+                SELECT ?2, place FROM class_places WHERE name = ?1";
+            conn.execute(sql, params![from, to])?;
             Ok(())
         })
     }

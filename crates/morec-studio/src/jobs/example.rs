@@ -9,11 +9,14 @@ use morec::synth::{DatabaseSpec, SyntheticTake, database};
 use morec_db::labels::{NewSample, SampleState};
 use morec_db::{ClipUpdate, MotionDb};
 
+use super::import::ImportSummary;
 use super::progress::{JobError, JobProgress};
 use crate::store::BY;
 
 /// Seed of the people: the year of the thesis, as in the demo.
 const SEED: u64 = 2009;
+/// Name of the example's file.
+pub const NAME: &str = "example.mdb";
 /// Gestures of the example.
 pub const GESTURES: [&str; 4] = ["wave", "raise_hands", "clap", "bow"];
 
@@ -27,19 +30,20 @@ pub fn spec() -> DatabaseSpec {
     }
 }
 
-/// A folder of this run's own for what nobody has named yet.
-pub fn temporary_folder() -> std::io::Result<PathBuf> {
-    let folder = (0..)
-        .map(|n| std::env::temp_dir().join(format!("morec-studio-{}-{n}", std::process::id())))
-        .find(|folder| !folder.exists())
-        .unwrap_or_default();
-    std::fs::create_dir_all(&folder)?;
-    Ok(folder)
+/// A database that lies in a temporary folder now.
+pub struct MadeDatabase {
+    pub path: Option<PathBuf>,
+    /// Report on the clips that were named.
+    pub report: Option<ImportSummary>,
 }
 
 /// Makes the example in `folder`; all but the last person's gestures are labelled.
-pub fn make(folder: &Path, progress: &JobProgress) -> Result<PathBuf, JobError> {
+pub fn make(folder: &Path, progress: &JobProgress) -> Result<MadeDatabase, JobError> {
     make_in(folder, progress)
+        .map(|path| MadeDatabase {
+            path: Some(path),
+            report: None,
+        })
         .map_err(|why| JobError::Failed(format!("The example cannot be made: {why}")))
 }
 
@@ -57,7 +61,7 @@ fn make_in(folder: &Path, progress: &dyn Progress) -> Result<PathBuf, String> {
         files.push(path);
     }
     progress.report("into the database", 2, 3);
-    let path = folder.join("example.mdb");
+    let path = folder.join(NAME);
     let mut db = MotionDb::create(&path).map_err(|e| said(&e))?;
     db.import(&files, &FileReader::default(), &ClipUpdate::default(), &())
         .map_err(|e| said(&e))?;
@@ -94,20 +98,21 @@ fn describe(db: &mut MotionDb, takes: &[SyntheticTake]) -> Result<(), morec_db::
     Ok(())
 }
 
-/// A database in `folder` that holds clips which were named instead of one.
+/// A database in `folder` that holds clips which were named instead of one; without a path if none of them can be read.
 pub fn of_clips(
     folder: &Path,
     clips: &[PathBuf],
     progress: &JobProgress,
-) -> Result<PathBuf, JobError> {
-    let path = folder.join("clips.mdb");
-    MotionDb::create(&path).map_err(|error| JobError::Failed(error.to_string()))?;
+) -> Result<MadeDatabase, JobError> {
+    let failed = |error: morec_db::DbError| JobError::Failed(error.to_string());
+    let paths = (1..).map(|n| folder.join(format!("clips_{n}.mdb")));
+    let path = paths.into_iter().find(|p| !p.exists()).unwrap_or_default();
+    let mut db = MotionDb::create(&path).map_err(failed)?;
     let report = super::import::import(&path, clips, progress)?;
-    match report.refused.first() {
-        Some((file, why)) if report.imported == 0 => {
-            let file = crate::format::file_name(file);
-            Err(JobError::Failed(format!("{file}: {why}")))
-        }
-        _ => Ok(path),
-    }
+    // There is nothing of the person's own to take back yet.
+    db.forget_history().map_err(failed)?;
+    Ok(MadeDatabase {
+        path: (report.imported > 0).then_some(path),
+        report: Some(report),
+    })
 }

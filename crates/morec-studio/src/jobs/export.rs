@@ -4,9 +4,8 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 
 use morec::formats::bvh;
-use morec::labels::ClipLength;
 use morec::player::{Mark, PlayedClip, page};
-use morec_db::exchange::{self, Annotation, ClipLengths, LabelFormat};
+use morec_db::exchange::{self, Annotation, LabelFormat};
 use morec_db::labels::{SampleFilter, SampleState};
 use morec_db::{ClipFilter, ClipId, MotionDb};
 
@@ -66,13 +65,7 @@ fn labels(db: &MotionDb, form: LabelFormat, path: &Path) -> Result<String, Strin
     let clips = db
         .clips(&ClipFilter::default())
         .map_err(|e| e.to_string())?;
-    let lengths: ClipLengths = clips
-        .into_iter()
-        .map(|c| {
-            let (frames, rate_hz) = (c.frames, c.rate_hz);
-            (c.name, ClipLength { frames, rate_hz })
-        })
-        .collect();
+    let lengths = exchange::clip_lengths(&clips);
     let said = format::count(annotations.len(), "label");
     if !form.is_of_one_clip() {
         let text = exchange::write(form, &annotations, &lengths)?;

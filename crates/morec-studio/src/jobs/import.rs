@@ -8,6 +8,7 @@ use morec::progress::Progress;
 use morec_db::search::{SearchIndex, near_duplicates_of};
 use morec_db::{ClipFilter, ClipId, ClipUpdate, DbError, ImportLog, ImportOutcome, MotionDb};
 
+use super::label_files::{beside, is_labels};
 use super::progress::{JobError, JobProgress};
 use crate::stretch::Stretch;
 
@@ -27,6 +28,9 @@ pub struct ImportSummary {
     /// Clips that are nearly others.
     pub copies: Vec<CopiedStretch>,
     pub cancelled: bool,
+    /// Files of labels among what was named, and those beside it that name clips of the database.
+    pub labels: Vec<PathBuf>,
+    pub beside: Vec<PathBuf>,
 }
 
 /// A clip that has come and is nearly another.
@@ -40,6 +44,15 @@ pub struct CopiedStretch {
 }
 
 impl ImportSummary {
+    /// True if there is more to say than the number of files.
+    pub fn says_anything(&self) -> bool {
+        !self.refused.is_empty()
+            || !self.warnings.is_empty()
+            || !self.copies.is_empty()
+            || !self.labels.is_empty()
+            || !self.beside.is_empty()
+    }
+
     /// Summary in a sentence.
     pub fn said(&self) -> String {
         let mut parts = vec![files(self.imported, "imported")];
@@ -74,7 +87,10 @@ pub fn import(
 ) -> Result<ImportSummary, JobError> {
     let mut report = ImportSummary::default();
     let mut clips = Vec::new();
-    for path in paths {
+    let (labels, paths): (Vec<PathBuf>, Vec<PathBuf>) =
+        paths.iter().cloned().partition(|path| is_labels(path));
+    report.labels = labels;
+    for path in &paths {
         match list(std::slice::from_ref(path)) {
             Ok(listing) => {
                 clips.extend(listing.clips);
@@ -89,6 +105,9 @@ pub fn import(
     let imported = MotionDb::open(db).and_then(|mut db| {
         let done = db.import(&clips, &reader, &about, progress)?;
         let copies = copies(&mut db, &done, progress)?;
+        progress.report("looking for labels", 0, 0);
+        report.beside = beside(&db.clips(&ClipFilter::default())?, &paths);
+        report.beside.retain(|path| !report.labels.contains(path));
         Ok((done, copies))
     });
     let done = match imported {

@@ -8,6 +8,7 @@ pub mod export;
 pub mod group;
 pub mod import;
 pub mod judge;
+pub mod label_files;
 pub mod load;
 pub mod nearest;
 mod progress;
@@ -29,6 +30,8 @@ pub use progress::{JobError, JobProgress, JobStage};
 /// Result of a job.
 pub enum JobOutcome {
     Imported(import::ImportSummary),
+    /// Labels of files, not yet applied.
+    LabelsRead(label_files::LabelFiles),
     Cut(cut::CutSummary),
     Loaded(load::DecodedClip),
     Curves(cut::Curves),
@@ -49,8 +52,8 @@ pub enum JobOutcome {
     Map(thesis::Map),
     /// A file was written: what to say of it.
     Written(String),
-    /// An example, or clips that were named, lie in a database of this path now.
-    Made(std::path::PathBuf),
+    /// An example, or clips that were named, lie in a database now.
+    Made(example::MadeDatabase),
     Stopped(JobError),
 }
 

@@ -2,11 +2,12 @@
 
 use egui::{Align, Button, Context, Frame, Layout, Margin, RichText, TopBottomPanel, Ui, Vec2};
 
+use morec_db::HistoryStep;
 use morec_db::exchange::LabelFormat;
 
 use super::Out;
 use crate::state::{Command, FileCommand, Panel, State};
-use crate::store::Edit;
+use crate::store::{Edit, Snapshot};
 use crate::theme::Colours;
 
 pub fn top(ctx: &Context, state: &State, out: Out) {
@@ -45,6 +46,7 @@ fn file_menu(ui: &mut Ui, state: &State, out: Out) {
         ui.separator();
         item(ui, ("Import clips …", "Ctrl I"), true, AskImport, out);
         item(ui, ("Import a folder …", ""), true, AskImportFolder, out);
+        item(ui, ("Import labels …", ""), open, AskImportLabels, out);
         ui.separator();
         item(ui, ("Save a copy as …", "Ctrl S"), open, AskSave, out);
         if let Some(last) = state.last.as_ref().filter(|p| p.exists()) {
@@ -149,7 +151,7 @@ fn right(ui: &mut Ui, state: &State, out: Out) {
     let names = state.store.as_ref().map(|s| {
         let snapshot = &s.snapshot;
         (
-            snapshot.undo_name().map(str::to_owned),
+            snapshot.undo_step().map(|step| named(snapshot, step)),
             snapshot.redo_name().map(str::to_owned),
         )
     });
@@ -170,6 +172,14 @@ fn right(ui: &mut Ui, state: &State, out: Out) {
         if response.clicked() {
             out.push(Command::Edit(edit));
         }
+    }
+}
+
+/// A step by its name, with the program that made it, if that is another.
+fn named(snapshot: &Snapshot, step: &HistoryStep) -> String {
+    match snapshot.is_foreign(step) {
+        true => format!("{}, by {}", step.what, step.made_by),
+        false => step.what.clone(),
     }
 }
 

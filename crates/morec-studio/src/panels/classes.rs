@@ -117,7 +117,7 @@ fn columns(ui: &mut Ui, state: &State, out: Out) {
     let height = ui.available_height();
     ScrollArea::horizontal().auto_shrink(false).show(ui, |ui| {
         ui.horizontal_top(|ui| {
-            for (place, class) in state.classes.order.iter().enumerate() {
+            for (place, class) in state.classes.placed() {
                 let all = &store.snapshot.samples;
                 let places = state.classes.columns.column(class).iter();
                 let samples: Vec<&DbSample> = places.filter_map(|&at| all.get(at)).collect();

@@ -3,7 +3,7 @@
 use egui::{Grid, TextEdit, Ui, WidgetType};
 use morec_db::{ClipInfo, ClipUpdate};
 
-use super::{Out, background, roles, widgets};
+use super::{Out, background, roles, whole, widgets};
 use crate::format;
 use crate::state::{Command, State};
 use crate::store::Edit;
@@ -20,6 +20,10 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
     };
     known(ui, clip, out);
     ui.add_space(2.0);
+    ui.horizontal(|ui| {
+        whole::menu(ui, state, &[clip.id], out);
+        whole::new_class(ui, &[clip.id], out);
+    });
     if ui.button("Remove this clip").clicked() {
         out.push(Command::Edit(Edit::RemoveClips(vec![clip.id])));
     }
@@ -54,9 +58,36 @@ fn several(ui: &mut Ui, state: &State, out: Out) {
         ui.label("Background");
         background::mark(ui, &clips, out);
     });
+    ui.horizontal(|ui| {
+        ui.label("Add tags");
+        if let Some(text) = committed(ui, "Tags of all", "") {
+            let update = ClipUpdate {
+                add_tags: tags_of(&text),
+                ..ClipUpdate::default()
+            };
+            if !update.add_tags.is_empty() {
+                out.push(Command::Edit(Edit::Describe {
+                    clips: selected.clone(),
+                    update,
+                }));
+            }
+        }
+    });
+    ui.horizontal(|ui| {
+        whole::menu(ui, state, selected, out);
+        whole::new_class(ui, selected, out);
+    });
+    whole::from_names(ui, state, &clips, out);
+    ui.add_space(4.0);
     if ui.button("Remove these clips").clicked() {
         out.push(Command::Edit(Edit::RemoveClips(selected.clone())));
     }
+}
+
+/// Tags as they are typed, parted by commas.
+fn tags_of(text: &str) -> Vec<String> {
+    let tags = text.split(',').map(|tag| tag.trim().to_owned());
+    tags.filter(|tag| !tag.is_empty()).collect()
 }
 
 /// A field whose text counts once Enter is pressed or it is left.
@@ -116,11 +147,7 @@ fn known(ui: &mut Ui, clip: &ClipInfo, out: Out) {
             name(ui, "Tags");
             let tags = clip.tags.join(", ");
             if let Some(text) = committed(ui, "Tags", &tags) {
-                let wanted: Vec<String> = text
-                    .split(',')
-                    .map(|t| t.trim().to_owned())
-                    .filter(|t| !t.is_empty())
-                    .collect();
+                let wanted = tags_of(&text);
                 let gone = clip.tags.iter().filter(|t| !wanted.contains(t)).cloned();
                 describe(ClipUpdate {
                     remove_tags: gone.collect(),

@@ -42,7 +42,11 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
                     for step in &steps[rows] {
                         ui.horizontal(|ui| {
                             ui.set_height(24.0);
-                            let text = RichText::new(&step.what);
+                            let by = match store.snapshot.is_foreign(step) {
+                                true => format!(", by {}", step.made_by),
+                                false => String::new(),
+                            };
+                            let text = RichText::new(format!("{}{by}", step.what));
                             let text = if step.undone {
                                 text.color(c.muted).strikethrough()
                             } else {

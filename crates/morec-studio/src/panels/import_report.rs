@@ -3,8 +3,9 @@
 use egui::{RichText, ScrollArea, Ui};
 
 use super::Out;
+use crate::format;
 use crate::jobs::import::ImportSummary;
-use crate::state::{Command, CompareCommand, LibraryCommand, State};
+use crate::state::{Command, CompareCommand, FileCommand, LibraryCommand, State};
 use crate::store::Edit;
 use crate::theme::Colours;
 
@@ -38,6 +39,7 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
             });
             let lines = report.refused.iter().map(|line| (line, "refused"));
             let lines = lines.chain(report.warnings.iter().map(|line| (line, "note")));
+            beside(ui, report, out);
             ScrollArea::vertical()
                 .id_salt("report")
                 .max_height(120.0)
@@ -51,6 +53,28 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
                 });
         });
     ui.add_space(6.0);
+}
+
+/// Labels that lie beside the clips.
+fn beside(ui: &mut Ui, report: &ImportSummary, out: Out) {
+    let text = match &report.beside[..] {
+        [] => return,
+        [one] => format!(
+            "{} beside them holds labels of clips",
+            format::file_name(one)
+        ),
+        many => format!(
+            "{} beside them hold labels of clips",
+            format::count(many.len(), "file")
+        ),
+    };
+    ui.horizontal(|ui| {
+        ui.label(text);
+        if ui.button("Look at the labels").clicked() {
+            let command = FileCommand::ImportLabels(report.beside.clone());
+            out.push(Command::File(command));
+        }
+    });
 }
 
 /// What was imported is motion that is none of the classes.

@@ -98,8 +98,8 @@ fn clips(ui: &mut Ui, state: &State, out: Out) {
 
 fn classes(ui: &mut Ui, state: &State, out: Out) {
     widgets::section(ui, "CLASSES");
-    for place in 0..state.classes.order.len() {
-        class(ui, state, place, out);
+    for (place, name) in state.classes.placed() {
+        class(ui, state, place, name, out);
     }
     add_class(ui, state, out);
     ui.add_space(8.0);
@@ -108,9 +108,8 @@ fn classes(ui: &mut Ui, state: &State, out: Out) {
     help(ui, state, out);
 }
 
-fn class(ui: &mut Ui, state: &State, place: usize, out: Out) {
+fn class(ui: &mut Ui, state: &State, place: usize, name: &str, out: Out) {
     let c = Colours::now(ui);
-    let name = &state.classes.order[place];
     let held = state.classes.held.as_ref().is_some_and(|h| h.slot == place);
     if let Some((from, now)) = state
         .classes
@@ -163,7 +162,7 @@ fn class(ui: &mut Ui, state: &State, place: usize, out: Out) {
     let info = state
         .store
         .as_ref()
-        .and_then(|s| s.snapshot.classes.iter().find(|i| i.name == *name));
+        .and_then(|s| s.snapshot.classes.iter().find(|i| i.name == name));
     let count = match info {
         Some(i) if i.proposed > 0 => format!("{} + {}?", i.accepted, i.proposed),
         Some(i) => i.accepted.to_string(),
@@ -179,7 +178,7 @@ fn class(ui: &mut Ui, state: &State, place: usize, out: Out) {
     let response = response.on_hover_text("Click labels the selected stretch, or changes the selected label. Right click renames, removes.");
     if response.clicked() {
         let command = match state.timeline.range {
-            Some(_) => Command::Timeline(TimelineCommand::LabelRange(name.clone())),
+            Some(_) => Command::Timeline(TimelineCommand::LabelRange(name.to_owned())),
             None => Command::Classes(ClassCommand::Key {
                 slot: place,
                 down: true,
@@ -193,16 +192,27 @@ fn class(ui: &mut Ui, state: &State, place: usize, out: Out) {
     }
     response.context_menu(|ui| {
         if ui.button("Rename").clicked() {
-            let now = Some((name.clone(), name.clone()));
+            let now = Some((name.to_owned(), name.to_owned()));
             out.push(Command::Classes(ClassCommand::Renaming(now)));
             ui.close();
         }
+        ui.menu_button("Give it the key …", |ui| {
+            for key in 0..9 {
+                let whose = state.classes.at(key).unwrap_or("free");
+                if ui.button(format!("{}  {whose}", key + 1)).clicked() {
+                    let (class, place) = (name.to_owned(), key);
+                    let command = ClassCommand::GiveKey { class, place };
+                    out.push(Command::Classes(command));
+                    ui.close();
+                }
+            }
+        });
         if ui.button("Give it the key Q").clicked() {
-            out.push(Command::Classes(ClassCommand::Choose(name.clone())));
+            out.push(Command::Classes(ClassCommand::Choose(name.to_owned())));
             ui.close();
         }
         if ui.button("Remove the class and its labels").clicked() {
-            out.push(Command::Classes(ClassCommand::Remove(name.clone())));
+            out.push(Command::Classes(ClassCommand::Remove(name.to_owned())));
             ui.close();
         }
     });

@@ -6,7 +6,7 @@ use egui::{
 };
 use morec_db::{BACKGROUND, ClipInfo};
 
-use super::{Out, background, details, import_report, padded, strips, view, widgets};
+use super::{Out, background, details, import_report, padded, strips, view, whole, widgets};
 use crate::format;
 use crate::state::{Column, Command, FileCommand, LibraryCommand, State};
 use crate::theme::Colours;
@@ -186,6 +186,16 @@ fn called(clip: &ClipInfo) -> String {
     }
 }
 
+/// The menu of a clip; that of a selected one is for all that are selected.
+fn clip_menu(ui: &mut Ui, state: &State, clip: &ClipInfo, out: Out) {
+    let selected = &state.library.selected;
+    match selected.contains(&clip.id) {
+        true => whole::menu(ui, state, selected, out),
+        false => whole::menu(ui, state, &[clip.id], out),
+    }
+    background::menu(ui, state, clip, out);
+}
+
 /// A clip as a strip of poses over its whole length, with its name at the left.
 fn strip(ui: &mut Ui, state: &State, clip: &ClipInfo, out: Out) {
     let c = Colours::now(ui);
@@ -193,7 +203,7 @@ fn strip(ui: &mut Ui, state: &State, clip: &ClipInfo, out: Out) {
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
     let on = state.library.selected.contains(&clip.id);
     widgets::named(&response, WidgetType::SelectableLabel, called(clip), on);
-    response.context_menu(|ui| background::menu(ui, state, clip, out));
+    response.context_menu(|ui| clip_menu(ui, state, clip, out));
     ground(ui, rect, &response, on);
     let names = (0.26 * rect.width()).clamp(90.0, 190.0);
     let text = rect
@@ -263,7 +273,7 @@ fn row(ui: &mut Ui, state: &State, clip: &ClipInfo, out: Out) {
         ui.allocate_exact_size(Vec2::new(ui.available_width(), ROW), Sense::click());
     let on = state.library.selected.contains(&clip.id);
     widgets::named(&response, WidgetType::SelectableLabel, called(clip), on);
-    response.context_menu(|ui| background::menu(ui, state, clip, out));
+    response.context_menu(|ui| clip_menu(ui, state, clip, out));
     ground(ui, rect, &response, on);
     let labels = match clip.samples {
         0 if clip.is_background() => BACKGROUND.to_owned(),

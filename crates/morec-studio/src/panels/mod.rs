@@ -10,17 +10,21 @@ mod compare;
 mod curves;
 mod cuts;
 mod details;
+mod drop;
 mod groups;
 mod help;
 mod history;
 mod import_report;
 mod label;
+mod label_files;
+mod leave;
 mod library;
 mod live;
 mod live_line;
 mod matrix;
 mod moments;
 mod notices;
+mod path_field;
 mod player;
 mod roles;
 mod scale;
@@ -31,7 +35,9 @@ mod thesis;
 mod timeline;
 mod tracks;
 mod train;
+mod undo;
 mod view;
+mod whole;
 mod widgets;
 
 use egui::{CentralPanel, Context};
@@ -51,6 +57,11 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
     help::show(ctx, state, out);
     chooser::show(ctx, state, out);
     history::show(ctx, state, out);
+    label_files::show(ctx, state, out);
+    path_field::show(ctx, state, out);
+    undo::show(ctx, state, out);
+    leave::show(ctx, state, out);
+    drop::show(ctx, state);
     if state.store.is_none() {
         return empty(ctx, state, out);
     }
@@ -82,6 +93,7 @@ fn empty(ctx: &Context, state: &State, out: Out) {
                 );
                 return;
             }
+            import_report::show(ui, state, out);
             ui.heading("No database is open");
             ui.colored_label(c.muted, "Drop clips or a database here, or");
             widgets::file_buttons(ui, out);

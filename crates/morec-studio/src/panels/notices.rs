@@ -1,39 +1,104 @@
-//! Notices of errors, shown until they are dismissed.
+//! Notices of errors, shown until they are dismissed; what is not saved, until it is.
 
-use egui::{Context, Frame, Margin, TopBottomPanel};
+use egui::{Align, Color32, Context, Frame, Layout, Margin, TopBottomPanel, Ui};
 
 use super::Out;
-use crate::state::{Command, State};
+use crate::format;
+use crate::state::{Command, FileCommand, State};
 use crate::theme::Colours;
 
 /// Number of notices that are shown at once.
 const SHOWN: usize = 3;
 
 pub fn show(ctx: &Context, state: &State, out: Out) {
+    leftovers(ctx, state, out);
+    unsaved(ctx, state, out);
     if state.notices.is_empty() {
         return;
     }
     let c = Colours::of(state.dark);
-    let fill = c.panel.lerp_to_gamma(c.bad, 0.16);
-    let frame = Frame::new()
-        .fill(fill)
-        .inner_margin(Margin::symmetric(12, 6));
-    TopBottomPanel::top("notices").frame(frame).show(ctx, |ui| {
+    strip(ctx, "notices", (&c, c.bad), |ui| {
         for (at, notice) in state.notices.iter().enumerate().take(SHOWN) {
-            ui.horizontal(|ui| {
-                ui.colored_label(c.bad, "⚠");
-                ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                    if ui.button("Dismiss").clicked() {
-                        out.push(Command::Dismiss(at));
-                    }
-                    ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-                        ui.add(egui::Label::new(&notice.text).wrap());
-                    });
-                });
+            line(ui, c.bad, &notice.text, |ui| {
+                if ui.button("Dismiss").clicked() {
+                    out.push(Command::Dismiss(at));
+                }
             });
         }
         if state.notices.len() > SHOWN {
             ui.label(format!("and {} more", state.notices.len() - SHOWN));
+        }
+    });
+}
+
+/// A strip below the bar at the top.
+fn strip(
+    ctx: &Context,
+    name: &'static str,
+    (c, colour): (&Colours, Color32),
+    add: impl FnOnce(&mut Ui),
+) {
+    let frame = Frame::new()
+        .fill(c.panel.lerp_to_gamma(colour, 0.16))
+        .inner_margin(Margin::symmetric(12, 6));
+    TopBottomPanel::top(name).frame(frame).show(ctx, add);
+}
+
+/// A sentence at the left, buttons at the right.
+fn line(ui: &mut Ui, colour: Color32, text: &str, buttons: impl FnOnce(&mut Ui)) {
+    ui.horizontal(|ui| {
+        ui.colored_label(colour, "⚠");
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            buttons(ui);
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                ui.add(egui::Label::new(text).wrap());
+            });
+        });
+    });
+}
+
+/// What was done is in a database without a name of its own.
+fn unsaved(ctx: &Context, state: &State, out: Out) {
+    if !state.is_unsaved() {
+        return;
+    }
+    let c = Colours::of(state.dark);
+    strip(ctx, "unsaved", (&c, c.warn), |ui| {
+        let text = "Not saved yet: this database has no file of its own.";
+        line(ui, c.warn, text, |ui| {
+            if ui.button("Save as …").clicked() {
+                out.push(Command::File(FileCommand::AskSave));
+            }
+        });
+    });
+}
+
+/// Databases that earlier runs left without saving them.
+fn leftovers(ctx: &Context, state: &State, out: Out) {
+    if state.leftovers.is_empty() {
+        return;
+    }
+    let c = Colours::of(state.dark);
+    strip(ctx, "leftovers", (&c, c.warn), |ui| {
+        for (at, left) in state.leftovers.iter().enumerate().take(SHOWN) {
+            let when = left.changed_secs.map(format::utc).unwrap_or_default();
+            let what = match left.contents {
+                Some((clips, labels)) => format!(
+                    "{} and {}, last changed {when}",
+                    format::count(clips as usize, "clip"),
+                    format::count(labels as usize, "label")
+                ),
+                None => "it cannot be read".to_owned(),
+            };
+            let text = format!("A database was left without being saved: {what}.");
+            line(ui, c.warn, &text, |ui| {
+                if ui.button("Discard it").clicked() {
+                    out.push(Command::File(FileCommand::DiscardLeftover(at)));
+                }
+                if ui.button("Open it").clicked() {
+                    out.push(Command::File(FileCommand::OpenLeftover(at)));
+                }
+            });
         }
     });
 }

@@ -21,12 +21,11 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
     ui.label(RichText::new(hint).size(12.0).color(c.muted));
     let on = state.live.run.is_some() && !state.live.teaching;
     ui.horizontal_wrapped(|ui| {
-        let order = &state.classes.order;
-        for (place, class) in order.iter().enumerate() {
+        for (place, class) in state.classes.placed() {
             let key = state.classes.key_of(place);
             let fill = c.panel.lerp_to_gamma(c.class(Some(place)), 0.35);
             let text = match key.is_empty() {
-                true => class.clone(),
+                true => class.to_owned(),
                 false => format!("{key}  {class}"),
             };
             let button = egui::Button::new(text).fill(fill);
@@ -38,10 +37,10 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
                 false,
             );
             if response.clicked() {
-                out.push(Command::Live(LiveCommand::MarkAs(class.clone())));
+                out.push(Command::Live(LiveCommand::MarkAs(class.to_owned())));
             }
         }
-        let next = order.len();
+        let next = state.classes.free_place();
         let text = format!(
             "{}a new gesture",
             if next < 9 {

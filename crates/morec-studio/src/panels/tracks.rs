@@ -103,7 +103,7 @@ pub fn labels(ui: &mut Ui, state: &State, scale: &Scale, out: Out) {
         return;
     }
     let mut drawn = 0;
-    for (place, class) in state.classes.order.iter().enumerate() {
+    for (place, class) in state.classes.placed() {
         if !has_track(state, place, class) {
             continue;
         }

@@ -163,7 +163,10 @@ fn indexes(ui: &mut Ui, state: &State, out: Out) {
     }
     for index in &store.snapshot.indexes {
         ui.horizontal(|ui| {
-            if ui.small_button("Use").clicked() {
+            let response = ui.small_button("Use");
+            let name = format!("Use {}", index.name);
+            widgets::named(&response, egui::WidgetType::Button, name, false);
+            if response.clicked() {
                 out.push(Command::Train(TrainCommand::UseIndex(index.name.clone())));
             }
             ui.label(&index.name);

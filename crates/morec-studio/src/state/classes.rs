@@ -1,6 +1,6 @@
 //! Classes: which key labels which, what is proposed, what is alike.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::columns::ClassColumns;
 use crate::jobs::group::ClusteredItems;
@@ -20,8 +20,10 @@ pub struct Held {
 /// The classes' own state.
 #[derive(Default)]
 pub struct Classes {
-    /// The classes in the order of their keys: 1 to 9, then none.
+    /// The classes in the order of their places: those of the keys 1 to 9, then others.
     pub order: Vec<String>,
+    /// Their places, by which they have keys and colours; also of classes that are gone.
+    places: BTreeMap<String, usize>,
     /// Classes that were named and have no label yet.
     pub added: Vec<String>,
     pub held: Option<Held>,
@@ -49,8 +51,9 @@ pub struct Classes {
 }
 
 impl Classes {
-    /// Keeps the order of the classes that are there, new ones behind.
-    pub(super) fn follow(&mut self, snapshot: &Snapshot) {
+    /// Takes the classes that are there, each at its place. Gives the places of new ones.
+    pub(super) fn follow(&mut self, snapshot: &Snapshot) -> BTreeMap<String, usize> {
+        self.places.extend(snapshot.places.clone());
         self.columns = ClassColumns::of(snapshot);
         let there: BTreeSet<&str> = snapshot.classes.iter().map(|c| c.name.as_str()).collect();
         self.added.retain(|name| !there.contains(name.as_str()));
@@ -62,11 +65,86 @@ impl Classes {
                 self.order.push(class.name.clone());
             }
         }
+        self.settle()
+    }
+
+    /// Gives places to the classes that have none, and brings all into their order. Gives the new places.
+    fn settle(&mut self) -> BTreeMap<String, usize> {
+        let place = |name: &String| self.places.get(name).copied().unwrap_or(usize::MAX);
+        self.order.sort_by_key(place);
+        let (mut taken, mut new) = (BTreeSet::new(), Vec::new());
+        for name in &self.order {
+            match self.places.get(name) {
+                Some(place) if taken.insert(*place) => {}
+                _ => new.push(name.clone()),
+            }
+        }
+        let free = (0..).filter(|place| !taken.contains(place));
+        let new: BTreeMap<String, usize> = new.into_iter().zip(free).collect();
+        self.places.extend(new.clone());
+        self.order
+            .sort_by_key(|name| self.places.get(name).copied());
+        new
+    }
+
+    /// A new class without a label, at a place or at the first that is free. Gives new places.
+    pub(super) fn add(&mut self, name: &str, place: Option<usize>) -> BTreeMap<String, usize> {
+        self.added.push(name.to_owned());
+        self.order.push(name.to_owned());
+        let Some(place) = place else {
+            return self.settle();
+        };
+        self.places.insert(name.to_owned(), place);
+        self.settle();
+        [(name.to_owned(), place)].into()
+    }
+
+    /// Gives a class the place of another, which takes its own. Gives the new places.
+    pub(super) fn swap(&mut self, class: &str, place: usize) -> BTreeMap<String, usize> {
+        let (Some(from), there) = (self.place(class), self.at(place).map(str::to_owned)) else {
+            return BTreeMap::new();
+        };
+        let mut new = BTreeMap::from([(class.to_owned(), place)]);
+        new.extend(there.map(|other| (other, from)));
+        self.places.extend(new.clone());
+        self.settle();
+        new
+    }
+
+    /// Gives a class another name; its place stays.
+    pub(super) fn rename(&mut self, from: &str, to: &str) {
+        for name in self.order.iter_mut().filter(|n| *n == from) {
+            to.clone_into(name);
+        }
+        if let Some(place) = self.places.get(from) {
+            self.places.insert(to.to_owned(), *place);
+        }
     }
 
     /// The place of a class, which its colour and its key go by.
     pub fn place(&self, class: &str) -> Option<usize> {
-        self.order.iter().position(|name| name == class)
+        let there = self.order.iter().any(|name| name == class);
+        self.places.get(class).copied().filter(|_| there)
+    }
+
+    /// The class at a place.
+    pub fn at(&self, place: usize) -> Option<&str> {
+        let mut placed = self.placed();
+        placed.find(|(at, _)| *at == place).map(|(_, name)| name)
+    }
+
+    /// The classes with their places, in their order.
+    pub fn placed(&self) -> impl Iterator<Item = (usize, &str)> {
+        let place = |name: &String| self.places.get(name).copied().unwrap_or(usize::MAX);
+        self.order
+            .iter()
+            .map(move |name| (place(name), name.as_str()))
+    }
+
+    /// The first place that no class has.
+    pub fn free_place(&self) -> usize {
+        let taken: BTreeSet<usize> = self.placed().map(|(place, _)| place).collect();
+        (0..).find(|place| !taken.contains(place)).unwrap_or(0)
     }
 
     /// The place of the class of the key Q.
@@ -109,7 +187,7 @@ impl Classes {
     }
 
     /// A name for the class of a key that has none yet.
-    pub(super) fn free_name(&self) -> String {
+    pub fn free_name(&self) -> String {
         (1..)
             .map(|n| format!("gesture {n}"))
             .find(|name| !self.order.contains(name))

@@ -60,6 +60,8 @@ pub enum Command {
     Dark(bool),
     ShowHistory(bool),
     ShowKeys(bool),
+    /// Asks whether a step of another program shall be taken back.
+    UndoAsks(bool),
     Dismiss(usize),
     File(FileCommand),
     Edit(Edit),
@@ -89,6 +91,12 @@ pub enum FileCommand {
     Open(PathBuf),
     New(PathBuf),
     Import(Vec<PathBuf>),
+    AskImportLabels,
+    /// Reads files of labels for a look at what they would change; the next three say what becomes of them.
+    ImportLabels(Vec<PathBuf>),
+    ReplaceLabels(bool),
+    ApplyLabels,
+    DismissLabels,
     Save(PathBuf),
     ExportIndex(PathBuf),
     /// Labels of all clips in a form.
@@ -100,6 +108,36 @@ pub enum FileCommand {
     ExportLabels(LabelFormat, PathBuf),
     ExportClip(PathBuf),
     ExportPage(PathBuf),
+    /// No dialog can be opened: a path is typed.
+    NoDialog(Ask),
+    /// The path so far; `None` ends typing.
+    Typing(Option<String>),
+    /// Closes the window, after a question if there is something to save.
+    Close,
+    /// Opens, or removes, the database of this place that an earlier run left.
+    OpenLeftover(usize),
+    DiscardLeftover(usize),
+    /// The answers to the question whether the database shall be saved before it is left.
+    LeaveSaving,
+    LeaveDiscarding,
+    Stay,
+}
+
+impl FileCommand {
+    /// True if the database that is open is left.
+    pub fn leaves(&self) -> bool {
+        use FileCommand::{Close, New, Open, OpenLeftover};
+        matches!(self, Close | Open(_) | New(_) | OpenLeftover(_))
+    }
+}
+
+/// A path that is typed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct TypedPath {
+    pub ask: Ask,
+    pub text: String,
+    /// True once the field has been shown.
+    pub begun: bool,
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -122,6 +160,10 @@ pub enum LibraryCommand {
         stop_secs: f64,
     },
     DismissReport,
+    /// Selects all clips of the list.
+    SelectAll,
+    /// The pattern of names by which class and person are read.
+    Pattern(String),
     /// Clips as strips of poses instead of a table.
     Strips(bool),
     /// The part of the body whose joint is to be clicked.
@@ -234,6 +276,11 @@ pub enum ClassCommand {
     Adding(String),
     /// The first letters of the class that shall have the key Q; `None` ends choosing.
     Choosing(Option<String>),
+    /// A class has the place of a key, from 0, and whoever had it has its own.
+    GiveKey {
+        class: String,
+        place: usize,
+    },
     /// This class has the key Q from now on.
     Choose(String),
 }
@@ -267,6 +314,7 @@ pub enum Ask {
     New,
     Import,
     ImportFolder,
+    ImportLabels,
     Save,
     ExportIndex,
     ExportLabels(LabelFormat),

@@ -14,6 +14,8 @@ pub struct Library {
     pub filter: String,
     pub sort: Option<(Column, bool)>,
     pub selected: Vec<ClipId>,
+    /// The pattern of names, once it was typed.
+    pub pattern: Option<String>,
     /// Clips as strips of poses instead of a table.
     pub strips: bool,
     /// The part of the body whose joint is to be clicked.

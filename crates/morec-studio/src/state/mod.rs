@@ -7,6 +7,7 @@ mod command;
 pub mod compare;
 mod crossval;
 pub mod cuts;
+mod label_import;
 pub mod layout;
 mod library;
 pub mod live;
@@ -26,16 +27,18 @@ use morec_db::{ClipId, ClipInfo};
 
 use crate::body::Camera;
 use crate::jobs::{JobOutcome, Jobs, channel::ChannelCurve, cut::Curves, import, load::ClipMotion};
-use crate::store::{Store, Wake};
+use crate::store::{Edit, Store, Wake};
+use crate::unsaved::{Leftover, OwnFolder};
 
 pub use classes::Classes;
 pub use command::{
     Ask, ClassCommand, Column, Command, FileCommand, LibraryCommand, Panel, TimelineCommand,
-    TrainCommand, ViewCommand,
+    TrainCommand, TypedPath, ViewCommand,
 };
 pub use compare::{Companions, CompareCommand};
 pub use crossval::CrossvalView;
 pub use cuts::CutCommand;
+pub use label_import::LabelImport;
 pub use library::Library;
 pub use live::{Live, LiveCommand};
 pub use player::{PlayCommand, Player, SPEEDS};
@@ -58,6 +61,8 @@ pub struct State {
     pub dark: bool,
     pub show_history: bool,
     pub show_keys: bool,
+    /// True while it is asked whether a step of another program shall be taken back.
+    pub undo_asks: bool,
     /// Errors, until they are dismissed.
     pub notices: Vec<Notice>,
     /// Message about the last action, for the status bar.
@@ -83,14 +88,25 @@ pub struct State {
     pub train: Train,
     pub live: Live,
     pub import_report: Option<import::ImportSummary>,
+    /// Labels of files that wait to be applied.
+    pub label_import: Option<LabelImport>,
     /// A file dialog that should be shown.
     pub ask: Option<Ask>,
     pub(crate) wake: Wake,
     pub(crate) motions: Motions,
     /// A stretch to show once its clip is decoded.
     pending: Option<(ClipId, Option<(f64, f64)>)>,
-    /// A folder of this run's own, for what nobody has named yet.
-    folder: Option<PathBuf>,
+    /// A folder of this run's own, for what nobody has named yet, and where such folders lie.
+    folder: Option<OwnFolder>,
+    unsaved: PathBuf,
+    /// Databases that runs before left without saving them.
+    pub leftovers: Vec<Leftover>,
+    /// What waits for an answer whether the database shall be saved.
+    pub leaving: Option<FileCommand>,
+    /// True once the window may close.
+    pub closing: bool,
+    /// A path that is typed, where there is no file dialog.
+    pub typed: Option<TypedPath>,
     seen_version: u64,
     /// The shown clip, while it is decoded anew.
     reopening: Option<ClipId>,
@@ -144,8 +160,8 @@ impl Motions {
 }
 
 impl State {
-    /// A state without a database. `wake` calls for a new frame from any thread.
-    pub fn new(wake: Wake) -> Self {
+    /// A state without a database. `wake` calls for a new frame from any thread; databases without a name lie in `unsaved`.
+    pub fn new(wake: Wake, unsaved: PathBuf) -> Self {
         Self {
             store: None,
             jobs: Jobs::default(),
@@ -153,6 +169,7 @@ impl State {
             dark: true,
             show_history: false,
             show_keys: false,
+            undo_asks: false,
             notices: Vec::new(),
             said: String::new(),
             command_line: String::new(),
@@ -171,11 +188,17 @@ impl State {
             train: Train::default(),
             live: Live::default(),
             import_report: None,
+            label_import: None,
             ask: None,
             wake,
             motions: Motions::default(),
             pending: None,
             folder: None,
+            unsaved,
+            leftovers: Vec::new(),
+            leaving: None,
+            closing: false,
+            typed: None,
             seen_version: 0,
             reopening: None,
             last: None,
@@ -222,6 +245,8 @@ impl State {
                 }
             }
             Command::File(command) => self.apply_file(command),
+            Command::Edit(Edit::Undo(None)) if self.is_last_foreign() => self.undo_asks = true,
+            Command::UndoAsks(on) => self.undo_asks = on,
             Command::Edit(edit) => self.edit(edit),
             Command::Library(command) => self.apply_library(command),
             Command::Play(command) => self.player.apply(&command),
@@ -239,6 +264,11 @@ impl State {
                 }
             }
         }
+    }
+
+    fn is_last_foreign(&self) -> bool {
+        let store = self.store.as_ref();
+        store.is_some_and(|s| s.snapshot.foreign_step().is_some())
     }
 
     fn show(&mut self, panel: Panel) {

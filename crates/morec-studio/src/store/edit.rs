@@ -1,7 +1,9 @@
 //! Edits of the database as values: what the window may change, each one step of the history.
 
+use std::path::PathBuf;
+
 use morec::roles::RoleMap;
-use morec_db::labels::{LabelOptions, NewSample, SampleId, SampleState};
+use morec_db::labels::{LabelOptions, NewSample, SampleId, SampleState, WholeClip};
 use morec_db::{BACKGROUND, ClipId, ClipInfo, ClipUpdate, DbError, MotionDb};
 
 /// Author of the studio's labels in the database.
@@ -12,6 +14,14 @@ pub const BY: &str = "studio";
 pub enum Edit {
     /// Labels that are new.
     Label(Vec<NewSample>),
+    /// Labels of files, beside what is there or in place of the labels of the clips they name.
+    LabelFiles {
+        paths: Vec<PathBuf>,
+        samples: Vec<NewSample>,
+        replace: bool,
+    },
+    /// Classes that whole clips show, and people in them.
+    WholeClips(Vec<WholeClip>),
     /// A label that starts or stops elsewhere.
     Move {
         id: SampleId,
@@ -102,6 +112,21 @@ impl Edit {
                     1 => format!("labelled {class}"),
                     n => format!("{n} labels of {class}"),
                 })
+            }
+            Edit::LabelFiles {
+                samples, replace, ..
+            } => {
+                let options = LabelOptions {
+                    by: BY.to_owned(),
+                    replace: *replace,
+                    dry_run: false,
+                };
+                let counts = db.label(samples, &options)?.counts;
+                Ok(crate::format::changed_labels(&counts))
+            }
+            Edit::WholeClips(clips) => {
+                let counts = db.label_clips(clips, BY)?;
+                Ok(crate::format::changed_labels(&counts))
             }
             Edit::Move {
                 id,

@@ -8,6 +8,7 @@ mod message;
 mod snapshot;
 mod worker;
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender};
@@ -77,6 +78,16 @@ impl Store {
     /// Asks for a new snapshot: a job changed the database.
     pub fn reload(&mut self) {
         self.pending += usize::from(self.requests.send(Request::Reload).is_ok());
+    }
+
+    /// Keeps places of classes, which is no step of the history.
+    pub fn place_classes(&mut self, places: BTreeMap<String, usize>) {
+        self.pending += usize::from(self.requests.send(Request::Places(places)).is_ok());
+    }
+
+    /// Keeps the index that was trained last, which is no step of the history either.
+    pub fn keep_last_index(&mut self, bytes: Vec<u8>) {
+        self.pending += usize::from(self.requests.send(Request::LastIndex(bytes)).is_ok());
     }
 
     /// From now on the disk is full.

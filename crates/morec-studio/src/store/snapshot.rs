@@ -25,6 +25,10 @@ pub struct Snapshot {
     pub cut_methods: BTreeMap<ClipId, String>,
     /// Roles of the joints of each clip.
     pub roles: BTreeMap<ClipId, RoleMap>,
+    /// Places of classes by name.
+    pub places: BTreeMap<String, usize>,
+    /// Name of this program in the history.
+    pub program: String,
     place: BTreeMap<ClipId, usize>,
     segments_of: BTreeMap<ClipId, Range<usize>>,
     samples_of: BTreeMap<ClipId, Range<usize>>,
@@ -39,6 +43,8 @@ impl Snapshot {
             segments,
             cut_methods: db.cut_methods()?,
             roles: db.roles()?,
+            places: db.class_places()?,
+            program: db.program().to_owned(),
             ..Self::of(
                 db.clips(&ClipFilter::default())?,
                 db.classes()?,
@@ -89,10 +95,25 @@ impl Snapshot {
         self.sample_place.get(&id).map(|&at| &self.samples[at])
     }
 
-    /// Name of the step that undo would take back.
-    pub fn undo_name(&self) -> Option<&str> {
-        let step = self.history.iter().find(|s| !s.undone)?;
-        Some(&step.what)
+    /// The step that undo would take back.
+    pub fn undo_step(&self) -> Option<&HistoryStep> {
+        self.history.iter().find(|s| !s.undone)
+    }
+
+    /// True if another program made a step.
+    pub fn is_foreign(&self, step: &HistoryStep) -> bool {
+        !step.made_by.is_empty() && step.made_by != self.program
+    }
+
+    /// The step that undo would take back, if another program made it.
+    pub fn foreign_step(&self) -> Option<&HistoryStep> {
+        self.undo_step().filter(|step| self.is_foreign(step))
+    }
+
+    /// The last step that this program made.
+    pub fn my_step(&self) -> Option<&HistoryStep> {
+        let mut steps = self.history.iter();
+        steps.find(|step| !step.undone && !self.is_foreign(step))
     }
 
     /// Name of the step that redo would do again: the earliest of those that were taken back.

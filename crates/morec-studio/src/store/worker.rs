@@ -1,5 +1,6 @@
 //! The thread that owns the database.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
@@ -12,9 +13,14 @@ use super::{Edit, Snapshot, StoreMessage, Wake};
 /// Interval between looks at whether another program changed the database.
 const LOOK: Duration = Duration::from_secs(1);
 
+/// Name in the database of the index that was trained last.
+const LAST_INDEX: &str = "last";
+
 pub enum Request {
     Edit(Edit),
     Reload,
+    Places(BTreeMap<String, usize>),
+    LastIndex(Vec<u8>),
     /// The file grows no further: what a full disk looks like.
     #[cfg(test)]
     Fill,
@@ -78,11 +84,13 @@ impl StoreWorker {
                     (Some(said), true)
                 }
                 Ok(Request::Reload) => (None, true),
-                #[cfg(test)]
-                Ok(Request::Fill) => {
-                    let filled = self.db.limit_bytes(0).err();
-                    (filled.map(|e| StoreMessage::Failed(e.to_string())), true)
+                Ok(Request::Places(places)) => (failure(self.db.place_classes(&places)), true),
+                Ok(Request::LastIndex(bytes)) => {
+                    let kept = self.db.store_last_index(LAST_INDEX, &bytes);
+                    (failure(kept), true)
                 }
+                #[cfg(test)]
+                Ok(Request::Fill) => (failure(self.db.limit_bytes(0)), true),
                 Err(RecvTimeoutError::Timeout) => {
                     if mark(&self.db) == self.seen {
                         continue;
@@ -116,6 +124,12 @@ impl StoreWorker {
         (self.wake)();
         heard
     }
+}
+
+/// The message of what is only told if it fails.
+fn failure(done: Result<(), DbError>) -> Option<StoreMessage> {
+    let error = done.err()?;
+    Some(StoreMessage::Failed(sentence(&error.to_string())))
 }
 
 /// An error as a sentence: with a capital, without a full stop. A name that it begins with (`moves.mdb: …`) stays as it is.

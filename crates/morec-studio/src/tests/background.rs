@@ -59,7 +59,10 @@ fn clips_are_marked_by_key_tick_and_menu_and_each_is_undone() {
         "{line}"
     );
     let store = person.state().store.as_ref().unwrap();
-    assert_eq!(store.snapshot.undo_name(), Some("tag 1 clip background"));
+    assert_eq!(
+        store.snapshot.undo_step().map(|s| s.what.as_str()),
+        Some("tag 1 clip background")
+    );
     // The key again, a click on the details, and undo take the mark away.
     person.key(Key::B);
     person.settle();

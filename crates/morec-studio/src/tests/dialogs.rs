@@ -168,3 +168,41 @@ fn keys_open_dialogs_and_a_dialog_that_is_cancelled_changes_nothing() {
     assert_eq!(person.database(), database);
     assert!(person.state().notices.is_empty());
 }
+
+#[test]
+fn where_no_dialog_can_be_opened_a_path_is_typed() {
+    let (folder, mut person) = with_labels(1);
+    person.has_no_dialogs();
+    person.key_with(Key::S, Modifiers::COMMAND);
+    person.settle();
+    assert!(person.sees_part("No file dialog can be opened here"));
+    // What cannot be is said before it is tried.
+    let copy = folder.path().join("copy.mdb");
+    let nowhere = folder.path().join("nowhere/copy.mdb");
+    person.types("Path", &nowhere.to_string_lossy());
+    assert!(person.sees("There is no such folder."));
+    assert_eq!(person.database(), "moves.mdb");
+    person.types("Path", &copy.to_string_lossy());
+    assert_eq!(person.database(), "copy.mdb");
+    assert!(!person.sees_part("No file dialog can be opened here"));
+    // A file that is there is written over by a click only.
+    person.key_with(Key::S, Modifiers::COMMAND);
+    person.settle();
+    let first = folder.path().join("moves.mdb");
+    person.types("Path", &first.to_string_lossy());
+    assert!(person.sees_part("There is a file already"));
+    assert_eq!(person.database(), "copy.mdb");
+    person.click("Cancel");
+    person.settle();
+    let clips = tempfile::tempdir().unwrap();
+    std::fs::write(clips.path().join("x.txt"), "no clip").unwrap();
+    super::clips_of(clips.path());
+    person.click("Folder …");
+    person.settle();
+    person.types("Path", &clips.path().to_string_lossy());
+    assert!(
+        person.state().said.contains("3 known already"),
+        "{}",
+        person.state().said
+    );
+}

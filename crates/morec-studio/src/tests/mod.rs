@@ -7,8 +7,10 @@ mod compare;
 mod counted;
 mod cuts;
 mod dialogs;
+mod dropped;
 mod edits;
 mod faults;
+mod label_files;
 mod library;
 mod lines;
 mod live;
@@ -16,9 +18,13 @@ mod mistakes;
 mod out;
 mod person;
 mod pictures;
+mod places;
 mod roles;
 mod train;
+mod undo;
+mod unsaved;
 mod view;
+mod whole;
 
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
@@ -45,16 +51,21 @@ pub fn takes() -> &'static [SyntheticTake] {
     })
 }
 
-/// A database of the takes; those of the first `labelled` people are labelled.
-pub fn made(folder: &Path, labelled: usize) -> PathBuf {
-    let mut files = Vec::new();
-    for take in takes() {
+/// The clips of the takes as files in a folder.
+pub fn clips_of(folder: &Path) -> Vec<PathBuf> {
+    let written = takes().iter().map(|take| {
         let path = folder.join(format!("{}.bvh", take.clip.name));
         let mut bytes = Vec::new();
         bvh::write(&take.clip, &mut bytes).unwrap();
         std::fs::write(&path, bytes).unwrap();
-        files.push(path);
-    }
+        path
+    });
+    written.collect()
+}
+
+/// A database of the takes; those of the first `labelled` people are labelled.
+pub fn made(folder: &Path, labelled: usize) -> PathBuf {
+    let files = clips_of(folder);
     let path = folder.join("moves.mdb");
     let mut db = MotionDb::create(&path).unwrap();
     let about = ClipUpdate::default();

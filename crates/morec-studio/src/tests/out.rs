@@ -144,7 +144,7 @@ fn a_layout_comes_back_with_the_next_session() {
     assert!(!camera.follow && channel.is_some());
     let kept = serde_json::to_string(&person.state().layout()).unwrap();
     let layout: Layout = serde_json::from_str(&kept).unwrap();
-    let mut state = State::new(std::sync::Arc::new(|| {}));
+    let mut state = State::new(std::sync::Arc::new(|| {}), std::env::temp_dir());
     state.begin(std::slice::from_ref(&path));
     state.lay_out(&layout);
     state.show_again(&layout);
@@ -168,7 +168,7 @@ fn a_layout_comes_back_with_the_next_session() {
 
 #[test]
 fn a_layout_with_parts_that_cannot_be_is_used_as_far_as_it_can() {
-    let mut state = State::new(std::sync::Arc::new(|| {}));
+    let mut state = State::new(std::sync::Arc::new(|| {}), std::env::temp_dir());
     let strange = r#"{"panel": "Train", "trail": "third hand", "channel": {"joint": "Hips", "kind": "colour"},
         "camera": {"yaw": 0.2, "pitch": 7.0, "distance": -3.0, "target": [0.0, 1.0, 0.0]}}"#;
     let strange: Layout = serde_json::from_str(strange).unwrap();

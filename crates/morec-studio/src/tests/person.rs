@@ -2,6 +2,7 @@
 
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
@@ -23,13 +24,18 @@ const PATIENCE: Duration = Duration::from_secs(240);
 pub struct Answers {
     queued: Mutex<VecDeque<Vec<PathBuf>>>,
     asked: Mutex<Vec<Dialog>>,
+    /// No dialog can be opened.
+    closed: AtomicBool,
 }
 
 impl Chooser for Answers {
-    fn choose(&self, dialog: &Dialog) -> Vec<PathBuf> {
+    fn choose(&self, dialog: &Dialog) -> Option<Vec<PathBuf>> {
         self.asked.lock().unwrap().push(dialog.clone());
+        if self.closed.load(Ordering::Relaxed) {
+            return None;
+        }
         // Without an answer the dialog is cancelled.
-        self.queued.lock().unwrap().pop_front().unwrap_or_default()
+        Some(self.queued.lock().unwrap().pop_front().unwrap_or_default())
     }
 }
 
@@ -40,12 +46,19 @@ pub struct Person {
     answers: Arc<Answers>,
     /// The command line that was shown last.
     checked: String,
+    /// Where databases without a name lie; removed after the window.
+    pub unsaved: Arc<tempfile::TempDir>,
 }
 
 impl Person {
     pub fn before(paths: &[PathBuf]) -> Self {
+        Self::again(paths, Arc::new(tempfile::tempdir().unwrap()))
+    }
+
+    /// Before a window that finds what earlier ones left in a folder.
+    pub fn again(paths: &[PathBuf], unsaved: Arc<tempfile::TempDir>) -> Self {
         let (ctx, paths) = (egui::Context::default(), paths.to_vec());
-        let mut studio = Studio::new(&ctx, &paths);
+        let mut studio = Studio::new(&ctx, &paths, unsaved.path().to_owned());
         let answers = Arc::new(Answers::default());
         studio.dialogs = Dialogs::of(answers.clone());
         let window = Harness::builder()
@@ -63,6 +76,7 @@ impl Person {
             actions: 0,
             answers,
             checked: String::new(),
+            unsaved,
         };
         person.settle();
         person
@@ -82,6 +96,31 @@ impl Person {
     pub fn will_choose(&self, paths: &[&Path]) {
         let paths = paths.iter().map(|path| path.to_path_buf()).collect();
         self.answers.queued.lock().unwrap().push_back(paths);
+    }
+
+    /// From now on no dialog can be opened.
+    pub fn has_no_dialogs(&self) {
+        self.answers.closed.store(true, Ordering::Relaxed);
+    }
+
+    /// Asks the window to close, as the system does; says whether it goes.
+    pub fn closes(&mut self) -> bool {
+        self.actions += 1;
+        let input = self.window.input_mut();
+        let root = input.viewports.entry(egui::ViewportId::ROOT).or_default();
+        root.events.push(egui::ViewportEvent::Close);
+        self.window.step();
+        let kept = self.told(&egui::ViewportCommand::CancelClose);
+        self.window.step();
+        !kept
+    }
+
+    /// True if the last frame said this to the window system.
+    pub fn told(&self, command: &egui::ViewportCommand) -> bool {
+        let output = &self.window.output().viewport_output;
+        output
+            .get(&egui::ViewportId::ROOT)
+            .is_some_and(|root| root.commands.contains(command))
     }
 
     /// The dialog that was shown last.

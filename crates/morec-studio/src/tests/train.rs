@@ -18,7 +18,8 @@ fn an_index_is_trained_kept_and_its_mistakes_are_found() {
     person.click("Keep");
     person.settle();
     assert!(person.sees("up to date"), "the database has it");
-    person.click("Use");
+    assert!(person.offers("Use last"), "without being asked to");
+    person.click("Use studio");
     let line = &person.state().command_line;
     let written = "moves.mdb --write studio -o studio.index";
     assert!(
@@ -27,7 +28,7 @@ fn an_index_is_trained_kept_and_its_mistakes_are_found() {
     );
     person.settle();
     person.undo();
-    assert!(person.sees_part("None is kept yet"));
+    assert!(!person.offers("Use studio") && person.offers("Use last"));
     person.click("Cross-validate");
     person.settle();
     let judged = person.state().train.judged.as_ref().unwrap();

@@ -1,7 +1,7 @@
 //! `morec db label`: labels in, and judging them.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail};
@@ -102,7 +102,17 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         }
         None => read(args, &lengths, &mut absent)?,
     };
-    let samples = resolve(&db, args, annotations, &lengths, &mut absent)?;
+    let mut resolved = exchange::resolve(annotations, &db.clips(&ClipFilter::default())?);
+    for note in &resolved.notes {
+        eprintln!("morec: {note}");
+    }
+    for (clip, count) in resolved.absent {
+        *absent.entry(clip).or_default() += count;
+    }
+    if let Some(state) = args.state {
+        resolved.samples.iter_mut().for_each(|s| s.state = state);
+    }
+    let samples = resolved.samples;
     let options = LabelOptions {
         by: args.by.clone(),
         replace: args.replace,
@@ -294,7 +304,7 @@ fn read(args: &Args, lengths: &ClipLengths, absent: &mut Absent) -> Result<Vec<A
         // A label track does not name its clip; its file does, if morec wrote it.
         let named = match (&args.clip, form) {
             (Some(clip), _) => Some(clip.clone()),
-            (None, LabelFormat::Audacity) => named_by_file(path, lengths),
+            (None, LabelFormat::Audacity) => exchange::clip_of_file(path, lengths),
             (None, _) => None,
         };
         let read = exchange::read(form, &bytes, named.as_deref(), lengths)
@@ -310,76 +320,5 @@ fn read(args: &Args, lengths: &ClipLengths, absent: &mut Absent) -> Result<Vec<A
     Ok(all)
 }
 
-/// The clip that a file is called after, if there is such a clip.
-fn named_by_file(path: &Path, lengths: &ClipLengths) -> Option<String> {
-    let clip = exchange::clip_of_file_name(&path.file_stem()?.to_string_lossy());
-    lengths.contains_key(&clip).then_some(clip)
-}
-
-/// Labels drawn by hand run over a clip's end by so much without a word.
-const OVER_SECS: f64 = 0.1;
-
 /// Clips that are not there, and how many labels each has.
 type Absent = BTreeMap<String, usize>;
-
-/// Annotations as samples of clips that are there.
-fn resolve(
-    db: &MotionDb,
-    args: &Args,
-    annotations: Vec<Annotation>,
-    lengths: &ClipLengths,
-    absent: &mut Absent,
-) -> Result<Vec<NewSample>> {
-    let ids: BTreeMap<String, _> = db
-        .clips(&ClipFilter::default())?
-        .into_iter()
-        .map(|c| (c.name, c.id))
-        .collect();
-    let mut samples = Vec::new();
-    for a in annotations {
-        let stem = a
-            .clip
-            .rsplit_once('.')
-            .map_or(a.clip.as_str(), |(stem, _)| stem);
-        let Some(name) = [a.clip.as_str(), stem]
-            .into_iter()
-            .find(|name| ids.contains_key(*name))
-        else {
-            *absent.entry(a.clip).or_default() += 1;
-            continue;
-        };
-        let length = lengths[name];
-        let snap = |secs: f64| exchange::snap(secs, length.rate_hz);
-        let end = length.duration_secs();
-        let (start_secs, stop_secs) = match a.extent {
-            None => (0.0, end),
-            Some((start, stop)) if snap(start) >= end => {
-                eprintln!(
-                    "morec: {name} ends at {end:.2} s: {} from {start:.2} to {stop:.2} s left out",
-                    a.class
-                );
-                continue;
-            }
-            // A label that runs over the end is cut there.
-            Some((start, stop)) => {
-                if stop > end + OVER_SECS {
-                    eprintln!(
-                        "morec: {name} ends at {end:.2} s: {} from {start:.2} to {stop:.2} s cut there",
-                        a.class
-                    );
-                }
-                (snap(start), snap(stop).min(end))
-            }
-        };
-        samples.push(NewSample {
-            clip: ids[name],
-            class: a.class,
-            start_secs,
-            stop_secs,
-            whole_clip: a.extent.is_none(),
-            state: args.state.unwrap_or(a.state),
-            score: a.score,
-        });
-    }
-    Ok(samples)
-}

@@ -1,9 +1,12 @@
 //! Classes: labels by their keys, classes added, renamed, merged.
 
-use morec_db::labels::{SampleId, SampleState as Judged};
+use std::collections::BTreeMap;
+
+use morec_db::ClipId;
+use morec_db::labels::{SampleId, SampleState as Judged, WholeClip};
 
 use crate::state::classes::Held;
-use crate::state::{ClassCommand, State, TimelineCommand};
+use crate::state::{ClassCommand, Panel, State, TimelineCommand};
 use crate::store::Edit;
 
 /// A key that is held for less is a tap, seconds on the wall.
@@ -16,7 +19,11 @@ const ATTRACTED_SECS: f64 = 0.2;
 impl State {
     pub(in crate::state) fn apply_classes(&mut self, command: ClassCommand) {
         match command {
-            ClassCommand::Add(name) => self.add_class(&name),
+            ClassCommand::Add(name) => self.add_class(&name, None),
+            ClassCommand::GiveKey { class, place } => {
+                let new = self.classes.swap(&class, place);
+                self.keep_places(new);
+            }
             ClassCommand::Rename { from, to } => self.rename_class(&from, to.trim()),
             ClassCommand::Remove(name) => match self.classes.added.contains(&name) {
                 true => {
@@ -65,14 +72,22 @@ impl State {
         }
     }
 
-    fn add_class(&mut self, name: &str) {
+    /// Keeps places of classes in the database.
+    pub(in crate::state) fn keep_places(&mut self, places: BTreeMap<String, usize>) {
+        if let Some(store) = self.store.as_mut().filter(|_| !places.is_empty()) {
+            store.place_classes(places);
+        }
+    }
+
+    /// A new class, at a place or at the first that is free.
+    fn add_class(&mut self, name: &str, place: Option<usize>) {
         let name = name.trim();
         self.classes.adding.clear();
         if name.is_empty() || self.classes.order.iter().any(|n| n == name) {
             return;
         }
-        self.classes.added.push(name.to_owned());
-        self.classes.order.push(name.to_owned());
+        let new = self.classes.add(name, place);
+        self.keep_places(new);
     }
 
     fn rename_class(&mut self, from: &str, to: &str) {
@@ -85,14 +100,17 @@ impl State {
             return;
         }
         // It keeps its place, its key and its colour.
-        for name in self.classes.order.iter_mut().filter(|n| *n == from) {
-            to.clone_into(name);
-        }
+        self.classes.rename(from, to);
         for name in self.classes.quick.iter_mut().filter(|n| *n == from) {
             to.clone_into(name);
         }
         match self.classes.added.iter_mut().find(|n| *n == from) {
-            Some(added) => to.clone_into(added),
+            Some(added) => {
+                to.clone_into(added);
+                if let Some(place) = self.classes.place(to) {
+                    self.keep_places([(to.to_owned(), place)].into());
+                }
+            }
             None => self.edit(Edit::RenameClass {
                 from: from.to_owned(),
                 to: to.to_owned(),
@@ -100,24 +118,27 @@ impl State {
         }
     }
 
-    /// The class of a key; a key beyond the classes there are makes one.
+    /// The class of a key; a key without a class makes one.
     pub(in crate::state) fn class_of_key(&mut self, slot: usize) -> String {
-        if slot >= self.classes.order.len() {
-            let name = self.classes.free_name();
-            self.add_class(&name);
-            return name;
+        if let Some(class) = self.classes.at(slot) {
+            return class.to_owned();
         }
-        self.classes.order[slot].clone()
+        let name = self.classes.free_name();
+        self.add_class(&name, Some(slot));
+        name
     }
 
     fn key_down(&mut self, slot: usize) {
+        if self.panel == Panel::Library && !self.library.selected.is_empty() {
+            let many = self.library.selected.len() > 1;
+            if many || !self.player.playing {
+                return self.label_whole(slot);
+            }
+        }
         if self.player.motion.is_none() || self.classes.held.is_some() {
             return;
         }
-        let (held, slot) = (
-            self.class_of_key(slot),
-            slot.min(self.classes.order.len() - 1),
-        );
+        let held = self.class_of_key(slot);
         // With a selection and nothing playing a key says what the selection is.
         if !self.player.playing {
             if self.timeline.range.is_some() {
@@ -137,6 +158,18 @@ impl State {
             since_secs: self.player.at_secs,
             wall_secs: 0.0,
         });
+    }
+
+    /// The selected clips of the library, as a whole, show the class of a key.
+    fn label_whole(&mut self, slot: usize) {
+        let class = self.class_of_key(slot);
+        let whole = |clip: &ClipId| WholeClip {
+            clip: *clip,
+            class: Some(class.clone()),
+            subject: None,
+        };
+        let clips = self.library.selected.iter().map(whole).collect();
+        self.edit(Edit::WholeClips(clips));
     }
 
     fn key_up(&mut self, slot: usize) {

@@ -8,12 +8,17 @@ use morec_db::{ClipId, DbError};
 use super::lines::ShownCommand;
 use super::train::INDEX;
 use crate::format::file_name;
+use crate::jobs::example::MadeDatabase;
 use crate::jobs::export::{self, Export};
 use crate::jobs::{JobOutcome, Jobs, example, import};
 use crate::state::{
     Ask, Classes, FileCommand, Library, Live, Motions, Player, State, TimelineState, Train,
+    TypedPath,
 };
 use crate::store::Store;
+use crate::unsaved::{self, Leftover, OwnFolder};
+
+const MAKING: &str = "Making an example";
 
 impl State {
     /// Opens what was named on the command line: a database, clips, or nothing, which is the example.
@@ -23,6 +28,7 @@ impl State {
             [one] if is_database(one) => self.open(one),
             clips => self.open_clips(clips),
         }
+        self.leftovers = unsaved::leftovers(&self.unsaved);
     }
 
     fn open(&mut self, path: &Path) {
@@ -47,6 +53,7 @@ impl State {
                     self.show_line(ShownCommand::new("morec-studio").word(path));
                 }
                 self.store = Some(store);
+                self.use_last_index();
                 if let Some(clip) = first {
                     self.open_clip(clip, None);
                 }
@@ -82,6 +89,7 @@ impl State {
         self.train = Train::default();
         self.live = Live::default();
         self.import_report = None;
+        self.label_import = None;
         self.motions = Motions::default();
         self.pending = None;
         self.companions.all.clear();
@@ -91,17 +99,89 @@ impl State {
 
     fn own_folder(&mut self) -> Option<PathBuf> {
         if self.folder.is_none() {
-            match example::temporary_folder() {
+            match OwnFolder::new(&self.unsaved) {
                 Ok(folder) => self.folder = Some(folder),
-                Err(error) => self.complain(format!("No temporary folder can be made: {error}")),
+                Err(error) => self.complain(format!(
+                    "{}: no folder can be made: {error}",
+                    self.unsaved.display()
+                )),
             }
         }
-        self.folder.clone()
+        self.folder.as_ref().map(|folder| folder.path().to_owned())
+    }
+
+    /// True if what was done would be lost with the database, which nobody has named yet.
+    pub fn is_unsaved(&self) -> bool {
+        self.store.as_ref().is_some_and(|store| {
+            store.temporary && (store.is_busy() || store.snapshot.undo_step().is_some())
+        })
+    }
+
+    /// Removes the database that nobody has named, and goes on with what waited for that.
+    fn leave(&mut self) {
+        let Some(then) = self.leaving.take() else {
+            return;
+        };
+        if self.store.as_ref().is_some_and(|s| s.temporary) {
+            self.forget();
+            self.drop_folder();
+        }
+        self.apply_file(then);
+    }
+
+    fn drop_folder(&mut self) {
+        if let Some(folder) = self.folder.take() {
+            folder.remove();
+        }
+    }
+
+    fn open_leftover(&mut self, at: usize) {
+        if at >= self.leftovers.len() {
+            return;
+        }
+        let Leftover {
+            folder, database, ..
+        } = self.leftovers.remove(at);
+        self.forget();
+        self.drop_folder();
+        self.folder = Some(folder);
+        self.open_store(&database, true);
     }
 
     /// Folder for files that are kept for a moment.
     pub(in crate::state) fn scratch(&mut self) -> PathBuf {
         self.own_folder().unwrap_or_else(std::env::temp_dir)
+    }
+
+    /// Shows a database that was made of clips, or the example.
+    pub(in crate::state) fn show_made(&mut self, made: MadeDatabase) {
+        if let Some(path) = &made.path {
+            self.open_store(path, true);
+        }
+        // That all clips are there is seen without a report.
+        if let Some(report) = made.report.filter(|report| report.says_anything()) {
+            self.show_report(report);
+        }
+    }
+
+    /// True while the example is open and nothing was done to it.
+    fn is_untouched_example(&self) -> bool {
+        let example = |store: &Store| store.path().file_name() == Some(example::NAME.as_ref());
+        self.store.as_ref().is_some_and(|store| {
+            store.temporary && example(store) && store.snapshot.history.is_empty()
+        })
+    }
+
+    /// What becomes of files that are dropped, in words.
+    pub fn if_dropped(&self, paths: &[PathBuf]) -> String {
+        let name = |store: &Store| file_name(store.path());
+        match (paths, &self.store) {
+            ([one], _) if is_database(one) => format!("{} is opened", file_name(one)),
+            (_, Some(store)) if !self.is_untouched_example() => {
+                format!("into {}", name(store).trim_end_matches(".mdb"))
+            }
+            _ => "a new database is made".to_owned(),
+        }
     }
 
     fn make_example(&mut self) {
@@ -110,7 +190,7 @@ impl State {
         };
         self.show_line(ShownCommand::new("morec-studio"));
         self.jobs.start(
-            "Making an example",
+            MAKING,
             true,
             &self.wake,
             JobOutcome::Made,
@@ -122,6 +202,8 @@ impl State {
         let Some(folder) = self.own_folder() else {
             return;
         };
+        // The example, if it is not there yet, is not wanted any more.
+        self.jobs.running.retain(|job| job.name != MAKING);
         let clips = clips.to_vec();
         let line = ShownCommand::new("morec-studio");
         self.show_line(clips.iter().fold(line, ShownCommand::word));
@@ -135,7 +217,45 @@ impl State {
     }
 
     pub(in crate::state) fn apply_file(&mut self, command: FileCommand) {
+        // What cannot be opened is refused before anything is discarded for it.
+        let refused = match &command {
+            FileCommand::Open(path) => !path.exists(),
+            FileCommand::New(path) => path.exists(),
+            _ => false,
+        };
+        if command.leaves() && !refused && self.is_unsaved() {
+            self.leaving = Some(command);
+            return;
+        }
         match command {
+            FileCommand::Close => self.closing = true,
+            FileCommand::LeaveSaving => self.ask = Some(Ask::Save),
+            FileCommand::LeaveDiscarding => self.leave(),
+            FileCommand::Stay => self.leaving = None,
+            FileCommand::OpenLeftover(at) => self.open_leftover(at),
+            FileCommand::DiscardLeftover(at) => {
+                if at < self.leftovers.len() {
+                    self.leftovers.remove(at).folder.remove();
+                }
+            }
+            FileCommand::AskImportLabels => self.ask = Some(Ask::ImportLabels),
+            FileCommand::ImportLabels(paths) => self.read_labels(paths),
+            FileCommand::ReplaceLabels(replace) => self.replace_labels(replace),
+            FileCommand::ApplyLabels => self.apply_labels(),
+            FileCommand::DismissLabels => self.label_import = None,
+            FileCommand::NoDialog(ask) => {
+                self.typed = Some(TypedPath {
+                    text: crate::dialogs::dialog(&ask).file_name,
+                    ask,
+                    begun: false,
+                });
+            }
+            FileCommand::Typing(None) => self.typed = None,
+            FileCommand::Typing(Some(text)) => {
+                if let Some(typed) = &mut self.typed {
+                    (typed.text, typed.begun) = (text, true);
+                }
+            }
             FileCommand::AskOpen => self.ask = Some(Ask::Open),
             FileCommand::AskNew => self.ask = Some(Ask::New),
             FileCommand::AskImport => self.ask = Some(Ask::Import),
@@ -166,10 +286,10 @@ impl State {
     fn import(&mut self, paths: Vec<PathBuf>) {
         let databases = paths.iter().filter(|p| is_database(p)).count();
         if databases == 1 && paths.len() == 1 {
-            self.open(&paths[0]);
+            self.apply_file(FileCommand::Open(paths[0].clone()));
             return;
         }
-        let Some(store) = &self.store else {
+        let Some(store) = self.store.as_ref().filter(|_| !self.is_untouched_example()) else {
             self.open_clips(&paths);
             return;
         };
@@ -232,7 +352,13 @@ impl State {
         self.store = None;
         let copied = settle(&from).and_then(|()| copy_whole(&from, path));
         match copied {
-            Ok(()) => self.open_store(path, false),
+            Ok(()) => {
+                self.open_store(path, false);
+                if temporary && self.store.is_some() {
+                    self.drop_folder();
+                }
+                self.leave();
+            }
             Err(error) => {
                 self.open_store(&from, temporary);
                 self.complain(format!("{}: not saved: {error}", file_name(path)));
@@ -284,12 +410,13 @@ fn export_line(store: &Store, has_index: bool, what: &Export, path: &Path) -> Op
 }
 
 impl Drop for State {
-    /// Leaves nothing of this run's own behind.
+    /// Leaves nothing of this run's own behind, but for what was neither saved nor discarded: the next run offers it.
     fn drop(&mut self) {
         self.jobs.running.iter().for_each(|job| job.cancel());
+        let kept = self.is_unsaved();
         self.store = None;
-        if let Some(folder) = &self.folder {
-            let _ = std::fs::remove_dir_all(folder);
+        if !kept {
+            self.drop_folder();
         }
     }
 }

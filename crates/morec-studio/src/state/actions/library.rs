@@ -29,6 +29,8 @@ impl State {
                 start_secs,
                 stop_secs,
             } => self.open_clip(clip, Some((start_secs, stop_secs))),
+            LibraryCommand::SelectAll => self.select_all(),
+            LibraryCommand::Pattern(text) => self.library.pattern = Some(text),
             LibraryCommand::DismissReport => self.import_report = None,
             LibraryCommand::Strips(on) => self.library.strips = on,
             LibraryCommand::Role(role) => self.library.role = role,
@@ -36,6 +38,17 @@ impl State {
             LibraryCommand::RolesOfAll(all) => self.library.roles_of_one = !all,
         }
         self.refresh_library();
+    }
+
+    fn select_all(&mut self) {
+        let Some(store) = &self.store else { return };
+        let clips = &store.snapshot.clips;
+        let shown = self.library.shown().iter().filter_map(|&at| clips.get(at));
+        self.library.selected = shown.map(|c| c.id).collect();
+        self.say(format!(
+            "{} selected",
+            crate::format::count(self.library.selected.len(), "clip")
+        ));
     }
 
     fn select_to(&mut self, clip: ClipId) {

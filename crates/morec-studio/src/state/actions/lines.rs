@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use morec::roles::Role;
-use morec_db::labels::{NewSample, SampleId};
+use morec_db::labels::{NewSample, SampleId, WholeClip};
 use morec_db::{ClipId, ClipUpdate};
 
 use crate::state::State;
@@ -104,6 +104,21 @@ fn label_lines(db: &Path, snapshot: &Snapshot, samples: &[NewSample]) -> Option<
     ShownCommand::all(lines?.into_iter())
 }
 
+/// The commands that say what whole clips show, and who is in them.
+fn whole_lines(db: &Path, snapshot: &Snapshot, clips: &[WholeClip]) -> Option<ShownCommand> {
+    let line = |whole: &WholeClip| {
+        let name = &snapshot.clip(whole.clip)?.name;
+        let of_clip = |command: &str| ShownCommand::new(command).word(db).with("--clip", name);
+        let label = whole.class.as_ref();
+        let label = label.map(|class| of_clip("morec db label").with("--class", class));
+        let about = whole.subject.as_ref();
+        let about = about.map(|name| of_clip("morec db clips").with("--set-subject", name));
+        label.into_iter().chain(about).reduce(ShownCommand::and)
+    };
+    let lines: Option<Vec<ShownCommand>> = clips.iter().map(line).collect();
+    ShownCommand::all(lines?.into_iter())
+}
+
 /// The commands that do the same to each of several clips: one for all clips of the database, else one for each.
 fn each_clip(
     db: &Path,
@@ -169,6 +184,11 @@ impl State {
         let morec = |command: &str| ShownCommand::new(&format!("morec {command}")).word(db);
         Some(match edit {
             Edit::Label(samples) => label_lines(db, snapshot, samples)?,
+            Edit::WholeClips(clips) => whole_lines(db, snapshot, clips)?,
+            Edit::LabelFiles { paths, replace, .. } => {
+                let line = paths.iter().fold(morec("db label"), ShownCommand::word);
+                line.flag("--replace", *replace)
+            }
             Edit::Move {
                 id,
                 start_secs,

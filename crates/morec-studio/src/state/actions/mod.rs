@@ -8,6 +8,7 @@ mod crossval;
 mod cuts;
 mod files;
 mod groups;
+mod label_files;
 mod labels;
 mod library;
 mod lines;

@@ -50,7 +50,8 @@ impl State {
         self.library
             .selected
             .retain(|id| snapshot.clip(*id).is_some());
-        self.classes.follow(&snapshot);
+        let places = self.classes.follow(&snapshot);
+        self.keep_places(places);
         self.train.follow(&snapshot);
         self.live.marks.retain_mut(|mark| mark.follow(&snapshot));
         let gone = self
@@ -79,7 +80,7 @@ impl State {
 
     fn take(&mut self, name: &str, outcome: JobOutcome) {
         match outcome {
-            JobOutcome::Made(path) => self.open_store(&path, true),
+            JobOutcome::Made(made) => self.show_made(made),
             JobOutcome::Loaded(loaded) => {
                 self.motions.loading.retain(|id| *id != loaded.id);
                 match loaded.motion {
@@ -107,10 +108,10 @@ impl State {
                 }
             }
             JobOutcome::Imported(report) => {
-                self.say(report.said());
-                self.import_report = Some(report);
+                self.show_report(report);
                 self.reload();
             }
+            JobOutcome::LabelsRead(files) => self.labels_read(files),
             JobOutcome::Cut(report) => {
                 let clips = crate::format::count(report.clips, "clip");
                 let segments = crate::format::count(report.segments, "segment");

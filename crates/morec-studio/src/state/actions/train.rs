@@ -126,6 +126,11 @@ impl State {
         self.train.index = Some(trained.index);
         self.train.bytes = trained.bytes;
         self.train.report = Some(trained.report);
+        // An index of labels that have changed meanwhile would be taken for one of those of now.
+        let fresh = !self.train.is_stale();
+        if let Some(store) = self.store.as_mut().filter(|_| fresh) {
+            store.keep_last_index(self.train.bytes.clone());
+        }
         self.live.follow_index(self.train.index.as_ref());
         if self.panel != Panel::Live
             && let Some(motion) = self.player.motion.clone()
@@ -156,6 +161,33 @@ impl State {
         let line = line
             .with("--write", name)
             .with("-o", format!("{name}.index"));
+        if self.load_index(name) {
+            self.say(format!("index {name} is in use"));
+            self.show_line(line);
+            if let Some(motion) = self.player.motion.clone() {
+                self.want_detections(&motion);
+            }
+        }
+    }
+
+    /// Uses the index that was kept last, when a database is opened.
+    pub(in crate::state) fn use_last_index(&mut self) {
+        let Some(store) = &self.store else { return };
+        let snapshot = store.snapshot.clone();
+        self.train.follow(&snapshot);
+        let last = snapshot.indexes.iter().max_by_key(|i| i.trained_secs);
+        if let Some(last) = last {
+            self.load_index(&last.name);
+        }
+    }
+
+    /// Reads an index of the database for use; says so if it cannot.
+    fn load_index(&mut self, name: &str) -> bool {
+        let Some(store) = &self.store else {
+            return false;
+        };
+        let indexes = store.snapshot.indexes.iter();
+        let stale = indexes.filter(|i| i.name == name).any(|i| i.stale);
         let read = morec_db::MotionDb::open_read_only(store.path())
             .and_then(|db| db.index(name))
             .map_err(|e| e.to_string())
@@ -168,15 +200,17 @@ impl State {
                 self.train.index = Some(Arc::new(index));
                 self.train.bytes = bytes;
                 self.train.report = None;
-                self.train.taught = self.train.now;
-                self.say(format!("index {name} is in use"));
-                self.show_line(line);
+                self.train.taught = match stale {
+                    true => !self.train.now,
+                    false => self.train.now,
+                };
                 self.live.follow_index(self.train.index.as_ref());
-                if let Some(motion) = self.player.motion.clone() {
-                    self.want_detections(&motion);
-                }
+                true
             }
-            Err(why) => self.complain(format!("Index {name}: {why}")),
+            Err(why) => {
+                self.complain(format!("Index {name}: {why}"));
+                false
+            }
         }
     }
 

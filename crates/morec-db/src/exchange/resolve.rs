@@ -1,0 +1,92 @@
+//! Annotations as samples of the clips of a database.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use morec::labels::ClipLength;
+
+use super::annotation::{Annotation, ClipLengths, snap};
+use super::clip_of_file_name;
+use crate::ClipInfo;
+use crate::labels::NewSample;
+
+/// Labels run over the end of their clip by so much without a note, seconds: they were drawn by hand.
+const OVER_SECS: f64 = 0.1;
+
+/// Annotations as samples, and those that are none.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ResolvedLabels {
+    /// In the order of the annotations.
+    pub samples: Vec<NewSample>,
+    /// Clips that are not there, with the number of labels of each.
+    pub absent: BTreeMap<String, usize>,
+    /// Labels that lie behind the end of their clip, wholly or in part, in sentences.
+    pub notes: Vec<String>,
+}
+
+/// Lengths of clips by name.
+pub fn clip_lengths(clips: &[ClipInfo]) -> ClipLengths {
+    let length = |clip: &ClipInfo| ClipLength {
+        frames: clip.frames,
+        rate_hz: clip.rate_hz,
+    };
+    clips.iter().map(|c| (c.name.clone(), length(c))).collect()
+}
+
+/// The clip that a file is called after, if there is such a clip.
+pub fn clip_of_file(path: &Path, lengths: &ClipLengths) -> Option<String> {
+    let clip = clip_of_file_name(&path.file_stem()?.to_string_lossy());
+    lengths.contains_key(&clip).then_some(clip)
+}
+
+/// Finds the clips of annotations by name, with or without a file ending; times come to whole frames, a label that runs over the end
+/// of its clip is cut there, and one that lies behind it is left out.
+pub fn resolve(annotations: Vec<Annotation>, clips: &[ClipInfo]) -> ResolvedLabels {
+    let by_name: BTreeMap<&str, &ClipInfo> = clips.iter().map(|c| (c.name.as_str(), c)).collect();
+    let mut resolved = ResolvedLabels::default();
+    for a in annotations {
+        let stem = a.clip.rsplit_once('.').map(|(stem, _)| stem);
+        let names = [Some(a.clip.as_str()), stem];
+        let found = names.into_iter().flatten().find_map(|n| by_name.get(n));
+        let Some(clip) = found else {
+            *resolved.absent.entry(a.clip).or_default() += 1;
+            continue;
+        };
+        let Some((start_secs, stop_secs)) = extent(&a, clip, &mut resolved.notes) else {
+            continue;
+        };
+        resolved.samples.push(NewSample {
+            clip: clip.id,
+            class: a.class,
+            start_secs,
+            stop_secs,
+            whole_clip: a.extent.is_none(),
+            state: a.state,
+            score: a.score,
+        });
+    }
+    resolved
+}
+
+/// Start and stop within the clip, seconds; `None` behind its end.
+fn extent(a: &Annotation, clip: &ClipInfo, notes: &mut Vec<String>) -> Option<(f64, f64)> {
+    let end = clip.duration_secs();
+    let Some((start, stop)) = a.extent else {
+        return Some((0.0, end));
+    };
+    let snap = |secs: f64| snap(secs, clip.rate_hz);
+    let mut note = |what: &str| {
+        notes.push(format!(
+            "{} ends at {end:.2} s: {} from {start:.2} to {stop:.2} s {what}",
+            clip.name, a.class
+        ));
+    };
+    if snap(start) >= end {
+        note("left out");
+        return None;
+    }
+    if stop > end + OVER_SECS {
+        note("cut there");
+    }
+    Some((snap(start), snap(stop).min(end)))
+}

@@ -1,0 +1,111 @@
+//! Steps of other programs are named before they are taken back; the last index comes back.
+
+use egui::{Key, Modifiers};
+use morec_db::MotionDb;
+use morec_db::labels::WholeClip;
+
+use super::{Person, made};
+
+/// Another program labels a clip.
+fn elsewhere(path: &std::path::Path) {
+    let mut db = MotionDb::open(path).unwrap();
+    db.set_program("morec");
+    let clip = db.find_clip("cleo_1").unwrap().id;
+    let whole = WholeClip {
+        clip,
+        class: Some("jump".to_owned()),
+        subject: None,
+    };
+    db.label_clips(&[whole], "user").unwrap();
+}
+
+/// Before a database with a step of its own and a later one of another program.
+fn with_both() -> (tempfile::TempDir, Person) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = made(folder.path(), 0);
+    let mut person = Person::before(std::slice::from_ref(&path));
+    person.key(Key::Num1);
+    person.settle();
+    elsewhere(&path);
+    while person.labels().len() < 2 {
+        person.frames(1);
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    (folder, person)
+}
+
+impl Person {
+    fn classes_labelled(&self) -> Vec<String> {
+        self.labels().into_iter().map(|label| label.1).collect()
+    }
+}
+
+#[test]
+fn undo_says_whose_step_it_takes_back() {
+    let (_folder, mut person) = with_both();
+    person.key_with(Key::Z, Modifiers::COMMAND);
+    person.settle();
+    assert!(person.sees("The last change was made by morec"));
+    assert!(person.sees("“label 1 whole clip jump”"));
+    assert_eq!(person.labels().len(), 2, "nothing is done yet");
+    person.click("Cancel");
+    person.settle();
+    assert_eq!(person.labels().len(), 2);
+    person.key_with(Key::Z, Modifiers::COMMAND);
+    person.frames(2);
+    person.click("Take it back");
+    person.settle();
+    assert_eq!(person.classes_labelled(), ["gesture 1"]);
+    // One's own needs no question.
+    person.undo();
+    assert!(person.labels().is_empty());
+}
+
+#[test]
+fn undo_takes_back_ones_own_step_below_another() {
+    let (_folder, mut person) = with_both();
+    person.click("Undo");
+    person.frames(2);
+    assert!(person.sees_part("The last one made here: “label 1 whole clip gesture 1”"));
+    person.click("Mine only");
+    person.settle();
+    assert_eq!(person.classes_labelled(), ["jump"]);
+}
+
+#[test]
+fn the_last_index_comes_back_with_the_database() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = made(folder.path(), 2);
+    let mut person = Person::before(std::slice::from_ref(&path));
+    assert!(person.state().train.index.is_none());
+    let steps = person
+        .state()
+        .store
+        .as_ref()
+        .unwrap()
+        .snapshot
+        .history
+        .len();
+    person.key_with(Key::T, Modifiers::COMMAND);
+    person.settle();
+    let store = person.state().store.as_ref().unwrap();
+    assert_eq!(store.snapshot.history.len(), steps, "undo is of labels");
+    drop(person);
+    let mut person = Person::before(std::slice::from_ref(&path));
+    assert!(person.state().train.index.is_some());
+    assert!(!person.state().train.is_stale());
+    assert!(
+        MotionDb::open(&path)
+            .unwrap()
+            .check()
+            .unwrap()
+            .faults
+            .is_empty()
+    );
+    person.key(Key::Num1);
+    person.settle();
+    assert!(person.state().train.is_stale());
+    drop(person);
+    let person = Person::before(&[path]);
+    assert!(person.state().train.is_stale(), "and so it is said");
+}
