@@ -5,7 +5,6 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
-use std::time::{Duration, Instant};
 
 use crate::state::{Ask, Command, FileCommand};
 
@@ -46,15 +45,22 @@ pub struct SystemDialogs;
 
 #[cfg(not(feature = "window"))]
 impl Chooser for SystemDialogs {
-    fn choose(&self, _: &Dialog) -> Vec<PathBuf> {
-        Vec::new()
+    fn choose(&self, _: &Dialog) -> Option<Vec<PathBuf>> {
+        None
     }
 }
 
 #[cfg(feature = "window")]
 impl Chooser for SystemDialogs {
     fn choose(&self, dialog: &Dialog) -> Option<Vec<PathBuf>> {
-        let begun = Instant::now();
+        // `rfd` reports a dialog that was cancelled and one that could not be opened alike. Nobody sees a dialog and closes it in so
+        // short a time.
+        const SOONEST: std::time::Duration = std::time::Duration::from_millis(250);
+        let begun = std::time::Instant::now();
+        let one = |path: Option<PathBuf>| match path {
+            None if begun.elapsed() < SOONEST => None,
+            path => Some(path.into_iter().collect()),
+        };
         let mut shown = rfd::FileDialog::new().set_title(dialog.title);
         if let Some((name, ending)) = dialog.filter {
             shown = shown.add_filter(name, &[ending]);
@@ -65,22 +71,10 @@ impl Chooser for SystemDialogs {
         match dialog.choice {
             DialogKind::Files => shown.pick_files(),
             DialogKind::Folders => shown.pick_folders(),
-            DialogKind::File => one(shown.pick_file(), begun),
-            DialogKind::Folder => one(shown.pick_folder(), begun),
-            DialogKind::Save => one(shown.save_file(), begun),
+            DialogKind::File => one(shown.pick_file()),
+            DialogKind::Folder => one(shown.pick_folder()),
+            DialogKind::Save => one(shown.save_file()),
         }
-    }
-}
-
-/// Nobody sees a dialog and closes it in so short a time.
-const SOONEST: Duration = Duration::from_millis(250);
-
-/// A choice of one path. `rfd` reports a dialog that was cancelled and one that could not be opened alike: one that ended at once
-/// was not open.
-fn one(path: Option<PathBuf>, begun: Instant) -> Option<Vec<PathBuf>> {
-    match path {
-        None if begun.elapsed() < SOONEST => None,
-        path => Some(path.into_iter().collect()),
     }
 }
 
