@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use morec::pivots::{PivotMap, pose_rows_of_clip};
 use morec::svrdm::{Branch, Node, SampleClassifier, SvrdmEngine, SvrdmModel};
-use morec::train::thesis::{SvrdmOptions, train_svrdm};
+use morec::train::thesis::{SvrdmOptions, SvrdmTrainParams, train_svrdm};
 use morec::train::{LabelSet, TrainError};
 use morec_db::ClipId;
 
@@ -15,13 +15,13 @@ use super::train;
 
 /// Places along each side of a picture of a branch.
 pub const GRID: usize = 72;
-/// A machine's side of the plane is where it says at least this (the thesis's `T` in recognition).
-const ACCEPTS: f64 = 0.4;
 
 /// A trained tree, ready to be shown.
 #[derive(Debug)]
 pub struct Thesis {
     pub model: Arc<SvrdmModel>,
+    /// The figures that it was trained with.
+    pub params: SvrdmTrainParams,
     pub samples: Vec<TrainedSample>,
     pub nodes: Vec<TreeNodeView>,
 }
@@ -61,6 +61,8 @@ pub struct Boundary {
     pub edges: [f64; 4],
     /// For each place, by rows from below: bit 0 where the first side accepts, bit 1 where the second does.
     pub regions: Vec<u8>,
+    /// For each place, what the machines of both sides say.
+    pub outputs: Vec<[f64; 2]>,
     /// Samples of either side: place in `Thesis::samples`, place in the plane, side.
     pub points: Vec<(usize, [f64; 2], usize)>,
 }
@@ -69,9 +71,10 @@ pub struct Boundary {
 pub fn run(
     path: &Path,
     classes: &[String],
+    params: SvrdmTrainParams,
     progress: &JobProgress,
 ) -> Result<Arc<Thesis>, JobError> {
-    let trained = trained(path, classes, progress).map(Arc::new);
+    let trained = trained(path, classes, params, progress).map(Arc::new);
     trained.map_err(|why| match why {
         None => JobError::Cancelled,
         Some(why) => JobError::Failed(format!("The method of 2009 was not trained: {why}")),
@@ -81,6 +84,7 @@ pub fn run(
 fn trained(
     path: &Path,
     classes: &[String],
+    params: SvrdmTrainParams,
     progress: &JobProgress,
 ) -> Result<Thesis, Option<String>> {
     let data = train::material(path, classes).map_err(|e| Some(e.to_string()))?;
@@ -90,7 +94,10 @@ fn trained(
         classes: &data.classes,
         unlabelled_is_background: true,
     };
-    let options = SvrdmOptions::default();
+    let options = SvrdmOptions {
+        params,
+        ..SvrdmOptions::default()
+    };
     let (model, _) =
         train_svrdm(&data.clips, &labelling, &options, progress).map_err(|e| match e {
             TrainError::Cancelled => None,
@@ -126,6 +133,7 @@ fn trained(
     Ok(Thesis {
         nodes: nodes.collect(),
         samples,
+        params: options.params,
         model: model.clone(),
     })
 }
@@ -155,13 +163,16 @@ fn boundary(
         let (low, high) = (edges[axis], edges[axis + 2]);
         low + (high - low) * (step as f64 + 0.5) / GRID as f64
     };
-    let regions = (0..GRID * GRID).map(|place| {
-        let says = branch.outputs_at([at(0, place % GRID), at(1, place / GRID)]);
-        u8::from(says[0] >= ACCEPTS) | u8::from(says[1] >= ACCEPTS) << 1
-    });
+    let places = (0..GRID * GRID).map(|place| [at(0, place % GRID), at(1, place / GRID)]);
+    let outputs: Vec<[f64; 2]> = places.map(|place| branch.outputs_at(place)).collect();
+    let accepts = |says: f64| u8::from(says >= model.params.accept);
+    let regions = outputs
+        .iter()
+        .map(|says| accepts(says[0]) | accepts(says[1]) << 1);
     Boundary {
         children: branch.children.map(|child| child as usize),
         regions: regions.collect(),
+        outputs,
         sides,
         edges,
         points,

@@ -128,6 +128,12 @@ fn teach_next(ui: &mut Ui, state: &State) {
                 class.class, class.missed, class.samples
             ));
         }
+        for class in &judged.untested {
+            hints.push(format!(
+                "{class}: of {} only, add some of another",
+                judged.by.one()
+            ));
+        }
         if let Some(hint) = unlabelled(judged) {
             hints.push(hint);
         }

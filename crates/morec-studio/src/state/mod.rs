@@ -1,7 +1,7 @@
 //! Everything the window shows, without a widget: tests apply commands to it without a window.
 
 mod actions;
-mod classes;
+pub mod classes;
 mod columns;
 mod command;
 pub mod compare;
@@ -25,8 +25,15 @@ use morec::smooth::ChannelKind;
 use morec_db::{ClipId, ClipInfo};
 
 use crate::body::Camera;
-use crate::jobs::{JobOutcome, Jobs, channel::ChannelCurve, cut::Curves, import, load::ClipMotion};
+use crate::jobs::{
+    JobOutcome, Jobs,
+    channel::ChannelCurve,
+    cut::Curves,
+    import,
+    load::{ClipMotion, extent},
+};
 use crate::store::{Store, Wake};
+use crate::stretch::Stretch;
 
 pub use classes::Classes;
 pub use command::{
@@ -42,6 +49,9 @@ pub use player::{PlayCommand, Player, SPEEDS};
 pub use similar::SimilarCommand;
 pub use timeline::{Drag, Grip, TimelineState};
 pub use train::Train;
+
+/// A frame that took longer than this was not one: the window was hidden or the machine slept, seconds.
+pub(in crate::state) const LONGEST_FRAME: f64 = 0.25;
 
 /// A sentence that stays until it is read.
 #[derive(Debug, Clone, PartialEq)]
@@ -85,10 +95,14 @@ pub struct State {
     pub import_report: Option<import::ImportSummary>,
     /// A file dialog that should be shown.
     pub ask: Option<Ask>,
+    /// True while the camera stands so far off as what is shown, which is no person, needs.
+    fitted: bool,
     pub(crate) wake: Wake,
     pub(crate) motions: Motions,
     /// A stretch to show once its clip is decoded.
     pending: Option<(ClipId, Option<(f64, f64)>)>,
+    /// A stretch to select once its clip is shown.
+    selecting: Option<Stretch>,
     /// A folder of this run's own, for what nobody has named yet.
     folder: Option<PathBuf>,
     seen_version: u64,
@@ -172,9 +186,11 @@ impl State {
             live: Live::default(),
             import_report: None,
             ask: None,
+            fitted: false,
             wake,
             motions: Motions::default(),
             pending: None,
+            selecting: None,
             folder: None,
             seen_version: 0,
             reopening: None,
@@ -184,7 +200,7 @@ impl State {
 
     /// Time passes, and what threads have done arrives. `dt` in seconds.
     pub fn tick(&mut self, dt: f64) {
-        self.player.tick(dt);
+        self.player.tick(dt.min(LONGEST_FRAME));
         if self.player.playing {
             let (at, end) = (self.player.at_secs, self.player.secs());
             self.timeline.follow(at, end);
@@ -204,7 +220,11 @@ impl State {
             return self.live.centre();
         }
         let motion = self.player.motion.as_ref()?;
-        let at = motion.body.centre(&motion.pose(self.player.at_secs))?;
+        let pose = motion.pose(self.player.at_secs);
+        if !motion.is_person {
+            return Some(extent(&pose)?.0);
+        }
+        let at = motion.body.centre(&pose)?;
         let waist = motion.floor + 0.52 * motion.body.height;
         Some(self.middle(morec::math::Vec3::new(at.x, waist, at.z)))
     }
@@ -224,7 +244,7 @@ impl State {
             Command::File(command) => self.apply_file(command),
             Command::Edit(edit) => self.edit(edit),
             Command::Library(command) => self.apply_library(command),
-            Command::Play(command) => self.player.apply(&command),
+            Command::Play(command) => self.play(&command),
             Command::Look(look) => self.look(look),
             Command::Timeline(command) => self.apply_timeline(command),
             Command::Classes(command) => self.apply_classes(command),
@@ -258,9 +278,12 @@ impl State {
         self.store.as_ref()?.snapshot.clip(id)
     }
 
-    /// True while something moves by itself: then the next frame is wanted at once.
-    pub fn is_moving(&self) -> bool {
-        self.player.playing || self.live.is_running()
+    /// Time until something that is shown changes by itself, seconds; `None` if only people and threads change it.
+    pub fn next_change_secs(&self) -> Option<f64> {
+        let changes = [self.player.next_frame_secs(), self.live.next_change_secs()];
+        let next = changes.into_iter().flatten().reduce(f64::min)?;
+        // Slow motion goes on evenly if frames are not much further apart than this.
+        Some(next.clamp(0.0, 0.8 * LONGEST_FRAME))
     }
 
     /// True while threads are at work.

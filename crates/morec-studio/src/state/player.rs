@@ -86,6 +86,20 @@ impl Player {
         }
     }
 
+    /// Time until another frame of the clip is shown, seconds; `None` while nothing plays.
+    pub fn next_frame_secs(&self) -> Option<f64> {
+        if !self.playing || self.motion.is_none() {
+            return None;
+        }
+        let place = self.at_secs * self.rate_hz();
+        // A little over: the next frame is shown once its time has come.
+        let left = match self.speed >= 0.0 {
+            true => place.floor() + 1.0 - place,
+            false => place - place.ceil() + 1.0,
+        };
+        Some((left + 1e-6) / (self.rate_hz() * self.speed.abs().max(1e-6)))
+    }
+
     /// The time of the last frame.
     fn last(&self) -> f64 {
         (self.secs() - 1.0 / self.rate_hz()).max(0.0)

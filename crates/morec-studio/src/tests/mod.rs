@@ -2,6 +2,7 @@
 
 mod access;
 mod background;
+mod bodies;
 mod classes;
 mod compare;
 mod counted;
@@ -17,6 +18,7 @@ mod out;
 mod person;
 mod pictures;
 mod roles;
+mod selection;
 mod train;
 mod view;
 

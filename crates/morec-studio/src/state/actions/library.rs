@@ -29,6 +29,10 @@ impl State {
                 start_secs,
                 stop_secs,
             } => self.open_clip(clip, Some((start_secs, stop_secs))),
+            LibraryCommand::SelectStretch(of) => {
+                self.selecting = Some(of);
+                self.open_clip(of.clip, Some((of.start_secs, of.stop_secs)));
+            }
             LibraryCommand::DismissReport => self.import_report = None,
             LibraryCommand::Strips(on) => self.library.strips = on,
             LibraryCommand::Role(role) => self.library.role = role,
