@@ -66,11 +66,7 @@ pub const HELP: &[(&str, &str, &str)] = &[
         "1 … 9, selected",
         "label the selected stretch, or change the selected label's class",
     ),
-    (
-        "Labels",
-        "Escape",
-        "end the selection",
-    ),
+    ("Labels", "Escape", "end the selection"),
     (
         "Labels, live",
         "Q, W",

@@ -59,7 +59,8 @@ pub struct Boundary {
     pub sides: [Vec<String>; 2],
     /// Left, lower, right and upper edge of what is shown of the plane.
     pub edges: [f64; 4],
-    /// For each place, by rows from below: bit 0 where the first side accepts, bit 1 where the second does.
+    /// For each place, by rows from below: bit 0 where the first side's machine says `t` or more, bit 1 where the second's
+    /// does.
     pub regions: Vec<u8>,
     /// For each place, what the machines of both sides say.
     pub outputs: Vec<[f64; 2]>,
@@ -126,9 +127,13 @@ fn trained(
             }
         }
     }
+    // More than this a machine says of its own side alone.
+    let least = options.params.tree.machine.other;
     let nodes = model.tree.nodes().iter().map(|node| match node {
         Node::Leaf(class) => TreeNodeView::Leaf(model.classes[class.index()].name.clone()),
-        Node::Branch(branch) => TreeNodeView::Branch(boundary(&model, branch, &samples, &vectors)),
+        Node::Branch(branch) => {
+            TreeNodeView::Branch(boundary(&model, branch, &samples, &vectors, least))
+        }
     });
     Ok(Thesis {
         nodes: nodes.collect(),
@@ -143,6 +148,7 @@ fn boundary(
     branch: &Branch,
     samples: &[TrainedSample],
     vectors: &[Vec<f64>],
+    least: f64,
 ) -> Boundary {
     let sides = [0, 1].map(|side| {
         let classes = branch.classes[side].iter();
@@ -165,7 +171,7 @@ fn boundary(
     };
     let places = (0..GRID * GRID).map(|place| [at(0, place % GRID), at(1, place / GRID)]);
     let outputs: Vec<[f64; 2]> = places.map(|place| branch.outputs_at(place)).collect();
-    let accepts = |says: f64| u8::from(says >= model.params.accept);
+    let accepts = |says: f64| u8::from(says >= least);
     let regions = outputs
         .iter()
         .map(|says| accepts(says[0]) | accepts(says[1]) << 1);

@@ -33,12 +33,18 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
         let text = "The figures have changed since it was trained.";
         ui.colored_label(c.warn, text);
     }
-    node(ui, state, thesis, 0, 0, out);
-    if let Some(branch) = thesis.branch(state.train.branch) {
-        ui.add_space(6.0);
-        sides(ui, state, branch);
-        thesis_plane::show(ui, state, thesis, branch, out);
-    }
+    ui.horizontal_top(|ui| {
+        ui.vertical(|ui| {
+            ui.set_width((0.25 * ui.available_width()).clamp(130.0, 260.0));
+            node(ui, state, thesis, 0, 0, out);
+        });
+        if let Some(branch) = thesis.branch(state.train.branch) {
+            ui.vertical(|ui| {
+                sides(ui, state, branch);
+                thesis_plane::show(ui, state, thesis, branch, out);
+            });
+        }
+    });
 }
 
 /// A node of the tree, and what is below it.

@@ -24,9 +24,9 @@ pub fn show(ui: &mut Ui, state: &State, thesis: &Thesis, branch: &Boundary, out:
     ui.painter().rect_filled(rect, 3.0, c.well);
     let painter = ui.painter_at(rect);
     painter.add(Shape::mesh(regions(rect, branch, &c)));
-    let machine = &thesis.params.tree.machine;
+    let (machine, accept) = (&thesis.params.tree.machine, thesis.model.params.accept);
     for (machine_side, colour) in [(0, c.accent), (1, c.bad)] {
-        for (level, width) in [(machine.own, 2.0), (machine.other, 1.0)] {
+        for (level, width) in [(machine.own, 2.0), (accept, 1.0)] {
             for line in contour(rect, branch, machine_side, level) {
                 painter.line_segment(line, (width, colour));
             }
@@ -81,9 +81,9 @@ pub fn show(ui: &mut Ui, state: &State, thesis: &Thesis, branch: &Boundary, out:
 fn legend(ui: &mut Ui, thesis: &Thesis, c: &Colours) {
     let machine = &thesis.params.tree.machine;
     let text = format!(
-        "Tinted where a side is followed in recognition: its machine says at least {:.2}. Thick lines: it says T = {:.2}; \
-         thin lines: it says t = {:.2}.",
-        thesis.model.params.accept, machine.own, machine.other
+        "Tinted where the machine of a side says more than it may of the other side; at the edge it says t = {:.2}. Thick \
+         lines: it says T = {:.2}, as of its own samples. Thin lines: it says {:.2}, from which recognition follows it.",
+        machine.other, machine.own, thesis.model.params.accept
     );
     ui.label(RichText::new(text).size(12.0).color(c.muted));
 }
@@ -160,7 +160,7 @@ fn contour(rect: Rect, branch: &Boundary, side: usize, level: f64) -> Vec<[Pos2;
     lines
 }
 
-/// Regions in which one side accepts, or both do.
+/// Regions in which the machine of one side says `t` or more, or those of both do.
 fn regions(rect: Rect, branch: &Boundary, c: &Colours) -> Mesh {
     let mut mesh = Mesh::default();
     let step = rect.width() / GRID as f32;

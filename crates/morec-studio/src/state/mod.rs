@@ -45,13 +45,11 @@ pub use crossval::CrossvalView;
 pub use cuts::CutCommand;
 pub use library::Library;
 pub use live::{Live, LiveCommand};
+use player::LONGEST_FRAME;
 pub use player::{PlayCommand, Player, SPEEDS};
 pub use similar::SimilarCommand;
 pub use timeline::{Drag, Grip, TimelineState};
 pub use train::Train;
-
-/// A frame that took longer than this was not one: the window was hidden or the machine slept, seconds.
-pub(in crate::state) const LONGEST_FRAME: f64 = 0.25;
 
 /// A sentence that stays until it is read.
 #[derive(Debug, Clone, PartialEq)]

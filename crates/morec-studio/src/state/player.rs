@@ -4,6 +4,9 @@ use std::sync::Arc;
 
 use crate::jobs::load::ClipMotion;
 
+/// A frame that took longer than this was not one: the window was hidden or the machine slept, seconds.
+pub const LONGEST_FRAME: f64 = 0.25;
+
 /// Speeds that can be chosen.
 pub const SPEEDS: [f64; 9] = [0.05, 0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 6.0, 8.0];
 

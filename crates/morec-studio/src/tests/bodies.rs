@@ -207,7 +207,7 @@ fn clips_of_positions_say_why_the_tracks_of_2009_are_empty() {
     person.command(Command::Library(LibraryCommand::Open(clip)));
     let said = crate::jobs::cut::NO_ROTATIONS;
     assert!(person.sees(&format!("2009: confidence: {said}")));
-    assert!(person.sees_part(&format!("Misfit (thesis): ")));
+    assert!(person.sees_part("Misfit (thesis): "));
     assert!(
         person.state().notices.is_empty(),
         "{:?}",

@@ -7,7 +7,7 @@ use morec_db::ClipId;
 
 use super::feed::{Feed, SourceItem};
 use super::tracked::LivePerformer;
-use crate::state::LONGEST_FRAME;
+use crate::state::player::LONGEST_FRAME;
 
 /// A stream that says nothing for so long has been lost, seconds on the wall.
 const LOST_SECS: f64 = 1.5;
@@ -200,7 +200,7 @@ impl Run {
             Feed::Clip(feed) => Some(feed.next_frame_secs()),
             // That the sender has stopped is said once.
             Feed::Thread(_) => (!self.ended && self.silent_secs <= LOST_SECS)
-                .then(|| LOST_SECS - self.silent_secs + 0.01),
+                .then_some(LOST_SECS - self.silent_secs + 0.01),
         }
     }
 
