@@ -10,13 +10,19 @@ use crate::theme::Colours;
 
 /// Room for the axes at the left and below, points.
 const AXIS: Vec2 = Vec2::new(52.0, 38.0);
+/// Room for the legend below, points.
+const LEGEND: f32 = 34.0;
 /// A point can be clicked so far from its middle.
 const REACH: f32 = 7.0;
 
 /// The picture, as large as there is room for.
 pub fn show(ui: &mut Ui, state: &State, thesis: &Thesis, branch: &Boundary, out: Out) {
     let c = Colours::now(ui);
-    let side = (ui.available_width() - AXIS.x - 8.0).clamp(300.0, 620.0);
+    // As much as is seen at once.
+    let tall = ui.clip_rect().bottom() - ui.cursor().top() - AXIS.y - LEGEND;
+    let side = (ui.available_width() - AXIS.x - 8.0)
+        .min(tall)
+        .clamp(300.0, 620.0);
     let (area, _) = ui.allocate_exact_size(Vec2::splat(side) + AXIS, Sense::hover());
     let rect = Rect::from_min_size(area.min + Vec2::new(AXIS.x, 0.0), Vec2::splat(side));
     let whole = ui.interact(rect, ui.id().with("plane"), Sense::hover());
