@@ -2,14 +2,12 @@
 
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::time::Duration;
 
 use crate::panels;
 use crate::state::{Command, FileCommand, State};
 use crate::store::Wake;
 use crate::{dialogs, keys, theme};
-
-/// A frame that took longer than this was not one: the window was hidden or the machine slept, seconds.
-const LONGEST_FRAME: f64 = 0.25;
 
 /// The program.
 pub struct Studio {
@@ -62,7 +60,7 @@ impl Studio {
                 egui::Theme::Light
             });
         }
-        let dt = ctx.input(|i| f64::from(i.unstable_dt)).min(LONGEST_FRAME);
+        let dt = ctx.input(|i| f64::from(i.unstable_dt));
         self.state.tick_keys(dt);
         self.state.tick(dt);
         let mut commands: Vec<Command> = Vec::new();
@@ -82,8 +80,9 @@ impl Studio {
         for command in self.dialogs.answers() {
             self.state.apply(command);
         }
-        if self.state.is_moving() {
-            ctx.request_repaint();
+        // Nothing else changes by itself: threads wake the window when they have something.
+        if let Some(secs) = self.state.next_change_secs() {
+            ctx.request_repaint_after(Duration::from_secs_f64(secs));
         }
     }
 }

@@ -69,9 +69,10 @@ pub const HELP: &[(&str, &str, &str)] = &[
     ),
     (
         "Labels",
-        "1 … 9 stopped",
+        "1 … 9, selected",
         "label the selected stretch, or change the selected label's class",
     ),
+    ("Labels", "Escape", "end the selection"),
     (
         "Labels, live",
         "Q, W",
@@ -131,9 +132,14 @@ pub fn read(ctx: &egui::Context, state: &State, out: &mut Vec<Command>) {
     if state.leaving.is_some() || state.undo_asks {
         return;
     }
-    let typing = ctx.wants_keyboard_input();
+    let focused = ctx.memory(|memory| memory.focused());
+    // A field that appears has the keyboard from its first frame on, whether or not it was drawn yet.
+    let asked = state.classes.renaming.is_some() || state.classes.choosing.is_some();
+    let in_text = asked || focused.is_some_and(|id| egui::TextEdit::load_state(ctx, id).is_some());
+    let typing = asked || ctx.wants_keyboard_input();
     ctx.input_mut(|i| {
-        commands(i, out);
+        // In a text the keys with Ctrl are the text's own.
+        commands(i, in_text, out);
         if typing {
             // Keys that were held when typing began are let go.
             if let Some(held) = &state.classes.held {
@@ -158,7 +164,21 @@ fn class_key(slot: usize, down: bool) -> Command {
     Command::Classes(ClassCommand::Key { slot, down })
 }
 
-fn commands(i: &mut egui::InputState, out: &mut Vec<Command>) {
+fn commands(i: &mut egui::InputState, in_text: bool, out: &mut Vec<Command>) {
+    if !in_text {
+        with_ctrl(i, out);
+    }
+    if i.consume_key(Modifiers::NONE, Key::F1) {
+        out.push(Command::ShowKeys(true));
+    }
+    if i.key_pressed(Key::Escape) {
+        out.push(Command::ShowKeys(false));
+        out.push(Command::ShowHistory(false));
+        out.push(Command::Classes(ClassCommand::Choosing(None)));
+    }
+}
+
+fn with_ctrl(i: &mut egui::InputState, out: &mut Vec<Command>) {
     let shift = Modifiers::COMMAND | Modifiers::SHIFT;
     // The longer combination first: a shortcut is also met with more modifiers.
     if i.consume_key(shift, Key::Z) || i.consume_key(Modifiers::COMMAND, Key::Y) {
@@ -183,14 +203,6 @@ fn commands(i: &mut egui::InputState, out: &mut Vec<Command>) {
         if i.consume_key(Modifiers::COMMAND, key) {
             out.push(command);
         }
-    }
-    if i.consume_key(Modifiers::NONE, Key::F1) {
-        out.push(Command::ShowKeys(true));
-    }
-    if i.key_pressed(Key::Escape) {
-        out.push(Command::ShowKeys(false));
-        out.push(Command::ShowHistory(false));
-        out.push(Command::Classes(ClassCommand::Choosing(None)));
     }
 }
 
@@ -286,6 +298,10 @@ fn choosing(i: &mut egui::InputState, state: &State, out: &mut Vec<Command>) {
 }
 
 fn labels(i: &mut egui::InputState, state: &State, out: &mut Vec<Command>) {
+    let covered = state.show_keys || state.show_history || state.classes.choosing.is_some();
+    if i.key_pressed(Key::Escape) && !covered {
+        out.push(Command::Timeline(TimelineCommand::SelectNothing));
+    }
     choosing(i, state, out);
     for (slot, keys) in slots(state) {
         // Keys repeat while they are held; going down is what counts.

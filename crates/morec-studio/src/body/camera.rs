@@ -5,6 +5,8 @@ use morec::math::Vec3;
 
 /// Nearer than this nothing is drawn, metres.
 const NEAR: f64 = 0.15;
+/// From the middle of the picture to its upper edge: 24°.
+const HALF_ANGLE: f64 = 24.0 * std::f64::consts::PI / 180.0;
 
 /// A camera that looks at a point from some way off. Right-handed, Y up, metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,7 +49,12 @@ impl Camera {
     pub const STEEPEST: f64 = 1.5;
     /// Least and greatest distance, metres.
     pub const NEAREST: f64 = 0.6;
-    pub const FARTHEST: f64 = 40.0;
+    pub const FARTHEST: f64 = 400.0;
+
+    /// The distance at which what reaches so far from the target is seen whole, metres.
+    pub fn distance_of(half: f64) -> f64 {
+        (1.5 * half / HALF_ANGLE.tan()).clamp(Self::NEAREST, Self::FARTHEST)
+    }
 
     /// Turns by a drag over this many points.
     pub fn orbit(&mut self, drag: Vec2) {
@@ -89,8 +96,7 @@ impl Camera {
             up,
             forward,
             centre: rect.center(),
-            // 48° from the lower edge to the upper.
-            scale: f64::from(rect.height()) / (2.0 * 24f64.to_radians().tan()),
+            scale: f64::from(rect.height()) / (2.0 * HALF_ANGLE.tan()),
         }
     }
 }

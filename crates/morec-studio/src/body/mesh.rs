@@ -222,6 +222,11 @@ impl Painter {
         Shape::mesh(mesh)
     }
 
+    /// True if nothing was added that is seen.
+    pub fn is_empty(&self) -> bool {
+        self.triangles.is_empty()
+    }
+
     /// All triangles as one shape.
     pub fn finish(mut self) -> Shape {
         self.triangles.sort_unstable_by(|a, b| {

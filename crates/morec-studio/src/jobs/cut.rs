@@ -110,6 +110,10 @@ fn kernel(rows: &ClipRows) -> Result<Vec<f64>, String> {
     kernel_cuts(&rows.rows, &params, &KernelParams::default()).map_err(|e| e.to_string())
 }
 
+/// Why the tracks of the method of 2009 are empty in a clip of positions.
+pub const NO_ROTATIONS: &str =
+    "this clip holds positions without rotations, which the method of 2009 needs";
+
 type Misfit = (Vec<f64>, Vec<MisfitSample>, Vec<MisfitSample>);
 
 fn ppca(motion: &ClipMotion) -> Result<Misfit, String> {
@@ -164,6 +168,10 @@ pub fn curves(motion: &Arc<ClipMotion>, progress: &JobProgress) -> Result<Curves
     curves.cycles = repetitions(&rows, &curves.kernel, motion.secs(), params.tick_hz());
     if progress.cancelled() {
         return Err(JobError::Cancelled);
+    }
+    if !motion.clip.has_rotations() {
+        curves.note = Some(NO_ROTATIONS.to_owned());
+        return Ok(curves);
     }
     match ppca(motion) {
         Ok((cuts, forward, backward)) => {

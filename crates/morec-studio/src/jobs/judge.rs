@@ -1,15 +1,16 @@
 //! Cross-validation of the labels in the database, and the result for every label and every false detection.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use morec::crossval::{CrossvalData as Tested, CrossvalError, CrossvalOptions, FoldBy, crossval};
+use morec::crossval::{CrossvalData, CrossvalError, CrossvalOptions, FoldBy, Tested, crossval};
 use morec::eval::{
     ClipDetection, DetectionVerdict, Evaluation, GroundTruth, GroundTruthVerdict, Timeline,
     timelines,
 };
 use morec::explain::Miss;
-use morec::train::TrainError;
+use morec::labels::Sample;
+use morec::train::{Recipe, TrainClip, TrainError};
 
 use super::progress::{JobError, JobProgress};
 use super::train;
@@ -22,6 +23,10 @@ pub struct CrossvalResult {
     pub misses: Vec<Miss>,
     /// The part that is left out in turn.
     pub by: LeftOut,
+    /// True if the method of 2009 was judged.
+    pub thesis: bool,
+    /// Classes of which nothing is left to learn from when their part is left out: they are not tested.
+    pub untested: Vec<String>,
 }
 
 /// The part of the labels that a cross-validation leaves out in turn.
@@ -48,6 +53,14 @@ impl LeftOut {
             LeftOut::Person => "each person in turn",
             LeftOut::Clip => "each clip in turn",
             LeftOut::Half => "half of the labels",
+        }
+    }
+
+    /// What holds all of a class that cannot be tested: "one person".
+    pub fn one(self) -> &'static str {
+        match self {
+            LeftOut::Person => "one person",
+            LeftOut::Clip | LeftOut::Half => "one clip",
         }
     }
 
@@ -196,6 +209,7 @@ fn clip_of(stream: &str) -> String {
 pub fn judge(
     path: &Path,
     classes: &[String],
+    recipe: &Recipe,
     progress: &JobProgress,
 ) -> Result<Box<CrossvalResult>, JobError> {
     let material = train::material(path, classes).map_err(|e| JobError::Failed(e.to_string()))?;
@@ -203,7 +217,7 @@ pub fn judge(
     let by = LeftOut::of(people, material.labelled().count());
     let mut clips = material.clips;
     clips.extend_from_slice(train::everyday());
-    let tested = Tested {
+    let tested = CrossvalData {
         clips: &clips,
         samples: &material.samples,
         classes: &material.classes,
@@ -213,7 +227,7 @@ pub fn judge(
     let outcome = crossval(
         &tested,
         &CrossvalOptions::from(FoldBy::from(by)),
-        &train::recipe(),
+        recipe,
         progress,
     )
     .map_err(|e| match e {
@@ -224,14 +238,58 @@ pub fn judge(
         other => JobError::Failed(format!("Not judged: {other}")),
     })?
     .tested;
+    let untested = untested(by, &clips, &material.samples);
+    let outcome = without(outcome, &untested);
     let (streams, truths, founds) = (&outcome.streams, &outcome.truths, &outcome.founds);
     let said = |e: morec::eval::EvalError| JobError::Failed(format!("Not judged: {e}"));
     Ok(Box::new(CrossvalResult {
         misses: outcome.misses.clone(),
+        thesis: matches!(recipe, Recipe::Svrdm(_)),
+        untested,
         evaluation: Evaluation::of(streams, truths, founds).map_err(said)?,
         timelines: timelines(streams, truths, founds).map_err(said)?,
         by,
     }))
+}
+
+/// The classes that only one part shows: without it there is nothing that could teach them.
+fn untested(by: LeftOut, clips: &[TrainClip], samples: &[Sample]) -> Vec<String> {
+    let person = |clip: &str| {
+        let clip = clips.iter().find(|c| c.name == clip);
+        clip.and_then(|c| c.person.as_deref())
+    };
+    let mut parts: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
+    for sample in samples {
+        let clip = sample.clip.as_str();
+        let part = match by {
+            LeftOut::Person => person(clip).unwrap_or(clip),
+            LeftOut::Clip => clip,
+            LeftOut::Half => return Vec::new(),
+        };
+        parts.entry(&sample.class).or_default().insert(part);
+    }
+    let alone = parts.into_iter().filter(|(_, parts)| parts.len() == 1);
+    alone.map(|(class, _)| class.to_owned()).collect()
+}
+
+/// The outcome without the labels of some classes, and without what was recognised in their place.
+fn without(mut outcome: Tested, classes: &[String]) -> Tested {
+    let (dropped, kept) = outcome
+        .truths
+        .into_iter()
+        .partition(|truth| classes.contains(&truth.class));
+    let dropped: Vec<GroundTruth> = dropped;
+    outcome.truths = kept;
+    outcome.misses.retain(|miss| !classes.contains(&miss.class));
+    let there = |truth: &GroundTruth, found: &ClipDetection| {
+        truth.clip == found.clip && is_match(truth, found)
+    };
+    let kept: &[GroundTruth] = &outcome.truths;
+    outcome.founds.retain(|found| {
+        kept.iter().any(|truth| there(truth, found))
+            || !dropped.iter().any(|truth| there(truth, found))
+    });
+    outcome
 }
 
 #[cfg(test)]
@@ -271,6 +329,8 @@ mod tests {
             timelines: timelines(&streams, truths, founds).unwrap(),
             misses: Vec::new(),
             by: LeftOut::Half,
+            thesis: false,
+            untested: Vec::new(),
         };
         result.moments()
     }

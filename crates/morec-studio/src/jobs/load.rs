@@ -6,7 +6,8 @@ use std::sync::Arc;
 use morec::clip::Clip;
 use morec::features::{FeatureParams, RowLayout, bones_of_clip, rows_of_clip};
 use morec::kinematics::WorldPose;
-use morec::roles::RoleMap;
+use morec::math::Vec3;
+use morec::roles::{self, Role, RoleMap};
 use morec_db::{ClipId, MotionDb, StoredClip};
 
 use crate::body::Body;
@@ -24,6 +25,10 @@ pub struct ClipMotion {
     pub tick_hz: f64,
     /// Height of the lowest joint over the whole clip, metres.
     pub floor: f64,
+    /// What no person's body has, each in a sentence, as `morec inspect` reports it.
+    pub doubts: Vec<String>,
+    /// False of an animal, a thing, and points of which nothing is known.
+    pub is_person: bool,
 }
 
 /// A clip that was asked for.
@@ -53,7 +58,15 @@ impl ClipMotion {
                 RowLayout::of(bones),
             ),
         };
-        let body = Body::of(&clip, &roles, rest.end.min(clip.frames.saturating_sub(1)));
+        let doubts = doubts(&clip, &roles, &rest);
+        let first = rest.end.min(clip.frames.saturating_sub(1));
+        // Whoever is no person is drawn without a person's limbs.
+        let is_person = !doubts.iter().any(|doubt| doubt.starts_with(NOT_HUMAN));
+        let body = match is_person {
+            false => Body::of(&clip, &RoleMap::default(), first),
+            true => Body::of(&clip, &roles, first),
+        };
+        let is_person = is_person && roles.joint(Role::Hips).is_some();
         let floor = floor(&clip, &rest);
         Self {
             id,
@@ -61,10 +74,18 @@ impl ClipMotion {
             speed,
             tick_hz: params.tick_hz(),
             floor,
+            doubts,
+            is_person,
             clip,
             roles,
             rest,
         }
+    }
+
+    /// True if the clip holds points that do not hang together, as markers do.
+    pub fn is_points(&self) -> bool {
+        let joints = self.clip.skeleton.joints();
+        joints.iter().all(|joint| joint.parent.is_none())
     }
 
     pub fn secs(&self) -> f64 {
@@ -96,6 +117,42 @@ fn speeds(rows: &morec::features::Rows, layout: RowLayout) -> Vec<f32> {
         (velocities.iter().map(|v| v * v).sum::<f32>() / layout.bones().max(1) as f32).sqrt()
     };
     rows.iter().map(speed).collect()
+}
+
+/// How [`roles::check`] begins what it says of an animal or a thing.
+const NOT_HUMAN: &str = "this hardly is a human body";
+
+/// What no person's body has, in some frames; nothing of points of which none is known.
+fn doubts(clip: &Clip, roles: &RoleMap, rest: &std::ops::Range<usize>) -> Vec<String> {
+    const FRAMES: usize = 12;
+    if clip.frames == 0 || (!clip.has_rotations() && *roles == RoleMap::default()) {
+        return Vec::new();
+    }
+    let first = rest.end.min(clip.frames.saturating_sub(1));
+    let step = (clip.frames - first).div_ceil(FRAMES).max(1);
+    let frames = (first..clip.frames).step_by(step);
+    let poses: Vec<Vec<Vec3>> = frames.map(|at| WorldPose::of(clip, at).positions).collect();
+    let doubts = roles::check(&clip.skeleton, roles, &poses);
+    // The command's remedy is a file; here it is a click.
+    let here = |doubt: String| {
+        doubt.replace(
+            "with --roles FILE",
+            "under Parts of the body in the library",
+        )
+    };
+    doubts.into_iter().map(here).collect()
+}
+
+/// Where joints are that are seen: the middle, and half of the greatest extent, metres.
+pub fn extent(pose: &WorldPose) -> Option<(Vec3, f64)> {
+    let seen = || {
+        pose.positions
+            .iter()
+            .filter(|p| p.iter().all(|v| v.is_finite()))
+    };
+    let first = seen().next()?;
+    let (low, high) = seen().fold((*first, *first), |(low, high), p| (low.inf(p), high.sup(p)));
+    Some(((low + high) / 2.0, (high - low).max() / 2.0))
 }
 
 /// The lowest joint of some fifty frames.

@@ -2,14 +2,16 @@
 
 use std::path::Path;
 
-use morec_db::{MotionDb, ProposeOptions};
+use morec_db::{MotionDb, Proposal, ProposeOptions};
 
 use super::progress::{JobError, JobProgress};
+use crate::store::UNLIKELY;
 
-/// Proposes anew, in place of proposals that nobody judged; gives their number.
+/// Proposes anew, in place of proposals that nobody judged; gives the number of those that are worth an answer.
 pub fn propose(path: &Path, progress: &JobProgress) -> Result<usize, JobError> {
     let kept = MotionDb::open(path)
         .and_then(|mut db| db.propose_and_keep(&ProposeOptions::default(), progress));
-    kept.map(|kept| kept.len())
+    let likely = |p: &&Proposal| f64::from(p.score) >= UNLIKELY;
+    kept.map(|kept| kept.iter().filter(likely).count())
         .map_err(|e| JobError::of_db("Nothing was proposed", &e))
 }

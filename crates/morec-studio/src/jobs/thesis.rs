@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use morec::pivots::{PivotMap, pose_rows_of_clip};
 use morec::svrdm::{Branch, Node, SampleClassifier, SvrdmEngine, SvrdmModel};
-use morec::train::thesis::{SvrdmOptions, train_svrdm};
+use morec::train::thesis::{SvrdmOptions, SvrdmTrainParams, train_svrdm};
 use morec::train::{LabelSet, TrainError};
 use morec_db::ClipId;
 
@@ -15,13 +15,13 @@ use super::train;
 
 /// Places along each side of a picture of a branch.
 pub const GRID: usize = 72;
-/// A machine's side of the plane is where it says at least this (the thesis's `T` in recognition).
-const ACCEPTS: f64 = 0.4;
 
 /// A trained tree, ready to be shown.
 #[derive(Debug)]
 pub struct Thesis {
     pub model: Arc<SvrdmModel>,
+    /// The figures that it was trained with.
+    pub params: SvrdmTrainParams,
     pub samples: Vec<TrainedSample>,
     pub nodes: Vec<TreeNodeView>,
 }
@@ -59,8 +59,11 @@ pub struct Boundary {
     pub sides: [Vec<String>; 2],
     /// Left, lower, right and upper edge of what is shown of the plane.
     pub edges: [f64; 4],
-    /// For each place, by rows from below: bit 0 where the first side accepts, bit 1 where the second does.
+    /// For each place, by rows from below: bit 0 where the first side's machine says `t` or more, bit 1 where the second's
+    /// does.
     pub regions: Vec<u8>,
+    /// For each place, what the machines of both sides say.
+    pub outputs: Vec<[f64; 2]>,
     /// Samples of either side: place in `Thesis::samples`, place in the plane, side.
     pub points: Vec<(usize, [f64; 2], usize)>,
 }
@@ -69,9 +72,10 @@ pub struct Boundary {
 pub fn run(
     path: &Path,
     classes: &[String],
+    params: SvrdmTrainParams,
     progress: &JobProgress,
 ) -> Result<Arc<Thesis>, JobError> {
-    let trained = trained(path, classes, progress).map(Arc::new);
+    let trained = trained(path, classes, params, progress).map(Arc::new);
     trained.map_err(|why| match why {
         None => JobError::Cancelled,
         Some(why) => JobError::Failed(format!("The method of 2009 was not trained: {why}")),
@@ -81,6 +85,7 @@ pub fn run(
 fn trained(
     path: &Path,
     classes: &[String],
+    params: SvrdmTrainParams,
     progress: &JobProgress,
 ) -> Result<Thesis, Option<String>> {
     let data = train::material(path, classes).map_err(|e| Some(e.to_string()))?;
@@ -90,7 +95,10 @@ fn trained(
         classes: &data.classes,
         unlabelled_is_background: true,
     };
-    let options = SvrdmOptions::default();
+    let options = SvrdmOptions {
+        params,
+        ..SvrdmOptions::default()
+    };
     let (model, _) =
         train_svrdm(&data.clips, &labelling, &options, progress).map_err(|e| match e {
             TrainError::Cancelled => None,
@@ -119,13 +127,18 @@ fn trained(
             }
         }
     }
+    // More than this a machine says of its own side alone.
+    let least = options.params.tree.machine.other;
     let nodes = model.tree.nodes().iter().map(|node| match node {
         Node::Leaf(class) => TreeNodeView::Leaf(model.classes[class.index()].name.clone()),
-        Node::Branch(branch) => TreeNodeView::Branch(boundary(&model, branch, &samples, &vectors)),
+        Node::Branch(branch) => {
+            TreeNodeView::Branch(boundary(&model, branch, &samples, &vectors, least))
+        }
     });
     Ok(Thesis {
         nodes: nodes.collect(),
         samples,
+        params: options.params,
         model: model.clone(),
     })
 }
@@ -135,6 +148,7 @@ fn boundary(
     branch: &Branch,
     samples: &[TrainedSample],
     vectors: &[Vec<f64>],
+    least: f64,
 ) -> Boundary {
     let sides = [0, 1].map(|side| {
         let classes = branch.classes[side].iter();
@@ -155,13 +169,16 @@ fn boundary(
         let (low, high) = (edges[axis], edges[axis + 2]);
         low + (high - low) * (step as f64 + 0.5) / GRID as f64
     };
-    let regions = (0..GRID * GRID).map(|place| {
-        let says = branch.outputs_at([at(0, place % GRID), at(1, place / GRID)]);
-        u8::from(says[0] >= ACCEPTS) | u8::from(says[1] >= ACCEPTS) << 1
-    });
+    let places = (0..GRID * GRID).map(|place| [at(0, place % GRID), at(1, place / GRID)]);
+    let outputs: Vec<[f64; 2]> = places.map(|place| branch.outputs_at(place)).collect();
+    let accepts = |says: f64| u8::from(says >= least);
+    let regions = outputs
+        .iter()
+        .map(|says| accepts(says[0]) | accepts(says[1]) << 1);
     Boundary {
         children: branch.children.map(|child| child as usize),
         regions: regions.collect(),
+        outputs,
         sides,
         edges,
         points,

@@ -3,6 +3,7 @@
 use egui::{Button, Rect, RichText, Sense, Ui, Vec2, WidgetType};
 use morec_db::labels::{DbSample, SampleId, SampleState as Judged};
 
+use super::carried::Carried;
 use super::strips::{STRIP, go};
 use super::{Out, strips, widgets};
 use crate::format;
@@ -58,7 +59,7 @@ pub fn show(ui: &mut Ui, state: &State, sample: &DbSample, out: Out) {
         widgets::selected_frame(ui, picture);
     }
     if response.drag_started() {
-        response.dnd_set_drag_payload(sample.id);
+        response.dnd_set_drag_payload(Carried::Sample(sample.id));
     }
     if response.clicked() || response.double_clicked() {
         go(

@@ -7,21 +7,24 @@ use egui::{Color32, Pos2, Rect, Shape, Stroke, Ui, Vec2, WidgetType, pos2};
 use morec::smooth::ChannelKind;
 
 use super::scale::Scale;
-use super::tracks::track;
+use super::tracks::{plain_track, remark};
 use super::{Out, widgets};
 use crate::jobs::channel::ChannelCurve;
+use crate::jobs::cut::NO_ROTATIONS;
 use crate::jobs::thesis::Map;
 use crate::state::{Command, State, TimelineCommand};
 use crate::theme::Colours;
 
 const HEIGHT: f32 = 64.0;
+/// Name of the track of the map of confidences.
+const CONFIDENCE: &str = "2009: confidence";
 /// Handles of curves narrower than this are left out, points.
 const HANDLES: f32 = 34.0;
 /// Places in the map's columns are so wide, points.
 const STEP: f32 = 2.0;
 
 /// The curve that was chosen.
-pub fn curve(ui: &mut Ui, state: &State, scale: &Scale) {
+pub fn curve(ui: &mut Ui, state: &State, scale: &Scale, out: Out) {
     let Some((joint_name, kind)) = &state.channel_wanted else {
         return;
     };
@@ -29,7 +32,7 @@ pub fn curve(ui: &mut Ui, state: &State, scale: &Scale) {
         return;
     };
     let c = Colours::now(ui);
-    let rect = track(ui, state, scale, joint_name, HEIGHT, None, None);
+    let rect = plain_track(ui, state, scale, joint_name, HEIGHT, out);
     let inner = rect.shrink2(Vec2::new(8.0, 0.0));
     let Some(joint) = motion.clip.skeleton.find(joint_name) else {
         let text = "no joint of this clip is called so";
@@ -147,13 +150,21 @@ pub fn menu(ui: &mut Ui, state: &State, out: Out) {
 }
 
 /// The map of confidences of the method of 2009 (Fig. 4.3): where segments start across, their length upwards.
-pub fn map(ui: &mut Ui, state: &State, scale: &Scale) {
+pub fn map(ui: &mut Ui, state: &State, scale: &Scale, out: Out) {
     let Some(thesis) = &state.train.thesis else {
         return;
     };
     let c = Colours::now(ui);
-    let rect = track(ui, state, scale, "2009: confidence", 44.0, None, None);
+    let rect = plain_track(ui, state, scale, CONFIDENCE, 44.0, out);
     let shown = state.player.motion.as_ref().map(|m| m.id);
+    if state
+        .player
+        .motion
+        .as_ref()
+        .is_some_and(|m| !m.clip.has_rotations())
+    {
+        return remark(ui, rect, CONFIDENCE, NO_ROTATIONS);
+    }
     let Some(map) = state.train.map.as_ref().filter(|m| Some(m.clip) == shown) else {
         let inner = rect.shrink2(Vec2::new(8.0, 0.0));
         return widgets::text_in(ui, inner, "…", 11.0, c.muted, false);

@@ -1,12 +1,12 @@
 //! Classes side by side, each with strips of its samples; segments are dragged from one to another.
 
 use egui::{
-    CentralPanel, Context, DragAndDrop, Frame, Margin, Rangef, RichText, ScrollArea, SidePanel, Ui,
-    Vec2, WidgetType, style::ScrollAnimation,
+    CentralPanel, Context, Frame, Margin, Rangef, RichText, ScrollArea, SidePanel, Ui, Vec2,
+    WidgetType, style::ScrollAnimation,
 };
-use morec_db::labels::{DbSample, SampleId, SampleState as Judged};
+use morec_db::labels::{DbSample, SampleState as Judged};
 
-use super::{Out, card, groups, label, padded, similar, view, widgets};
+use super::{Out, card, carried, groups, label, padded, proposals, similar, view, widgets};
 use crate::format;
 use crate::state::{ClassCommand, Command, State};
 use crate::theme::Colours;
@@ -32,7 +32,7 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
         ui.add_space(4.0);
         match (&state.classes.similar, &state.classes.groups) {
             (Some(found), _) => similar::show(ui, state, found, out),
-            (None, Some(_)) => groups::show(ui, state, out),
+            (None, Some(_)) => groups_and_columns(ui, state, out),
             (None, None) => columns(ui, state, out),
         }
     });
@@ -81,6 +81,8 @@ fn tools(ui: &mut Ui, state: &State, out: Out) {
         if ui.button("Next doubtful  N").clicked() {
             class(ClassCommand::NextDoubtful);
         }
+        proposals::at_once(ui, state, out);
+        let mut class = |command| out.push(Command::Classes(command));
         ui.separator();
         if ui
             .button("Group labels")
@@ -101,6 +103,19 @@ fn tools(ui: &mut Ui, state: &State, out: Out) {
             "Drag a strip to another class; double click opens it.",
         );
     });
+}
+
+/// Groups with the classes beside them, so that what is in a group is dragged into a class.
+fn groups_and_columns(ui: &mut Ui, state: &State, out: Out) {
+    if !state.classes.order.is_empty() {
+        let room = ui.available_width();
+        SidePanel::right("classes beside groups")
+            .frame(Frame::new())
+            .default_width((0.45 * room).max(card::COLUMN + 24.0))
+            .width_range(120.0..=0.7 * room)
+            .show_inside(ui, |ui| columns(ui, state, out));
+    }
+    groups::show(ui, state, out);
 }
 
 /// The samples of each class in a column.
@@ -135,7 +150,7 @@ fn scroll_at_edge(ui: &Ui, axis: Vec2) {
     let Some(at) = ui.ctx().pointer_latest_pos() else {
         return;
     };
-    if !DragAndDrop::has_payload_of_type::<SampleId>(ui.ctx()) {
+    if !carried::any(ui) {
         return;
     }
     let (along, across) = match axis == Vec2::X {
@@ -202,43 +217,16 @@ fn column(
                 });
         });
     };
-    let (dropped, payload) = dropzone(ui, frame, inner);
-    widgets::named(
-        &dropped,
-        WidgetType::Other,
-        format!("Column {class}"),
-        false,
-    );
-    if let Some(id) = payload {
-        let class = class.to_owned();
-        out.push(Command::Classes(ClassCommand::Move { id: *id, class }));
-    }
+    let place = frame.show(ui, inner).response;
+    widgets::named(&place, WidgetType::Other, format!("Column {class}"), false);
+    carried::accept(ui, &place, class, out);
 }
 
-/// A frame on which a sample can be dropped.
-fn dropzone(
-    ui: &mut Ui,
-    frame: Frame,
-    add: impl FnOnce(&mut Ui),
-) -> (egui::Response, Option<std::sync::Arc<SampleId>>) {
-    let c = Colours::now(ui);
-    let response = frame.show(ui, add).response;
-    let over =
-        response.contains_pointer() && DragAndDrop::has_payload_of_type::<SampleId>(ui.ctx());
-    if over {
-        ui.painter().rect_stroke(
-            response.rect,
-            6.0,
-            (2.0, c.accent),
-            egui::StrokeKind::Inside,
-        );
-    }
-    let payload = response.dnd_release_payload::<SampleId>();
-    (response, payload)
-}
-
-/// The sample that is shown, with what can be done.
+/// The sample or the stretch that is selected, with what can be done.
 fn chosen(ui: &mut Ui, state: &State, out: Out) {
+    if state.timeline.range.is_some() {
+        return label::stretch(ui, state, out);
+    }
     let selected = state.selected();
     let Some(sample) = selected.first() else {
         return;

@@ -4,15 +4,18 @@ use egui::epaint::Mesh;
 use egui::{Color32, Pos2, Rect, Sense, Shape, Stroke, Ui, Vec2, WidgetType, pos2};
 
 use super::scale::Scale;
-use super::tracks::{ROW, track};
+use super::tracks::{ROW, plain_track, remark};
 use super::{Out, widgets};
 use crate::state::{Command, PlayCommand, State};
 use crate::theme::Colours;
 
+/// Name of the track of the misfit.
+const MISFIT: &str = "Misfit (thesis)";
+
 /// Track of the detections in the clip that is shown.
 pub fn detections(ui: &mut Ui, state: &State, scale: &Scale, out: Out) {
     let c = Colours::now(ui);
-    let rect = track(ui, state, scale, "Recognised", ROW, None, None);
+    let rect = plain_track(ui, state, scale, "Recognised", ROW, out);
     let shown = state.player.motion.as_ref().map(|m| m.id);
     let Some((clip, found)) = &state.detections else {
         let text = if state.train.index.is_some() {
@@ -73,19 +76,12 @@ pub fn detections(ui: &mut Ui, state: &State, scale: &Scale, out: Out) {
 }
 
 /// The misfit of the thesis's method, on a logarithmic scale, with its cuts.
-pub fn misfit(ui: &mut Ui, state: &State, scale: &Scale) {
+pub fn misfit(ui: &mut Ui, state: &State, scale: &Scale, out: Out) {
     let c = Colours::now(ui);
-    let rect = track(ui, state, scale, "Misfit (thesis)", 40.0, None, None);
+    let rect = plain_track(ui, state, scale, MISFIT, 40.0, out);
     let Some(curves) = &state.curves else { return };
     if let Some(note) = curves.note.as_ref().filter(|_| curves.forward.is_empty()) {
-        return widgets::text_in(
-            ui,
-            rect.shrink2(Vec2::new(8.0, 0.0)),
-            note,
-            11.0,
-            c.muted,
-            false,
-        );
+        return remark(ui, rect, MISFIT, note);
     }
     let painter = ui.painter_at(rect);
     let level = |value: f64| value.max(1e-3).log10();
@@ -118,9 +114,9 @@ pub fn misfit(ui: &mut Ui, state: &State, scale: &Scale) {
 }
 
 /// Track of the bones' speed.
-pub fn speed(ui: &mut Ui, state: &State, scale: &Scale) {
+pub fn speed(ui: &mut Ui, state: &State, scale: &Scale, out: Out) {
     let c = Colours::now(ui);
-    let rect = track(ui, state, scale, "Speed", 32.0, None, None);
+    let rect = plain_track(ui, state, scale, "Speed", 32.0, out);
     let Some(motion) = &state.player.motion else {
         return;
     };

@@ -4,11 +4,13 @@ use egui::{CursorIcon, Rect, Sense, Shape, Ui, Vec2, WidgetType, pos2};
 
 use morec_db::BY_HAND;
 
+use super::carried::Carried;
 use super::scale::Scale;
-use super::tracks::{ROW, track};
+use super::tracks::{ROW, swept, track};
 use super::{Out, widgets};
 use crate::jobs::cut::Curves;
-use crate::state::{Command, CutCommand, PlayCommand, State};
+use crate::state::{Command, CutCommand, State, TimelineCommand};
+use crate::stretch::Stretch;
 use crate::theme::Colours;
 
 /// A cut is held so far from its line, points.
@@ -22,9 +24,14 @@ pub fn show(ui: &mut Ui, state: &State, scale: &Scale, out: Out) {
         Some(BY_HAND) => "Cuts, by hand",
         _ => "Cuts, stillness",
     };
-    let rect = track(ui, state, scale, name, ROW + 3.0, None, None);
-    let ground = ui.interact(rect, ui.id().with("cuts"), Sense::click());
+    let (rect, ground) = track(ui, scale, name, ROW + 3.0, None);
     widgets::named(&ground, WidgetType::Other, "Track of cuts", false);
+    match selected_here(ui, state, scale) {
+        Some(stretch) if ground.drag_started_by(egui::PointerButton::Primary) => {
+            ground.dnd_set_drag_payload(Carried::Stretch(stretch));
+        }
+        _ => swept(ui, state, scale, &ground, out),
+    }
     match &state.curves {
         Some(curves) => behind(ui, rect, scale, curves, &c),
         None => widgets::text_in(
@@ -41,12 +48,12 @@ pub fn show(ui: &mut Ui, state: &State, scale: &Scale, out: Out) {
         if ground.double_clicked() {
             out.push(Command::Cuts(CutCommand::Add(secs)));
         } else if ground.clicked() {
-            out.push(Command::Play(PlayCommand::Seek(secs)));
-            out.push(Command::Cuts(CutCommand::Select(None)));
+            out.push(Command::Timeline(TimelineCommand::SelectSegment(secs)));
         }
     }
     let ground = ground.on_hover_text(
-        "Drag a cut into place; double click adds one, Delete removes the selected one.",
+        "A click selects the segment between two cuts, which is dragged to a class from here. Drag a cut into place; \
+         double click adds one, Delete removes the selected one.",
     );
     ground.context_menu(|ui| {
         if ui.button("The cuts as they were found").clicked() {
@@ -65,6 +72,18 @@ pub fn show(ui: &mut Ui, state: &State, scale: &Scale, out: Out) {
         last = x;
         line(ui, state, scale, rect, (cut, x), apart, out);
     }
+}
+
+/// The selected stretch, if the pointer went down inside of it.
+fn selected_here(ui: &Ui, state: &State, scale: &Scale) -> Option<Stretch> {
+    let (start_secs, stop_secs) = state.timeline.range?;
+    let pressed = scale.secs(ui.input(|i| i.pointer.press_origin())?.x);
+    (start_secs..=stop_secs).contains(&pressed).then_some(())?;
+    Some(Stretch {
+        clip: state.player.motion.as_ref()?.id,
+        start_secs,
+        stop_secs,
+    })
 }
 
 fn near(a: f64, b: f64) -> bool {

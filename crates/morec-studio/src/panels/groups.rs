@@ -3,9 +3,14 @@
 use egui::{Button, Rect, RichText, ScrollArea, Sense, TextEdit, Ui, Vec2, WidgetType};
 
 use super::strips::{STRIP, go};
+use morec_db::labels::SampleState;
+
+use super::carried::Carried;
 use super::{Out, strips, widgets};
 use crate::format;
+use crate::jobs::group::GroupItem;
 use crate::state::{ClassCommand, Command, State};
+use crate::stretch::Stretch;
 use crate::theme::Colours;
 
 /// The groups at the depth that the slider says.
@@ -59,8 +64,9 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
                     ui.horizontal(|ui| {
                         for &member in group.members.iter().take(24) {
                             let item = &groups.items[member];
+                            let size = Vec2::new(150.0, STRIP);
                             let (rect, response) =
-                                ui.allocate_exact_size(Vec2::new(150.0, STRIP), Sense::click());
+                                ui.allocate_exact_size(size, Sense::click_and_drag());
                             widgets::named(
                                 &response,
                                 WidgetType::Button,
@@ -75,11 +81,14 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
                                 item.stop_secs,
                                 rect,
                             );
-                            if let Some(class) = &item.class {
+                            if let Some(class) = class_now(state, item) {
                                 let place = state.classes.place(class);
                                 let mark =
                                     Rect::from_min_size(rect.min, Vec2::new(rect.width(), 3.0));
                                 ui.painter().rect_filled(mark, 1.0, c.class(place));
+                            }
+                            if response.drag_started() {
+                                response.dnd_set_drag_payload(carried(item));
                             }
                             if response.clicked() {
                                 go(item.clip, item.start_secs, item.stop_secs, item.sample, out);
@@ -96,4 +105,31 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
             ui.add_space(6.0);
         }
     });
+}
+
+/// A stretch of a group, to be dragged into a class.
+fn carried(item: &GroupItem) -> Carried {
+    match item.sample {
+        Some(id) => Carried::Sample(id),
+        None => Carried::Stretch(Stretch {
+            clip: item.clip,
+            start_secs: item.start_secs,
+            stop_secs: item.stop_secs,
+        }),
+    }
+}
+
+/// The class that a stretch has now: since it was grouped it may have been given another.
+fn class_now<'a>(state: &'a State, item: &GroupItem) -> Option<&'a str> {
+    let snapshot = &state.store.as_ref()?.snapshot;
+    let near = |a: f64, b: f64| (a - b).abs() < 0.02;
+    let sample = match item.sample {
+        Some(id) => snapshot.sample(id),
+        None => snapshot.samples_of(item.clip).iter().find(|s| {
+            s.state != SampleState::Rejected
+                && near(s.start_secs, item.start_secs)
+                && near(s.stop_secs, item.stop_secs)
+        }),
+    };
+    Some(sample?.class.as_str())
 }

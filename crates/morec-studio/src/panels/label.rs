@@ -6,7 +6,7 @@ use egui::{
 };
 use morec_db::labels::SampleState as Judged;
 
-use super::{Out, padded, player, timeline, view, widgets};
+use super::{Out, carried, padded, player, proposals, timeline, view, widgets};
 use crate::format;
 use crate::state::{
     ClassCommand, Command, CompareCommand, LibraryCommand, SimilarCommand, State, TimelineCommand,
@@ -125,8 +125,13 @@ fn class(ui: &mut Ui, state: &State, place: usize, name: &str, out: Out) {
             info.current_text_value = Some(now.clone());
             info
         });
-        response.request_focus();
-        if response.lost_focus() || ui.input(|i| i.key_pressed(egui::Key::Enter)) {
+        let ended = response.lost_focus() || ui.input(|i| i.key_pressed(egui::Key::Enter));
+        // Whoever has typed the name has the keys back.
+        match ended {
+            true => response.surrender_focus(),
+            false => response.request_focus(),
+        }
+        if ended {
             let (from, to) = (from.clone(), text);
             out.push(Command::Classes(ClassCommand::Rename { from, to }));
         } else if text != *now {
@@ -190,6 +195,7 @@ fn class(ui: &mut Ui, state: &State, place: usize, name: &str, out: Out) {
             down: false,
         }));
     }
+    carried::accept(ui, &response, name, out);
     response.context_menu(|ui| {
         if ui.button("Rename").clicked() {
             let now = Some((name.to_owned(), name.to_owned()));
@@ -249,12 +255,8 @@ fn add_class(ui: &mut Ui, state: &State, out: Out) {
 fn selection(ui: &mut Ui, state: &State, out: Out) {
     let c = Colours::now(ui);
     let selected = state.selected();
-    if let Some((start, stop)) = state.timeline.range {
-        widgets::section(ui, "SELECTED STRETCH");
-        ui.label(format!("{} to {}", format::secs(start), format::secs(stop)));
-        ui.colored_label(c.muted, "A class's key or a click on a class labels it.");
-        like_this(ui, out);
-        return;
+    if state.timeline.range.is_some() {
+        return stretch(ui, state, out);
     }
     let timeline = |out: Out, command| out.push(Command::Timeline(command));
     let [sample] = selected[..] else {
@@ -307,6 +309,19 @@ fn selection(ui: &mut Ui, state: &State, out: Out) {
     });
 }
 
+/// The selected stretch and its actions.
+pub(super) fn stretch(ui: &mut Ui, state: &State, out: Out) {
+    let Some((start, stop)) = state.timeline.range else {
+        return;
+    };
+    widgets::section(ui, "SELECTED STRETCH");
+    ui.label(format!("{} to {}", format::secs(start), format::secs(stop)));
+    let hint =
+        "A class's key or a click on a class labels it, playing or not; Escape ends the selection.";
+    ui.colored_label(Colours::now(ui).muted, hint);
+    like_this(ui, out);
+}
+
 /// Buttons that search for what is like the selection and compare it with the nearest.
 pub(super) fn like_this(ui: &mut Ui, out: Out) {
     ui.horizontal(|ui| {
@@ -348,4 +363,5 @@ fn help(ui: &mut Ui, state: &State, out: Out) {
             out.push(Command::Classes(ClassCommand::NextDoubtful));
         }
     });
+    ui.horizontal_wrapped(|ui| proposals::at_once(ui, state, out));
 }

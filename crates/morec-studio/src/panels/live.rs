@@ -11,7 +11,7 @@ use super::{Out, live_line, padded, teach, view, widgets};
 use crate::body::Body;
 use crate::format;
 use crate::state::live::Choice;
-use crate::state::{Command, LiveCommand, State};
+use crate::state::{Command, LiveCommand, SPEEDS, State};
 use crate::theme::Colours;
 
 /// Clips in the list of sources.
@@ -99,7 +99,43 @@ fn source(ui: &mut Ui, state: &State, out: Out) {
     if widgets::wide(ui, true, button, 30.0).clicked() {
         live(command);
     }
+    if matches!(state.live.choice, Choice::Clip(_)) {
+        along(ui, state, &mut live);
+    }
     record(ui, state, &mut live);
+}
+
+/// Where the clip is that is played, and how fast it goes.
+fn along(ui: &mut Ui, state: &State, live: &mut impl FnMut(LiveCommand)) {
+    let c = Colours::now(ui);
+    if let Some((at, secs)) = state.live.run.as_ref().and_then(|run| run.position()) {
+        let size = Vec2::new(ui.available_width(), 14.0);
+        let (bar, response) = ui.allocate_exact_size(size, egui::Sense::click_and_drag());
+        widgets::named(&response, WidgetType::Slider, "Position in the clip", false);
+        let pointer = response.interact_pointer_pos();
+        let share = pointer.map(|p| ((p.x - bar.left()) / bar.width()).clamp(0.0, 1.0));
+        let shown = share.unwrap_or((at / secs.max(1e-9)) as f32);
+        let done = bar.with_max_x(bar.left() + shown * bar.width());
+        ui.painter().rect_filled(bar, 3.0, c.well);
+        ui.painter().rect_filled(done, 3.0, c.tint(c.accent, 0.6));
+        if let Some(share) = share.filter(|_| response.clicked() || response.drag_stopped()) {
+            live(LiveCommand::Seek(f64::from(share) * secs));
+        }
+        let clock = format!("{} of {}", format::clock(at, 1), format::clock(secs, 1));
+        response.on_hover_text(clock);
+    }
+    ui.horizontal(|ui| {
+        ui.label(RichText::new("Speed").size(12.0).color(c.muted));
+        for speed in SPEEDS.into_iter().filter(|speed| *speed >= 1.0) {
+            let on = speed == state.live.speed;
+            let response = ui.selectable_label(on, format!("{speed}×"));
+            let name = format!("Live speed {speed}×");
+            widgets::named(&response, WidgetType::SelectableLabel, name, on);
+            if response.clicked() {
+                live(LiveCommand::Speed(speed));
+            }
+        }
+    });
 }
 
 fn clip_choice(
@@ -198,7 +234,7 @@ fn health(ui: &mut Ui, state: &State) {
     ui.add_space(6.0);
     widgets::section(ui, "STREAM");
     ui.add(egui::Label::new(RichText::new(&run.name).size(12.5)).truncate());
-    if let Some(d) = run.watched().and_then(|w| w.diagnosis()) {
+    if let Some(d) = run.diagnosis() {
         let rate = d
             .rate_hz
             .map_or("– Hz".to_owned(), |hz| format!("{hz:.0} Hz"));

@@ -20,13 +20,12 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
         return;
     };
     let e = &judged.evaluation;
-    widgets::section(
-        ui,
-        &format!(
-            "CROSS-VALIDATION, WITHOUT {}",
-            judged.by.said().to_uppercase()
-        ),
-    );
+    let method = match judged.thesis {
+        true => " OF THE METHOD OF 2009",
+        false => "",
+    };
+    let by = judged.by.said().to_uppercase();
+    widgets::section(ui, &format!("CROSS-VALIDATION{method}, WITHOUT {by}"));
     let share =
         |value: Option<f64>| value.map_or("–".to_owned(), |v| format!("{:.0} %", 100.0 * v));
     ui.horizontal_wrapped(|ui| {
@@ -43,6 +42,14 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
             "of motion tested",
         );
     });
+    if !judged.untested.is_empty() {
+        let text = format!(
+            "Not tested: {}. All labels of it are of {}, without which nothing teaches it.",
+            judged.untested.join(", "),
+            judged.by.one()
+        );
+        ui.colored_label(c.warn, text);
+    }
     ui.add_space(8.0);
     matrix(ui, state, out);
     ui.add_space(8.0);

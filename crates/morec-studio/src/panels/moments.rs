@@ -1,7 +1,7 @@
 //! The list of mistakes, or of the moments of a cell of the confusion matrix: a line plays its moment, which can then be
 //! compared with the nearest label.
 
-use egui::{Rect, ScrollArea, Sense, Ui, Vec2, WidgetType, pos2};
+use egui::{Rect, RichText, ScrollArea, Sense, Ui, Vec2, WidgetType, pos2};
 
 use super::{Out, widgets};
 use crate::format;
@@ -30,6 +30,9 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
         return;
     }
     compare(ui, state, out);
+    if let Some(why) = state.chosen_moment().and_then(|m| m.why.as_ref()) {
+        ui.label(RichText::new(why).size(12.0));
+    }
     // Rows are of one height: two lines if any has a reason.
     let moments = || places.iter().map(|&at| (at, &judged.moments[at]));
     let reasons = moments().any(|(_, m)| m.why.is_some());

@@ -28,6 +28,10 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
             "No bone of a body is known, so nothing can be recognised in this clip: click a part, then its joint.",
         );
     }
+    for doubt in &motion.doubts {
+        let text = RichText::new(format!("⚠ {}", crate::store::sentence(doubt)));
+        ui.label(text.size(12.0).color(c.warn));
+    }
     asked(ui, state, motion, out);
     let joints = motion.clip.skeleton.joints();
     const BETWEEN: f32 = 8.0;

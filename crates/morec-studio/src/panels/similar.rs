@@ -165,6 +165,11 @@ fn label(ui: &mut Ui, state: &State, similar: &Similar, at: usize, out: Out) {
                 ui.close();
             }
         }
+        let hint = "A class that can be renamed, and labels more";
+        if ui.button("New class").on_hover_text(hint).clicked() {
+            as_class(&state.classes.free_name());
+            ui.close();
+        }
     });
     let name = format!("Hit {} is …", at + 1);
     widgets::named(&menu.response, WidgetType::Button, name, false);

@@ -10,6 +10,7 @@ use morec_db::labels::SampleId;
 use super::Out;
 use crate::body::strip::strip;
 use crate::state::{Command, LibraryCommand, State, TimelineCommand};
+use crate::stretch::Stretch;
 use crate::theme::Colours;
 
 /// Height of a strip of a sample, points.
@@ -50,8 +51,16 @@ pub fn draw(ui: &Ui, state: &State, clip: ClipId, start_secs: f64, stop_secs: f6
     ui.painter_at(rect).add(Shape::mesh(mesh));
 }
 
-/// Shows the stretch of a strip, and selects the sample that it is.
+/// Shows the stretch of a strip, and selects it: the sample that it is, else the stretch itself.
 pub fn go(clip: ClipId, start_secs: f64, stop_secs: f64, sample: Option<SampleId>, out: Out) {
+    if sample.is_none() {
+        let of = Stretch {
+            clip,
+            start_secs,
+            stop_secs,
+        };
+        return out.push(Command::Library(LibraryCommand::SelectStretch(of)));
+    }
     out.push(Command::Library(LibraryCommand::GoTo {
         clip,
         start_secs,

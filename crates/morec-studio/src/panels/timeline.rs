@@ -51,10 +51,10 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
                 tracks::labels(ui, state, &scale, out);
                 curves::detections(ui, state, &scale, out);
                 cuts::show(ui, state, &scale, out);
-                channel::map(ui, state, &scale);
-                curves::misfit(ui, state, &scale);
-                curves::speed(ui, state, &scale);
-                channel::curve(ui, state, &scale);
+                channel::map(ui, state, &scale, out);
+                curves::misfit(ui, state, &scale, out);
+                curves::speed(ui, state, &scale, out);
+                channel::curve(ui, state, &scale, out);
             });
     });
     playhead(ui, area, state, &scale, &c);

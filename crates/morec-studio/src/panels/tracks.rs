@@ -5,7 +5,7 @@ use egui::{Color32, Rect, Response, Sense, Shape, Stroke, StrokeKind, Ui, Vec2, 
 use morec_db::labels::{DbSample, SampleState as Judged};
 
 use super::scale::{NAMES, Scale};
-use super::{Out, widgets};
+use super::{Out, carried, widgets};
 use crate::state::{Command, Drag, Grip, PlayCommand, State, TimelineCommand};
 use crate::theme::Colours;
 
@@ -17,16 +17,14 @@ const NARROW: f32 = 6.0;
 /// Width of the part at each end of a label by which it is held, points.
 const EDGE: f32 = 6.0;
 
-/// Room for a track: its name at the left, and where it lies. Dragging over its ground selects a stretch.
+/// Room for a track: its name at the left, where it lies, and its ground.
 pub(super) fn track(
     ui: &mut Ui,
-    state: &State,
     scale: &Scale,
     name: &str,
     height: f32,
     colour: Option<Color32>,
-    out: Option<Out>,
-) -> Rect {
+) -> (Rect, Response) {
     let c = Colours::now(ui);
     let (rect, _) = ui.allocate_exact_size(Vec2::new(ui.available_width(), height), Sense::hover());
     let tracks = Rect::from_min_max(
@@ -42,32 +40,51 @@ pub(super) fn track(
         text.min.x += 16.0;
     }
     widgets::text_in(ui, text, name, 12.0, c.muted, false);
-    if let Some(out) = out {
-        let response = ui.interact(
-            tracks,
-            ui.id().with(("ground", name)),
-            Sense::click_and_drag(),
-        );
-        widgets::named(&response, WidgetType::Other, format!("Track {name}"), false);
-        ground(ui, state, scale, &response, out);
-    }
-    tracks
+    let id = ui.id().with(("ground", name));
+    let response = ui.interact(tracks, id, Sense::click_and_drag());
+    widgets::named(&response, WidgetType::Other, format!("Track {name}"), false);
+    (tracks, response)
 }
 
-/// A click on the ground goes there; a drag selects a stretch.
+/// A track without anything that could be held.
+pub(super) fn plain_track(
+    ui: &mut Ui,
+    state: &State,
+    scale: &Scale,
+    name: &str,
+    height: f32,
+    out: Out,
+) -> Rect {
+    let (rect, response) = track(ui, scale, name, height, None);
+    ground(ui, state, scale, &response, out);
+    rect
+}
+
+/// Why a track is empty, in the track.
+pub(super) fn remark(ui: &Ui, rect: Rect, track: &str, text: &str) {
+    let response = ui.interact(rect, ui.id().with(("remark", track)), Sense::hover());
+    let name = format!("{track}: {text}");
+    widgets::named(&response, WidgetType::Label, name, false);
+    let inner = rect.shrink2(Vec2::new(8.0, 0.0));
+    widgets::text_in(ui, inner, text, 11.0, Colours::now(ui).muted, false);
+}
+
+/// A click on the ground goes to that moment and ends the selection; a drag selects a stretch.
 fn ground(ui: &Ui, state: &State, scale: &Scale, response: &Response, out: Out) {
-    let pointer = response.interact_pointer_pos();
     if response.clicked()
-        && let Some(at) = pointer
+        && let Some(at) = response.interact_pointer_pos()
     {
         out.push(Command::Play(PlayCommand::Seek(scale.secs(at.x))));
-        out.push(Command::Timeline(TimelineCommand::Range(None)));
-        out.push(Command::Timeline(TimelineCommand::Select {
-            id: None,
-            add: false,
-        }));
+        out.push(Command::Timeline(TimelineCommand::SelectNothing));
     }
+    swept(ui, state, scale, response, out);
+}
+
+/// A drag over the ground selects a stretch, unless something is carried over it.
+pub(super) fn swept(ui: &Ui, state: &State, scale: &Scale, response: &Response, out: Out) {
+    let pointer = response.interact_pointer_pos();
     if response.dragged_by(egui::PointerButton::Primary)
+        && !carried::any(ui)
         && let (Some(at), Some(from)) = (pointer, ui.input(|i| i.pointer.press_origin()))
     {
         let (a, b) = (scale.secs(from.x), scale.secs(at.x));
@@ -99,7 +116,7 @@ pub fn labels(ui: &mut Ui, state: &State, scale: &Scale, out: Out) {
     // What is dragged may come from outside of the view.
     let visible = &samples[first.min(last)..last];
     if state.classes.order.is_empty() {
-        track(ui, state, scale, "Labels", ROW, None, Some(out));
+        plain_track(ui, state, scale, "Labels", ROW, out);
         return;
     }
     let mut drawn = 0;
@@ -109,7 +126,9 @@ pub fn labels(ui: &mut Ui, state: &State, scale: &Scale, out: Out) {
         }
         drawn += 1;
         let colour = c.class(Some(place));
-        let tracks = track(ui, state, scale, class, ROW, Some(colour), Some(out));
+        let (tracks, response) = track(ui, scale, class, ROW, Some(colour));
+        ground(ui, state, scale, &response, out);
+        carried::accept(ui, &response, class, out);
         if !ui.is_rect_visible(tracks) {
             continue;
         }
@@ -126,7 +145,7 @@ pub fn labels(ui: &mut Ui, state: &State, scale: &Scale, out: Out) {
         ui.painter_at(tracks).add(Shape::mesh(row.mesh));
     }
     if drawn == 0 {
-        track(ui, state, scale, "Labels", ROW, None, Some(out));
+        plain_track(ui, state, scale, "Labels", ROW, out);
     }
 }
 

@@ -34,7 +34,8 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
         });
     CentralPanel::default().frame(padded(&c)).show(ctx, |ui| {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-            if state.train.index.is_none() && state.train.judged.is_none() {
+            let nothing = state.train.index.is_none() && state.train.judged.is_none();
+            if nothing && state.train.thesis.is_none() {
                 widgets::nothing(
                     ui,
                     "Nothing is trained yet",
@@ -126,6 +127,12 @@ fn teach_next(ui: &mut Ui, state: &State) {
             hints.push(format!(
                 "{}: {} of {} missed, add some by other people",
                 class.class, class.missed, class.samples
+            ));
+        }
+        for class in &judged.untested {
+            hints.push(format!(
+                "{class}: of {} only, add some of another",
+                judged.by.one()
             ));
         }
         if let Some(hint) = unlabelled(judged) {

@@ -95,23 +95,73 @@ pub fn draw(ui: &mut Ui, rect: Rect, state: &State, scene: &Scene, out: Out) {
         bodies.body(other.body, &other.pose, &other.palette);
     }
     bodies.body(scene.body, scene.pose, &palette);
+    let has_body = !bodies.is_empty();
     painter.add(bodies.finish());
+    let is_points = scene.motion.is_some_and(|(motion, _)| motion.is_points());
+    if is_points || !has_body {
+        painter.extend(points(scene.pose, &view, &c));
+    }
     captions(ui, rect, &view, scene);
     if let Some((motion, _)) = scene.motion.filter(|_| state.panel == Panel::Library) {
         super::roles::joints(ui, state, motion, scene.pose, &view, out);
     }
-    if scene.body.limbs.is_empty() {
-        let text = "No body part of this clip is known: see its roles in the library";
-        widgets::text_in(
-            ui,
-            Rect::from_center_size(rect.center(), Vec2::new(420.0, 20.0)),
-            text,
-            13.0,
-            c.muted,
-            false,
-        );
-    }
+    remarks(ui, rect, scene, has_body);
     controls(ui, rect, state, out);
+}
+
+/// Joints or markers as points.
+fn points<'a>(
+    pose: &'a WorldPose,
+    view: &'a crate::body::camera::View,
+    c: &Colours,
+) -> impl Iterator<Item = Shape> + use<'a> {
+    let colour = c.text;
+    let places = pose.positions.iter().filter_map(|at| view.project(at));
+    places.map(move |(at, _)| Shape::circle_filled(at, 2.5, colour))
+}
+
+/// At the foot of the picture: why there is no body in it, and what no person's body has.
+fn remarks(ui: &mut Ui, rect: Rect, scene: &Scene, has_body: bool) {
+    let Some((motion, _)) = scene.motion else {
+        return;
+    };
+    let joints = motion.clip.skeleton.len();
+    let mut said: Vec<String> = Vec::new();
+    if !has_body && motion.is_points() && joints > 2 {
+        said.push(format!(
+            "Only {joints} points are drawn: no part of a body is known among them. Parts of the body in the library says \
+             which they are."
+        ));
+    } else if !has_body {
+        let joints = crate::format::count(joints, "joint");
+        said.push(format!(
+            "{joints} alone make no body: only points are drawn."
+        ));
+    }
+    said.extend(
+        motion
+            .doubts
+            .iter()
+            .take(1)
+            .map(|doubt| crate::store::sentence(doubt)),
+    );
+    if said.is_empty() {
+        return;
+    }
+    let c = Colours::now(ui);
+    let area = Rect::from_min_max(rect.left_bottom() - Vec2::new(-10.0, 64.0), rect.max);
+    let layout = egui::Layout::bottom_up(egui::Align::Min);
+    let mut below = ui.new_child(
+        egui::UiBuilder::new()
+            .max_rect(area.shrink(4.0))
+            .layout(layout),
+    );
+    for text in said {
+        let text = egui::RichText::new(format!("⚠ {text}"))
+            .size(12.5)
+            .color(c.warn);
+        below.add(egui::Label::new(text).wrap());
+    }
 }
 
 /// Captions at the performers' feet.

@@ -7,6 +7,9 @@ use crate::jobs::group::ClusteredItems;
 use crate::jobs::similar::Similar;
 use crate::store::Snapshot;
 
+/// Proposals at least this likely are accepted at once unless another threshold is chosen, percent.
+pub const LIKELY: u8 = 80;
+
 /// A class's key that is down.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Held {
@@ -42,6 +45,8 @@ pub struct Classes {
     pub depth: usize,
     /// A class that is being renamed, and its new name so far.
     pub renaming: Option<(String, String)>,
+    /// Proposals at least this likely are accepted at once, percent; [`LIKELY`] unless chosen.
+    pub likely: Option<u8>,
     /// The name of a new class so far.
     pub adding: String,
     /// The class of the key Q.

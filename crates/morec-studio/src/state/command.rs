@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use morec::roles::Role;
 use morec::smooth::ChannelKind;
+use morec::train::thesis::SvrdmTrainParams;
 use morec_db::ClipId;
 use morec_db::exchange::LabelFormat;
 use morec_db::labels::SampleId;
@@ -16,6 +17,7 @@ use super::similar::SimilarCommand;
 use crate::body::Camera;
 use crate::jobs::cut::SegmentMethod;
 use crate::store::Edit;
+use crate::stretch::Stretch;
 
 /// The panels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -159,6 +161,8 @@ pub enum LibraryCommand {
         start_secs: f64,
         stop_secs: f64,
     },
+    /// Shows a stretch of a clip in a loop, and selects it.
+    SelectStretch(Stretch),
     DismissReport,
     /// Selects all clips of the list.
     SelectAll,
@@ -214,6 +218,10 @@ pub enum TimelineCommand {
         add: bool,
     },
     Range(Option<(f64, f64)>),
+    /// Ends the selection of labels, stretch and cut.
+    SelectNothing,
+    /// Selects the segment between the cuts around a moment, and goes there.
+    SelectSegment(f64),
     Snap(bool),
     /// A track for each class.
     AllClasses(bool),
@@ -268,8 +276,19 @@ pub enum ClassCommand {
         id: SampleId,
         class: String,
     },
+    /// A stretch becomes a label of a class.
+    LabelStretch {
+        of: Stretch,
+        class: String,
+    },
     Accept(SampleId),
     Reject(SampleId),
+    /// Proposals at least this likely, percent, are accepted at once, others rejected.
+    Likely(u8),
+    /// Accepts the proposals at and above that, or rejects those below.
+    JudgeAll {
+        accept: bool,
+    },
     /// The next proposal that is doubtful.
     NextDoubtful,
     Renaming(Option<(String, String)>),
@@ -299,8 +318,12 @@ pub enum TrainCommand {
     Moment(usize),
     Keep(String),
     UseIndex(String),
+    /// The figures with which the method of 2009 is trained from now on.
+    ThesisParams(Box<SvrdmTrainParams>),
     /// Trains the method of 2009 on the same labels.
     Thesis,
+    /// Cross-validates the method of 2009.
+    JudgeThesis,
     /// Shows the boundary of a branch of its tree.
     Branch(usize),
     /// Plays the sample of this place that taught it.

@@ -11,6 +11,10 @@ pub struct CrossvalView {
     pub evaluation: Evaluation,
     pub moments: Vec<Moment>,
     pub by: LeftOut,
+    /// See [`CrossvalResult::thesis`].
+    pub thesis: bool,
+    /// See [`CrossvalResult::untested`].
+    pub untested: Vec<String>,
     /// Classes of the rows; the row of false detections follows them.
     pub rows: Vec<String>,
     /// Classes of the columns; the column of missed labels follows them.
@@ -29,6 +33,8 @@ impl From<CrossvalResult> for CrossvalView {
             counts: Vec::new(),
             moments,
             by: judged.by,
+            thesis: judged.thesis,
+            untested: judged.untested,
             evaluation: judged.evaluation,
         };
         let count = |row, column| view.of_cell(row, column).len();

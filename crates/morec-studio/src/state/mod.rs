@@ -1,7 +1,7 @@
 //! Everything the window shows, without a widget: tests apply commands to it without a window.
 
 mod actions;
-mod classes;
+pub mod classes;
 mod columns;
 mod command;
 pub mod compare;
@@ -26,8 +26,15 @@ use morec::smooth::ChannelKind;
 use morec_db::{ClipId, ClipInfo};
 
 use crate::body::Camera;
-use crate::jobs::{JobOutcome, Jobs, channel::ChannelCurve, cut::Curves, import, load::ClipMotion};
+use crate::jobs::{
+    JobOutcome, Jobs,
+    channel::ChannelCurve,
+    cut::Curves,
+    import,
+    load::{ClipMotion, extent},
+};
 use crate::store::{Edit, Store, Wake};
+use crate::stretch::Stretch;
 use crate::unsaved::{Leftover, OwnFolder};
 
 pub use classes::Classes;
@@ -41,6 +48,7 @@ pub use cuts::CutCommand;
 pub use label_import::LabelImport;
 pub use library::Library;
 pub use live::{Live, LiveCommand};
+use player::LONGEST_FRAME;
 pub use player::{PlayCommand, Player, SPEEDS};
 pub use similar::SimilarCommand;
 pub use timeline::{Drag, Grip, TimelineState};
@@ -92,10 +100,14 @@ pub struct State {
     pub label_import: Option<LabelImport>,
     /// A file dialog that should be shown.
     pub ask: Option<Ask>,
+    /// True while the camera stands so far off as what is shown, which is no person, needs.
+    fitted: bool,
     pub(crate) wake: Wake,
     pub(crate) motions: Motions,
     /// A stretch to show once its clip is decoded.
     pending: Option<(ClipId, Option<(f64, f64)>)>,
+    /// A stretch to select once its clip is shown.
+    selecting: Option<Stretch>,
     /// A folder of this run's own, for what nobody has named yet, and where such folders lie.
     folder: Option<OwnFolder>,
     unsaved: PathBuf,
@@ -190,9 +202,11 @@ impl State {
             import_report: None,
             label_import: None,
             ask: None,
+            fitted: false,
             wake,
             motions: Motions::default(),
             pending: None,
+            selecting: None,
             folder: None,
             unsaved,
             leftovers: Vec::new(),
@@ -207,7 +221,7 @@ impl State {
 
     /// Time passes, and what threads have done arrives. `dt` in seconds.
     pub fn tick(&mut self, dt: f64) {
-        self.player.tick(dt);
+        self.player.tick(dt.min(LONGEST_FRAME));
         if self.player.playing {
             let (at, end) = (self.player.at_secs, self.player.secs());
             self.timeline.follow(at, end);
@@ -227,7 +241,11 @@ impl State {
             return self.live.centre();
         }
         let motion = self.player.motion.as_ref()?;
-        let at = motion.body.centre(&motion.pose(self.player.at_secs))?;
+        let pose = motion.pose(self.player.at_secs);
+        if !motion.is_person {
+            return Some(extent(&pose)?.0);
+        }
+        let at = motion.body.centre(&pose)?;
         let waist = motion.floor + 0.52 * motion.body.height;
         Some(self.middle(morec::math::Vec3::new(at.x, waist, at.z)))
     }
@@ -249,7 +267,7 @@ impl State {
             Command::UndoAsks(on) => self.undo_asks = on,
             Command::Edit(edit) => self.edit(edit),
             Command::Library(command) => self.apply_library(command),
-            Command::Play(command) => self.player.apply(&command),
+            Command::Play(command) => self.play(&command),
             Command::Look(look) => self.look(look),
             Command::Timeline(command) => self.apply_timeline(command),
             Command::Classes(command) => self.apply_classes(command),
@@ -288,9 +306,12 @@ impl State {
         self.store.as_ref()?.snapshot.clip(id)
     }
 
-    /// True while something moves by itself: then the next frame is wanted at once.
-    pub fn is_moving(&self) -> bool {
-        self.player.playing || self.live.is_running()
+    /// Time until something that is shown changes by itself, seconds; `None` if only people and threads change it.
+    pub fn next_change_secs(&self) -> Option<f64> {
+        let changes = [self.player.next_frame_secs(), self.live.next_change_secs()];
+        let next = changes.into_iter().flatten().reduce(f64::min)?;
+        // Slow motion goes on evenly if frames are not much further apart than this.
+        Some(next.clamp(0.0, 0.8 * LONGEST_FRAME))
     }
 
     /// True while threads are at work.

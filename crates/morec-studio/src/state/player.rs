@@ -4,6 +4,9 @@ use std::sync::Arc;
 
 use crate::jobs::load::ClipMotion;
 
+/// A frame that took longer than this was not one: the window was hidden or the machine slept, seconds.
+pub const LONGEST_FRAME: f64 = 0.25;
+
 /// Speeds that can be chosen.
 pub const SPEEDS: [f64; 9] = [0.05, 0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 6.0, 8.0];
 
@@ -84,6 +87,20 @@ impl Player {
                 }
             }
         }
+    }
+
+    /// Time until another frame of the clip is shown, seconds; `None` while nothing plays.
+    pub fn next_frame_secs(&self) -> Option<f64> {
+        if !self.playing || self.motion.is_none() {
+            return None;
+        }
+        let place = self.at_secs * self.rate_hz();
+        // A little over: the next frame is shown once its time has come.
+        let left = match self.speed >= 0.0 {
+            true => place.floor() + 1.0 - place,
+            false => place - place.ceil() + 1.0,
+        };
+        Some((left + 1e-6) / (self.rate_hz() * self.speed.abs().max(1e-6)))
     }
 
     /// The time of the last frame.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use morec_db::labels::{DbSample, SampleId};
+use morec_db::labels::{DbSample, NewSample, SampleId};
 
 use super::cuts::HeldCut;
 
@@ -38,6 +38,10 @@ pub struct TimelineState {
     pub from_secs: f64,
     pub to_secs: f64,
     pub selected: BTreeSet<SampleId>,
+    /// The label that is selected was just made here, and not selected by hand.
+    pub just_made: bool,
+    /// A label that is on its way to the database, and selected once it is there.
+    pub(super) awaited: Option<NewSample>,
     /// A stretch of time that is selected.
     pub range: Option<(f64, f64)>,
     pub drag: Option<Drag>,
@@ -59,6 +63,8 @@ impl Default for TimelineState {
             from_secs: 0.0,
             to_secs: 10.0,
             selected: BTreeSet::new(),
+            just_made: false,
+            awaited: None,
             range: None,
             drag: None,
             cut: None,

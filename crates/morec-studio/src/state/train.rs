@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use morec::index::MotionIndex;
 use morec::train::TrainingReport;
+use morec::train::thesis::SvrdmTrainParams;
 
 use super::crossval::CrossvalView;
 use crate::jobs::thesis::{Map, Thesis};
@@ -28,6 +29,8 @@ pub struct Train {
     pub cell: Option<(usize, usize)>,
     /// The moment of the list that was chosen, by its place in `CrossvalView::moments`.
     pub moment: Option<usize>,
+    /// The figures with which the method of 2009 is trained.
+    pub thesis_params: SvrdmTrainParams,
     /// The method of 2009, once it is trained; the branch that is shown; its map of the clip that is shown.
     pub thesis: Option<Arc<Thesis>>,
     pub branch: usize,

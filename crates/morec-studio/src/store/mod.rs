@@ -17,7 +17,7 @@ use morec_db::DbError;
 
 pub use edit::{BY, Edit, background};
 pub use message::{StoreMessage, Wake};
-pub use snapshot::Snapshot;
+pub use snapshot::{Snapshot, UNLIKELY};
 pub use worker::sentence;
 use worker::{Reply, Request};
 

@@ -38,6 +38,8 @@ pub struct Snapshot {
 impl Snapshot {
     pub fn read(db: &MotionDb) -> Result<Self, DbError> {
         let segments = db.segments()?;
+        let (mut classes, mut samples) = (db.classes()?, db.samples(&SampleFilter::default())?);
+        leave_out_unlikely(&mut classes, &mut samples);
         Ok(Self {
             segments_of: runs(segments.iter().map(|s| s.clip)),
             segments,
@@ -47,8 +49,8 @@ impl Snapshot {
             program: db.program().to_owned(),
             ..Self::of(
                 db.clips(&ClipFilter::default())?,
-                db.classes()?,
-                db.samples(&SampleFilter::default())?,
+                classes,
+                samples,
                 db.indexes()?,
                 db.history()?,
             )
@@ -127,6 +129,20 @@ impl Snapshot {
             .iter()
             .filter(|s| s.state == SampleState::Accepted)
     }
+}
+
+/// Proposals less likely than this are shown as 0 %, and are not worth an answer.
+pub const UNLIKELY: f64 = 0.005;
+
+/// Leaves out the proposals that are not worth an answer.
+fn leave_out_unlikely(classes: &mut [ClassCount], samples: &mut Vec<DbSample>) {
+    samples.retain(|s| {
+        let kept = s.state != SampleState::Proposed || s.score.is_none_or(|p| p >= UNLIKELY);
+        if !kept && let Some(class) = classes.iter_mut().find(|c| c.name == s.class) {
+            class.proposed = class.proposed.saturating_sub(1);
+        }
+        kept
+    });
 }
 
 /// Ranges of equal clips in a list in which they lie together.

@@ -372,3 +372,49 @@ fn a_column_scrolls_while_a_sample_is_dragged_near_its_lower_or_upper_edge() {
     person.settle();
     assert_eq!(waves(&person), 2);
 }
+
+#[test]
+fn proposals_are_answered_at_once_by_a_threshold_and_those_at_0_are_not_shown() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = made(folder.path(), 1);
+    let mut db = MotionDb::open(&path).unwrap();
+    let clip = db.find_clip("ben_1").unwrap().id;
+    let proposal = |(start_secs, score): (f64, f64)| NewSample {
+        clip,
+        class: "wave".to_owned(),
+        start_secs,
+        stop_secs: start_secs + 1.0,
+        whole_clip: false,
+        state: Judged::Proposed,
+        score: Some(score),
+    };
+    let proposals = [
+        (1.0, 0.97),
+        (3.0, 0.12),
+        (5.0, 0.004),
+        (7.0, 0.85),
+        (9.0, 0.5),
+    ]
+    .map(proposal);
+    db.add_samples(&proposals, "test").unwrap();
+    drop(db);
+    let mut person = Person::before(&[path]);
+    person.goes_to(Panel::Classes);
+    let before = person.labels().len();
+    assert_eq!(person.state().doubtful().len(), 4, "0 % is not shown");
+    person.click("Accept 2 above");
+    person.settle();
+    assert_eq!(person.labels().len(), before + 2);
+    person.undo();
+    assert_eq!(person.labels().len(), before, "one step");
+    let least = Command::Classes(ClassCommand::Likely(50));
+    person.command(least);
+    person.click("Reject 1 below");
+    person.settle();
+    assert_eq!(person.state().doubtful().len(), 3);
+    person.click("Accept 3 above");
+    person.settle();
+    assert!(person.state().doubtful().is_empty());
+    assert_eq!(person.labels().len(), before + 3);
+    assert!(!person.sees("Threshold of proposals"));
+}

@@ -118,3 +118,21 @@ fn without_a_selection_there_is_a_sentence() {
     person.key(Key::F);
     assert!(person.sees_part("select a label or a stretch first"));
 }
+
+#[test]
+fn a_hit_becomes_a_new_class_before_there_is_any() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), 0)]);
+    person.goes_to(Panel::Label);
+    let range = Some((2.0, 3.5));
+    person.command(Command::Timeline(TimelineCommand::Range(range)));
+    person.key(Key::F);
+    person.settle();
+    assert!(person.state().classes.order.is_empty());
+    person.click("Hit 1 is …");
+    person.click("New class");
+    person.settle();
+    let labels = person.labels();
+    assert_eq!(labels.len(), 1);
+    assert_eq!(labels[0].1, "gesture 1");
+}

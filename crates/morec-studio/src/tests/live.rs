@@ -185,6 +185,8 @@ fn two_performers_are_seen_either_is_watched_and_a_lost_sender_is_said() {
     // Two seconds without a word.
     person.wait(2.0);
     assert!(person.sees_part("the sender has stopped"));
+    person.frames(3);
+    assert!(!person.is_redrawn(), "nothing comes, nothing changes");
     drop(connection);
     assert_eq!(frames(&person), [120, 120], "what came is still there");
 }
@@ -327,4 +329,82 @@ fn a_class_beyond_the_ninth_is_marked_by_the_key_that_it_was_given() {
     person.settle();
     assert_eq!(person.labels().len(), 1);
     assert_eq!(person.labels()[0].1, "other 11");
+}
+
+#[test]
+fn a_source_that_never_sends_redraws_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), 0)]);
+    person.goes_to(Panel::Live);
+    let listen = Choice::Network("vmc://127.0.0.1:0".to_owned());
+    person.command(Command::Live(LiveCommand::Choose(listen)));
+    person.click("Start");
+    person.wait(3.0);
+    assert!(person.state().live.run.is_some());
+    assert!(!person.is_redrawn());
+}
+
+#[test]
+fn a_performer_who_is_gone_is_not_said_to_be_without_fault() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), 0)]);
+    person.goes_to(Panel::Live);
+    let choice = Choice::Network("json+tcp://127.0.0.1:0".to_owned());
+    person.command(Command::Live(LiveCommand::Choose(choice)));
+    person.click("Start");
+    let name = person.state().live.run.as_ref().unwrap().name.clone();
+    let address = name.trim_start_matches("json+tcp://").to_owned();
+    let sender = std::thread::spawn(move || send(&address, &takes()[0], 60));
+    drop(sender.join().unwrap());
+    let begun = std::time::Instant::now();
+    let gone = |person: &Person| {
+        let run = person.state().live.run.as_ref().unwrap();
+        run.watched().is_some_and(|w| w.gone)
+    };
+    while !gone(&person) && begun.elapsed().as_secs() < 60 {
+        person.frames(1);
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    person.frames(2);
+    assert!(gone(&person));
+    assert!(!person.sees_part("No fault is found"));
+    assert!(person.sees_part("The performer who is watched has gone"));
+}
+
+#[test]
+fn a_clip_as_a_source_is_sought_and_sped_up() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), 0)]);
+    person.goes_to(Panel::Live);
+    person.key(Key::Space);
+    person.settle();
+    let position = |person: &Person| {
+        let run = person.state().live.run.as_ref().unwrap();
+        run.position().unwrap()
+    };
+    person.wait(1.0);
+    let (before, secs) = position(&person);
+    person.click("Live speed 4×");
+    person.wait(1.0);
+    let (after, _) = position(&person);
+    assert!((3.5..5.0).contains(&(after - before)), "{before} {after}");
+    person.click("Live speed 1×");
+    let bar = person.place("Position in the clip");
+    let middle = bar.center();
+    person.click_at(middle);
+    let (at, _) = position(&person);
+    assert!((at - 0.5 * secs).abs() < 0.3, "{at} of {secs}");
+    // Time on the stream goes on, and its moments are known.
+    person.wait(0.5);
+    let run = person.state().live.run.as_ref().unwrap();
+    let (_, moment) = run.moment(run.now_secs).unwrap();
+    assert!((moment - position(&person).0).abs() < 0.1, "{moment}");
+    let times: Vec<f64> = run
+        .watched()
+        .unwrap()
+        .frames
+        .iter()
+        .map(|f| f.time_secs)
+        .collect();
+    assert!(times.windows(2).all(|pair| pair[0] < pair[1]));
 }

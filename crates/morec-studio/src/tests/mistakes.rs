@@ -159,3 +159,56 @@ fn a_class_without_another_label_is_said() {
     }));
     assert!(person.sees_part("There is no other label of jump to compare with"));
 }
+
+#[test]
+fn a_class_of_one_person_is_named_as_not_tested_and_counts_for_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), 3)]);
+    let labels = person.labels().len();
+    let clip = person.state().player.motion.as_ref().unwrap().id;
+    let hop = |start_secs: f64| NewSample {
+        clip,
+        class: "hop".to_owned(),
+        start_secs,
+        stop_secs: start_secs + 0.4,
+        whole_clip: false,
+        state: Judged::Accepted,
+        score: None,
+    };
+    person.command(Command::Edit(Edit::Label(vec![hop(0.1), hop(0.5)])));
+    person.goes_to(Panel::Train);
+    person.click("Cross-validate");
+    person.settle();
+    let judged = person.state().train.judged.as_ref().unwrap();
+    assert_eq!(judged.untested, ["hop"]);
+    assert_eq!(judged.evaluation.totals.samples, labels);
+    assert!(!judged.rows.contains(&"hop".to_owned()));
+    let of_hop = |m: &crate::jobs::judge::Moment| m.truth.as_deref() == Some("hop");
+    assert!(!judged.moments.iter().any(of_hop));
+    assert!(person.sees_part("Not tested: hop. All labels of it are of one person"));
+    assert!(person.sees("hop: of one person only, add some of another"));
+}
+
+#[test]
+fn the_reason_of_a_miss_is_read_whole() {
+    let (_folder, mut person) = judged();
+    let judged = person.state().train.judged.as_ref().unwrap();
+    let places = judged.mistakes();
+    let moment = places.iter().find_map(|&at| {
+        let moment = &judged.moments[at];
+        moment.why.is_some().then(|| moment.clone())
+    });
+    let moment = moment.unwrap();
+    let why = moment.why.clone().unwrap();
+    assert!(!person.sees(&why));
+    let line = format!(
+        "{}, {} {}: {why}",
+        moment.said(),
+        moment.clip,
+        crate::format::secs(moment.start_secs)
+    );
+    person.click(&line);
+    person.settle();
+    let text = person.place(&why);
+    assert!(text.height() > 20.0, "it is wrapped: {text:?}");
+}

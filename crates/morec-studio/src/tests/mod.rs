@@ -2,6 +2,7 @@
 
 mod access;
 mod background;
+mod bodies;
 mod classes;
 mod compare;
 mod counted;
@@ -20,6 +21,7 @@ mod person;
 mod pictures;
 mod places;
 mod roles;
+mod selection;
 mod train;
 mod undo;
 mod unsaved;

@@ -181,6 +181,11 @@ impl Person {
             .fonts_mut(|fonts| fonts.has_glyphs(&font, &letters))
     }
 
+    /// True if the next frame is drawn though nothing has happened.
+    pub fn is_redrawn(&self) -> bool {
+        self.window.ctx.has_requested_repaint()
+    }
+
     /// Place of the widget of this name; of a text only if no other widget has the name.
     pub fn place(&self, name: &str) -> Rect {
         let found = self.window.query_all_by_label(name);
@@ -200,11 +205,7 @@ impl Person {
     }
 
     pub fn click(&mut self, name: &str) {
-        self.actions += 1;
-        let at = self.place(name).center();
-        self.pointer(at, true);
-        self.pointer(at, false);
-        self.frames(2);
+        self.click_at(self.place(name).center());
     }
 
     fn pointer(&mut self, at: Pos2, down: bool) {
@@ -256,6 +257,14 @@ impl Person {
         self.key(Key::Enter);
         self.frames(2);
         self.settle();
+    }
+
+    /// Clicks at a place.
+    pub fn click_at(&mut self, at: Pos2) {
+        self.actions += 1;
+        self.pointer(at, true);
+        self.pointer(at, false);
+        self.frames(2);
     }
 
     /// Clicks twice at a place.

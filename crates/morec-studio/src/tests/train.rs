@@ -2,8 +2,9 @@
 
 use super::{Person, made};
 use crate::jobs::thesis::{GRID, TreeNodeView};
-use crate::state::{Command, LibraryCommand, Panel, TimelineCommand};
+use crate::state::{Command, LibraryCommand, Panel, TimelineCommand, TrainCommand};
 use crate::store::Edit;
+use morec::train::thesis::SvrdmTrainParams;
 
 #[test]
 fn an_index_is_trained_kept_and_its_mistakes_are_found() {
@@ -196,4 +197,60 @@ fn training_is_in_reach_in_a_small_window_with_many_classes() {
         let place = person.place(name);
         assert!(place.bottom() < 690.0, "{name}: {place}");
     }
+}
+
+#[test]
+fn the_figures_of_2009_are_set_and_its_plane_is_large_with_its_thresholds() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), 2)]);
+    person.goes_to(Panel::Train);
+    for name in [
+        "Pivots",
+        "Number of dimensions",
+        "Value of k",
+        "Value of C",
+        "Value of T",
+        "Value of t",
+    ] {
+        assert!(person.offers(name), "{name}");
+    }
+    person.click("As in the thesis");
+    let params = person.state().train.thesis_params.clone();
+    assert_eq!(params, SvrdmTrainParams::faithful());
+    let fewer = SvrdmTrainParams {
+        keep: morec::pca::ComponentCount::Dims(6),
+        ..SvrdmTrainParams::default()
+    };
+    person.command(Command::Train(TrainCommand::ThesisParams(Box::new(
+        fewer.clone(),
+    ))));
+    person.click("Train it on these labels");
+    person.settle();
+    let thesis = person.state().train.thesis.clone().unwrap();
+    assert_eq!(thesis.model.pca.dims(), 6);
+    let plane = person.place("Plane of the branch");
+    assert!(
+        plane.width() >= 450.0 && plane.width() == plane.height(),
+        "{plane:?}"
+    );
+    assert!(person.sees_part("it says T = 1.00"));
+    assert!(person.sees_part("it says t = 0.40"));
+    person.click("τ");
+    assert!(person.offers("Value of τ"));
+    assert!(person.sees("The figures have changed since it was trained."));
+}
+
+#[test]
+fn the_method_of_2009_has_a_confusion_matrix() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), 2)]);
+    person.goes_to(Panel::Train);
+    person.click("Cross-validate it");
+    let line = person.state().command_line.clone();
+    assert!(line.ends_with("--by person --method svrdm"), "{line}");
+    person.settle();
+    assert!(person.sees("CROSS-VALIDATION OF THE METHOD OF 2009, WITHOUT EACH PERSON IN TURN"));
+    let judged = person.state().train.judged.as_ref().unwrap();
+    let labels: usize = judged.counts[..judged.rows.len()].iter().flatten().sum();
+    assert_eq!(labels, 12);
 }

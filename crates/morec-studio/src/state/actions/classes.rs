@@ -52,8 +52,11 @@ impl State {
                     });
                 }
             }
+            ClassCommand::LabelStretch { of, class } => self.label_stretch(&class, of),
             ClassCommand::Accept(id) => self.judge(id, Judged::Accepted),
             ClassCommand::Reject(id) => self.judge(id, Judged::Rejected),
+            ClassCommand::Likely(percent) => self.classes.likely = Some(percent),
+            ClassCommand::JudgeAll { accept } => self.judge_all(accept),
             ClassCommand::NextDoubtful => self.next_doubtful(None),
             ClassCommand::Renaming(now) => self.classes.renaming = now,
             ClassCommand::Adding(name) => self.classes.adding = name,
@@ -139,17 +142,17 @@ impl State {
             return;
         }
         let held = self.class_of_key(slot);
-        // With a selection and nothing playing a key says what the selection is.
+        // With a selection a key says what the selection is, playing or not.
+        if self.timeline.range.is_some() {
+            self.apply_timeline(TimelineCommand::LabelRange(held));
+            return;
+        }
+        let ids: Vec<SampleId> = self.selected().iter().map(|s| s.id).collect();
+        if !ids.is_empty() {
+            self.edit(Edit::Reclass { ids, class: held });
+            return;
+        }
         if !self.player.playing {
-            if self.timeline.range.is_some() {
-                self.apply_timeline(TimelineCommand::LabelRange(held));
-                return;
-            }
-            let ids: Vec<SampleId> = self.selected().iter().map(|s| s.id).collect();
-            if !ids.is_empty() {
-                self.edit(Edit::Reclass { ids, class: held });
-                return;
-            }
             self.say("play (Space) and hold the key while the motion passes, or select a stretch");
             return;
         }

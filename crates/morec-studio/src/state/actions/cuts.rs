@@ -40,7 +40,11 @@ impl State {
 
     /// The stretch between the cuts around the playhead.
     pub fn segment(&self) -> (f64, f64) {
-        let at = self.player.at_secs;
+        self.segment_at(self.player.at_secs)
+    }
+
+    /// The stretch between the cuts around a moment.
+    pub(super) fn segment_at(&self, at: f64) -> (f64, f64) {
         let cuts = self.cuts();
         let start = cuts.iter().copied().filter(|cut| *cut <= at + 1e-9);
         let stop = cuts.iter().copied().filter(|cut| *cut > at + 1e-9);
@@ -84,6 +88,7 @@ impl State {
                 }
             }
             CutCommand::Add(secs) => {
+                self.timeline.range = None;
                 let at = (secs * rate).round() / rate;
                 let mut cuts = self.cuts();
                 if at > SAME_SECS && at < end - SAME_SECS && !cuts.iter().any(near(at)) {

@@ -5,8 +5,9 @@ use morec_db::labels::{DbSample, NewSample, SampleState as Judged};
 use super::lines::ShownCommand;
 use crate::jobs::JobOutcome;
 use crate::jobs::cut::{self, SegmentMethod};
-use crate::state::{CutCommand, Drag, Grip, State, TimelineCommand};
-use crate::store::Edit;
+use crate::state::{CutCommand, Drag, Grip, PlayCommand, State, TimelineCommand};
+use crate::store::{Edit, Snapshot};
+use crate::stretch::Stretch;
 
 impl State {
     /// Sends an edit to the database, and says which command would do it.
@@ -65,9 +66,20 @@ impl State {
             TimelineCommand::Snap(on) => timeline.snap = on,
             TimelineCommand::AllClasses(on) => timeline.all_classes = on,
             TimelineCommand::Width(width) => timeline.width = width,
-            TimelineCommand::Range(range) => timeline.range = range.filter(|r| r.1 - r.0 > 1e-3),
+            TimelineCommand::Range(range) => self.select_range(range),
+            TimelineCommand::SelectNothing => {
+                self.select_range(None);
+                self.timeline.selected.clear();
+                self.timeline.cut = None;
+            }
+            TimelineCommand::SelectSegment(secs) => {
+                self.player.apply(&PlayCommand::Seek(secs));
+                let segment = self.segment_at(secs);
+                self.select_range(Some(segment));
+            }
             TimelineCommand::Select { id, add } => {
                 timeline.cut = None;
+                timeline.just_made = false;
                 if !add {
                     timeline.selected.clear();
                 }
@@ -119,8 +131,8 @@ impl State {
                 });
             }
             TimelineCommand::LabelRange(class) => {
-                if let Some((start, stop)) = self.timeline.range.take() {
-                    self.label(&class, start, stop);
+                if let Some((of, _)) = self.selected_stretch() {
+                    self.label_stretch(&class, of);
                 }
             }
             TimelineCommand::Cut(method) => self.cut(method),
@@ -220,25 +232,74 @@ impl State {
         self.edit(edit);
     }
 
+    /// Selects a stretch in place of what was selected; `None` if there is none any more.
+    pub(in crate::state) fn select_range(&mut self, range: Option<(f64, f64)>) {
+        self.timeline.range = range.filter(|r| r.1 - r.0 > 1e-3);
+        if self.timeline.range.is_some() {
+            self.timeline.selected.clear();
+            self.timeline.cut = None;
+        }
+    }
+
     /// Labels a stretch of the clip that is shown.
     pub(in crate::state) fn label(&mut self, class: &str, start_secs: f64, stop_secs: f64) {
-        let Some(motion) = &self.player.motion else {
+        let Some(clip) = self.player.motion.as_ref().map(|m| m.id) else {
             return;
         };
-        let (rate, end) = (motion.clip.rate_hz, motion.secs());
-        let frame = |secs: f64| (secs * rate).round() / rate;
-        let (start, stop) = (start_secs.min(stop_secs), start_secs.max(stop_secs));
+        let of = Stretch {
+            clip,
+            start_secs,
+            stop_secs,
+        };
+        if let Some(sample) = self.new_label(class, &of) {
+            self.edit(Edit::Label(vec![sample]));
+        }
+    }
+
+    /// Labels a stretch of a clip, and selects the label once it is there.
+    pub(in crate::state) fn label_stretch(&mut self, class: &str, of: Stretch) {
+        self.timeline.range = None;
+        if let Some(sample) = self.new_label(class, &of) {
+            self.timeline.awaited = Some(sample.clone());
+            self.edit(Edit::Label(vec![sample]));
+        }
+    }
+
+    /// A label of a stretch, from frame to frame; `None` if it has no length.
+    fn new_label(&self, class: &str, of: &Stretch) -> Option<NewSample> {
+        let clip = self.store.as_ref()?.snapshot.clip(of.clip)?;
+        let frame = |secs: f64| (secs * clip.rate_hz).round() / clip.rate_hz;
+        let (start, stop) = (
+            of.start_secs.min(of.stop_secs),
+            of.start_secs.max(of.stop_secs),
+        );
         let sample = NewSample {
-            clip: motion.id,
+            clip: of.clip,
             class: class.to_owned(),
             start_secs: frame(start.max(0.0)),
-            stop_secs: frame(stop.min(end)),
+            stop_secs: frame(stop.min(clip.duration_secs())),
             whole_clip: false,
             state: Judged::Accepted,
             score: None,
         };
-        if sample.stop_secs > sample.start_secs {
-            self.edit(Edit::Label(vec![sample]));
+        (sample.stop_secs > sample.start_secs).then_some(sample)
+    }
+
+    /// Selects the label that was on its way to the database.
+    pub(in crate::state) fn select_awaited(&mut self, snapshot: &Snapshot) {
+        let Some(wanted) = &self.timeline.awaited else {
+            return;
+        };
+        let near = |a: f64, b: f64| (a - b).abs() < 1e-3;
+        let there = snapshot.samples_of(wanted.clip).iter().find(|s| {
+            s.class == wanted.class
+                && near(s.start_secs, wanted.start_secs)
+                && near(s.stop_secs, wanted.stop_secs)
+        });
+        if let Some(sample) = there {
+            self.timeline.selected = [sample.id].into();
+            self.timeline.just_made = true;
+            self.timeline.awaited = None;
         }
     }
 

@@ -31,6 +31,10 @@ impl State {
             } => self.open_clip(clip, Some((start_secs, stop_secs))),
             LibraryCommand::SelectAll => self.select_all(),
             LibraryCommand::Pattern(text) => self.library.pattern = Some(text),
+            LibraryCommand::SelectStretch(of) => {
+                self.selecting = Some(of);
+                self.open_clip(of.clip, Some((of.start_secs, of.stop_secs)));
+            }
             LibraryCommand::DismissReport => self.import_report = None,
             LibraryCommand::Strips(on) => self.library.strips = on,
             LibraryCommand::Role(role) => self.library.role = role,

@@ -22,6 +22,17 @@ impl State {
             LiveCommand::Choose(choice) => self.live.choice = choice,
             LiveCommand::Start => self.start_live(),
             LiveCommand::Stop => self.stop_live(),
+            LiveCommand::Seek(secs) => {
+                if let Some(run) = &mut self.live.run {
+                    run.seek(secs);
+                }
+            }
+            LiveCommand::Speed(speed) => {
+                self.live.speed = speed;
+                if let Some(run) = &mut self.live.run {
+                    run.play_at(speed);
+                }
+            }
             LiveCommand::Sensitivity(alarms) => self.set_sensitivity(alarms),
             LiveCommand::Range(range) => self.live.range = range.filter(|r| r.1 - r.0 > 0.05),
             LiveCommand::GoTo(start, stop) => {
@@ -110,6 +121,7 @@ impl State {
 
     fn run(&mut self, feed: Feed, name: String) {
         let mut run = Run::new(feed, name);
+        run.play_at(self.live.speed);
         if let Some(model) = self.live.model() {
             run.recognise_with(&model);
         }

@@ -13,6 +13,7 @@ impl State {
                 StoreMessage::Failed(text) => {
                     self.timeline.drag = None;
                     self.timeline.held_cut = None;
+                    self.timeline.awaited = None;
                     self.complain(text);
                 }
             }
@@ -50,6 +51,7 @@ impl State {
         self.library
             .selected
             .retain(|id| snapshot.clip(*id).is_some());
+        self.select_awaited(&snapshot);
         let places = self.classes.follow(&snapshot);
         self.keep_places(places);
         self.train.follow(&snapshot);

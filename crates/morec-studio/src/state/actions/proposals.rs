@@ -3,6 +3,7 @@
 use morec_db::labels::{DbSample, SampleId, SampleState as Judged};
 use morec_db::{Proposal, most_informative};
 
+use crate::state::classes::LIKELY;
 use crate::state::{Panel, State};
 use crate::store::Edit;
 
@@ -15,17 +16,35 @@ impl State {
         self.next_doubtful(Some(id));
     }
 
+    /// Proposals without an answer.
+    fn proposed(&self) -> impl Iterator<Item = &DbSample> {
+        let samples = self.store.iter().flat_map(|s| &s.snapshot.samples);
+        samples.filter(|s| s.state == Judged::Proposed)
+    }
+
+    /// The proposals that are accepted at once, or else those that are rejected.
+    pub fn judged_at_once(&self, accept: bool) -> Vec<SampleId> {
+        let least = f64::from(self.classes.likely.unwrap_or(LIKELY)) / 100.0;
+        let meant = self
+            .proposed()
+            .filter(|s| (s.score.unwrap_or(0.0) >= least) == accept);
+        meant.map(|s| s.id).collect()
+    }
+
+    pub(in crate::state) fn judge_all(&mut self, accept: bool) {
+        let ids = self.judged_at_once(accept);
+        let state = match accept {
+            true => Judged::Accepted,
+            false => Judged::Rejected,
+        };
+        if !ids.is_empty() {
+            self.edit(Edit::Judge { ids, state });
+        }
+    }
+
     /// The proposals whose answers tell most, first.
     pub fn doubtful(&self) -> Vec<&DbSample> {
-        let Some(store) = &self.store else {
-            return Vec::new();
-        };
-        let proposed: Vec<&DbSample> = store
-            .snapshot
-            .samples
-            .iter()
-            .filter(|s| s.state == Judged::Proposed)
-            .collect();
+        let proposed: Vec<&DbSample> = self.proposed().collect();
         let as_proposals: Vec<Proposal> = proposed
             .iter()
             .map(|s| Proposal {

@@ -7,7 +7,7 @@ use morec_db::ClipId;
 
 use crate::body::Camera;
 use crate::jobs::JobOutcome;
-use crate::jobs::load::ClipMotion;
+use crate::jobs::load::{ClipMotion, extent};
 use crate::state::{Panel, PlayCommand, State, ViewCommand};
 
 impl State {
@@ -53,6 +53,7 @@ impl State {
             self.timeline.held_cut = None;
             self.companions.all.retain(|a| a.of.clip == motion.id);
             self.library.role = None;
+            self.fit_camera(&motion);
             self.look_anew(&motion);
         }
         if let Some((start, stop)) = stretch {
@@ -61,6 +62,33 @@ impl State {
             self.timeline.from_secs = (start - 2.0 * margin).max(0.0);
             self.timeline.to_secs = stop + 2.0 * margin;
             self.timeline.pan(0.0, motion.secs());
+        }
+        if let Some(of) = self.selecting.take().filter(|of| of.clip == motion.id) {
+            self.select_range(Some((of.start_secs, of.stop_secs)));
+        }
+    }
+
+    /// Brings what is no person into the picture whole, whatever its size; people are seen from where they were seen.
+    fn fit_camera(&mut self, motion: &ClipMotion) {
+        let half = match motion.is_person {
+            true => None,
+            false => extent(&motion.pose(0.0)).map(|(_, half)| half),
+        };
+        if let Some(half) = half {
+            self.camera.distance = Camera::distance_of(half);
+        } else if self.fitted {
+            self.camera.distance = Camera::default().distance;
+        }
+        self.fitted = half.is_some();
+    }
+
+    pub(in crate::state) fn play(&mut self, command: &PlayCommand) {
+        let before = self.player.playing;
+        self.player.apply(command);
+        // The label that was just made stays selected while nothing plays: then keys are for what passes.
+        if self.player.playing && !before && self.timeline.just_made {
+            self.timeline.just_made = false;
+            self.timeline.selected.clear();
         }
     }
 

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use morec::train::thesis::SvrdmTrainParams;
+
 use super::lines::ShownCommand;
 use crate::jobs::JobOutcome;
 use crate::jobs::load::ClipMotion;
@@ -21,15 +23,27 @@ impl State {
         }
         let (db, classes) = (store.path().to_owned(), self.chosen());
         let line = ShownCommand::new("morec train").with("--db", &db);
-        let line = line.with("--method", "svrdm").list("--classes", &classes);
-        self.show_line(line.with("-o", "2009.index"));
+        let line = self.with_thesis(line);
+        self.show_line(line.map(|l| l.list("--classes", &classes).with("-o", "2009.index")));
+        let params = self.train.thesis_params.clone();
         self.jobs.start(
             THESIS,
             true,
             &self.wake,
             JobOutcome::Thesis,
-            move |progress| thesis::run(&db, &classes, progress),
+            move |progress| thesis::run(&db, &classes, params, progress),
         );
+    }
+
+    /// The options of the command with which it trains the method of 2009 likewise; it knows no figures but those of the
+    /// two settings.
+    pub(super) fn with_thesis(&self, line: ShownCommand) -> Option<ShownCommand> {
+        let line = line.with("--method", "svrdm");
+        let params = &self.train.thesis_params;
+        if *params == SvrdmTrainParams::default() {
+            return Some(line);
+        }
+        (*params == SvrdmTrainParams::faithful()).then(|| line.with("--svrdm", "faithful"))
     }
 
     pub(in crate::state) fn thesis_trained(&mut self, thesis: Arc<Thesis>) {
@@ -47,7 +61,12 @@ impl State {
     /// The confidences of the method of 2009 over the clip that is shown.
     pub(in crate::state) fn want_map(&mut self, motion: &Arc<ClipMotion>) {
         self.train.map = None;
-        let Some(thesis) = self.train.thesis.clone() else {
+        let Some(thesis) = self
+            .train
+            .thesis
+            .clone()
+            .filter(|_| motion.clip.has_rotations())
+        else {
             return;
         };
         for job in self.jobs.running.iter().filter(|j| j.name == MAPPING) {

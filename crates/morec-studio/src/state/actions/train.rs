@@ -5,6 +5,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 use morec::index::MotionIndex;
+use morec::train::Recipe;
+use morec::train::thesis::SvrdmOptions;
 use morec_db::labels::DbSample;
 
 use super::lines::ShownCommand;
@@ -36,7 +38,7 @@ impl State {
                 };
             }
             TrainCommand::Train => self.start_training(),
-            TrainCommand::Judge => self.start_judging(),
+            TrainCommand::Judge => self.start_judging(train::recipe()),
             TrainCommand::Cell(cell) => self.show_cell(cell),
             TrainCommand::Moment(at) => self.go_to_moment(at),
             TrainCommand::Keep(name) => {
@@ -46,7 +48,15 @@ impl State {
                 }
             }
             TrainCommand::UseIndex(name) => self.use_index(&name),
+            TrainCommand::ThesisParams(params) => self.train.thesis_params = *params,
             TrainCommand::Thesis => self.train_thesis(),
+            TrainCommand::JudgeThesis => {
+                let options = SvrdmOptions {
+                    params: self.train.thesis_params.clone(),
+                    ..SvrdmOptions::default()
+                };
+                self.start_judging(Recipe::Svrdm(Box::new(options)));
+            }
             TrainCommand::Branch(node) => self.train.branch = node,
             TrainCommand::Sample(at) => self.play_taught(at),
         }
@@ -89,7 +99,7 @@ impl State {
         );
     }
 
-    fn start_judging(&mut self) {
+    fn start_judging(&mut self, recipe: Recipe) {
         let Some(store) = &self.store else { return };
         let (db, classes) = (store.path().to_owned(), self.chosen());
         let accepted = store.snapshot.accepted();
@@ -100,13 +110,18 @@ impl State {
         let clips: BTreeSet<_> = taught.iter().map(|s| s.clip).collect();
         let by = LeftOut::of(people, clips.len());
         let line = ShownCommand::new("morec crossval").with("--db", &db);
-        self.show_line(line.with("--by", by.option()).list("--classes", &classes));
+        let line = line.with("--by", by.option());
+        let line = match &recipe {
+            Recipe::Svrdm(_) => self.with_thesis(line),
+            Recipe::Templates(_) => Some(line),
+        };
+        self.show_line(line.map(|line| line.list("--classes", &classes)));
         self.jobs.start(
             JUDGING,
             true,
             &self.wake,
             JobOutcome::Judged,
-            move |progress| judge::judge(&db, &classes, progress),
+            move |progress| judge::judge(&db, &classes, &recipe, progress),
         );
     }
 

@@ -58,10 +58,14 @@ impl Feed {
 pub struct ClipFeed {
     motion: Arc<ClipMotion>,
     announced: bool,
-    /// Seconds of stream at which the present lap began.
-    origin_secs: f64,
+    /// Where laps and leaps began: seconds of stream, and the frame of the clip there. The last is under way.
+    laps: Vec<(f64, usize)>,
     now_secs: f64,
     next_frame: usize,
+    /// True once another moment was chosen, until it is played.
+    leapt: bool,
+    /// A multiple of the performance's speed.
+    pub speed: f64,
     /// Time of day at which the first lap began.
     begun_wall_secs: f64,
 }
@@ -69,25 +73,52 @@ pub struct ClipFeed {
 impl ClipFeed {
     pub fn new(motion: Arc<ClipMotion>) -> Self {
         Self {
+            laps: vec![(0.0, first(&motion))],
             next_frame: first(&motion),
             motion,
             announced: false,
-            origin_secs: 0.0,
             now_secs: 0.0,
+            leapt: false,
+            speed: 1.0,
             begun_wall_secs: wall_now_secs(),
         }
     }
 
     /// The clip, and the moment of it that a moment of the stream shows; both in seconds.
     pub fn moment(&self, stream_secs: f64) -> (ClipId, f64) {
-        let clip = &self.motion.clip;
-        let secs = |frames: usize| frames as f64 / clip.rate_hz;
-        let begin = first(&self.motion);
-        let lap_secs = secs(clip.frames - begin) + PAUSE_SECS;
-        (
-            self.motion.id,
-            secs(begin) + stream_secs.rem_euclid(lap_secs),
-        )
+        let lap = self.laps.iter().rev().find(|lap| lap.0 <= stream_secs);
+        let (origin_secs, from) = lap.unwrap_or(&self.laps[0]);
+        let into = stream_secs - origin_secs;
+        let rate_hz = self.motion.clip.rate_hz;
+        (self.motion.id, *from as f64 / rate_hz + into)
+    }
+
+    /// The moment that comes next, and the length of the clip, seconds.
+    pub fn position(&self) -> (f64, f64) {
+        let secs = self.next_frame as f64 / self.motion.clip.rate_hz;
+        (secs, self.motion.secs())
+    }
+
+    /// Goes on at a moment of the clip, seconds, as if somebody else came.
+    pub fn seek(&mut self, secs: f64) {
+        let last = self.motion.clip.frames.saturating_sub(1);
+        let frame = (secs.max(0.0) * self.motion.clip.rate_hz).round() as usize;
+        self.next_frame = frame.clamp(first(&self.motion), last);
+        // Times of frames go on.
+        let origin_secs = self.now_secs + 1.0 / self.motion.clip.rate_hz;
+        self.laps.push((origin_secs, self.next_frame));
+        self.leapt = true;
+    }
+
+    /// Seconds of stream at which the next frame comes.
+    fn next_secs(&self) -> f64 {
+        let (origin_secs, from) = self.laps[self.laps.len() - 1];
+        origin_secs + (self.next_frame - from) as f64 / self.motion.clip.rate_hz
+    }
+
+    /// Time until the next frame comes, seconds on the wall.
+    pub fn next_frame_secs(&self) -> f64 {
+        (self.next_secs() - self.now_secs).max(0.0) / self.speed.max(1e-3)
     }
 
     fn poll(&mut self, dt: f64, out: &mut Vec<SourceItem>) {
@@ -99,19 +130,20 @@ impl ClipFeed {
             };
             out.push(SourceItem::Rig(PerformerId(0), Arc::new(rig)));
         }
-        // A window that was hidden for an hour does not play an hour at once.
-        self.now_secs += dt.clamp(0.0, 1.0);
+        if std::mem::take(&mut self.leapt) {
+            out.push(SourceItem::Gone(PerformerId(0)));
+        }
+        self.now_secs += dt.max(0.0) * self.speed;
         let motion = self.motion.clone();
         let (clip, begin) = (&motion.clip, first(&motion));
-        let time = |feed: &Self| feed.origin_secs + (feed.next_frame - begin) as f64 / clip.rate_hz;
-        while time(self) <= self.now_secs {
+        while self.next_secs() <= self.now_secs {
+            let time_secs = self.next_secs();
             if self.next_frame >= clip.frames {
-                self.origin_secs = time(self) + PAUSE_SECS;
+                self.laps.push((time_secs + PAUSE_SECS, begin));
                 self.next_frame = begin;
                 out.push(SourceItem::Gone(PerformerId(0)));
                 continue;
             }
-            let time_secs = time(self);
             let mut frame = Frame {
                 time_secs,
                 // A clip comes evenly, however seldom the window draws.

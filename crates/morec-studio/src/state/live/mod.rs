@@ -16,9 +16,13 @@ use morec::math::Vec3;
 use morec_db::ClipId;
 
 pub use feed::{ClipFeed, Feed, ThreadFeed};
+
 pub use looking::{Looking, SPANS};
 pub use marked::{LiveMark, labelled_there};
 pub use run::Run;
+
+/// While seconds are counted down, the window is drawn so often, seconds.
+const COUNTED_SECS: f64 = 0.1;
 
 /// Choice of a source.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,6 +48,8 @@ pub struct Live {
     /// A clip that starts once it is decoded.
     pub(super) starting: Option<ClipId>,
     pub(super) index: Option<Arc<MotionIndex>>,
+    /// Speed at which a clip is played as a source, a multiple of the performance.
+    pub speed: f64,
     /// False alarms a minute that are put up with; `None` as trained.
     pub alarms: Option<f64>,
     /// A stretch of the stream that is selected, on its clock.
@@ -75,6 +81,7 @@ impl Default for Live {
             run: None,
             starting: None,
             index: None,
+            speed: 1.0,
             alarms: None,
             range: None,
             looking: Looking::default(),
@@ -96,6 +103,10 @@ pub enum LiveCommand {
     Choose(Choice),
     Start,
     Stop,
+    /// Goes to a moment of the clip that is the source, seconds.
+    Seek(f64),
+    /// Plays the clip that is the source at a multiple of the performance's speed.
+    Speed(f64),
     /// False alarms a minute.
     Sensitivity(f64),
     Range(Option<(f64, f64)>),
@@ -120,6 +131,14 @@ pub enum LiveCommand {
 impl Live {
     pub fn is_running(&self) -> bool {
         self.run.is_some() || self.starting.is_some()
+    }
+
+    /// Time until something that is shown changes without a word from the source, seconds.
+    pub fn next_change_secs(&self) -> Option<f64> {
+        let run = self.run.as_ref();
+        let counting = self.countdown.map(|_| COUNTED_SECS);
+        let changes = [run.and_then(Run::next_change_secs), counting];
+        changes.into_iter().flatten().reduce(f64::min)
     }
 
     /// The stream's clock.

@@ -1,12 +1,13 @@
 //! One run of a live source: its performers, what was recognised, how the stream is.
 
 use morec::classes::ClassId;
-use morec::diagnosis::Severity;
+use morec::diagnosis::{Diagnosis, Severity};
 use morec::live::{EarlyDetection, Event, Frame, Model, PerformerId, Phase};
 use morec_db::ClipId;
 
 use super::feed::{Feed, SourceItem};
 use super::tracked::LivePerformer;
+use crate::state::player::LONGEST_FRAME;
 
 /// A stream that says nothing for so long has been lost, seconds on the wall.
 const LOST_SECS: f64 = 1.5;
@@ -93,7 +94,7 @@ impl Run {
     /// Takes what has come while `dt` seconds passed; gives the frames of the performer who is watched.
     pub fn tick(&mut self, dt: f64) -> Vec<Frame> {
         let (mut items, mut frames, mut events) = (Vec::new(), Vec::new(), Vec::new());
-        self.feed.poll(dt, &mut items);
+        self.feed.poll(dt.min(LONGEST_FRAME), &mut items);
         self.silent_secs += dt;
         if let Some(notices) = &self.notices {
             self.noticed.extend(notices.take());
@@ -166,6 +167,43 @@ impl Run {
         Some((model.class_name(early.class).to_owned(), early))
     }
 
+    /// What is found of the performer who is watched; nothing of one who is gone.
+    pub fn diagnosis(&self) -> Option<Diagnosis> {
+        self.watched().filter(|w| !w.gone)?.diagnosis()
+    }
+
+    /// The clip that is the source: where it is and how long it is, seconds.
+    pub fn position(&self) -> Option<(f64, f64)> {
+        match &self.feed {
+            Feed::Clip(feed) => Some(feed.position()),
+            Feed::Thread(_) => None,
+        }
+    }
+
+    /// Goes to a moment of the clip that is the source, seconds.
+    pub fn seek(&mut self, secs: f64) {
+        if let Feed::Clip(feed) = &mut self.feed {
+            feed.seek(secs);
+        }
+    }
+
+    /// Plays the clip that is the source at a multiple of the performance's speed.
+    pub fn play_at(&mut self, speed: f64) {
+        if let Feed::Clip(feed) = &mut self.feed {
+            feed.speed = speed;
+        }
+    }
+
+    /// See [`Live::next_change_secs`](super::Live::next_change_secs). A device wakes the window with each frame.
+    pub fn next_change_secs(&self) -> Option<f64> {
+        match &self.feed {
+            Feed::Clip(feed) => Some(feed.next_frame_secs()),
+            // That the sender has stopped is said once.
+            Feed::Thread(_) => (!self.ended && self.silent_secs <= LOST_SECS)
+                .then_some(LOST_SECS - self.silent_secs + 0.01),
+        }
+    }
+
     /// Health of the stream in sentences, each true if it is a fault.
     pub fn health(&self) -> Vec<(String, bool)> {
         let mut said = Vec::new();
@@ -178,11 +216,14 @@ impl Run {
                 true,
             ));
         } else if self.silent_secs > LOST_SECS {
-            let secs = self.silent_secs;
-            said.push((
-                format!("Nothing has come for {secs:.0} s: the sender has stopped"),
-                true,
-            ));
+            let text =
+                format!("Nothing has come for {LOST_SECS} s or longer: the sender has stopped");
+            said.push((text, true));
+        } else if self.watched().is_some_and(|w| w.gone) {
+            said.push(match self.feed {
+                Feed::Clip(_) => ("The clip has ended, and begins again".to_owned(), false),
+                Feed::Thread(_) => ("The performer who is watched has gone".to_owned(), true),
+            });
         }
         let counts = self.feed.counts();
         if counts.malformed > 0 {
@@ -192,7 +233,7 @@ impl Run {
             ));
         }
         said.extend(self.noticed.iter().rev().map(|text| (text.clone(), true)));
-        if let Some(diagnosis) = self.watched().and_then(LivePerformer::diagnosis) {
+        if let Some(diagnosis) = self.diagnosis() {
             for finding in diagnosis.findings().iter() {
                 said.push((
                     crate::store::sentence(&finding.to_string()),

@@ -1,0 +1,216 @@
+//! Clips that show no person: animals, markers, two joints. What is drawn, and what is said of it.
+
+use std::fmt::Write;
+use std::path::PathBuf;
+
+use super::{Person, made};
+use crate::state::{Command, LibraryCommand, Panel, PlayCommand, TrainCommand};
+
+/// A joint of a made skeleton: name, parent, place from the parent.
+type Made = (String, Option<usize>, [f64; 3]);
+
+fn branch(joints: &[Made], at: usize, out: &mut String) {
+    let (name, parent, [x, y, z]) = &joints[at];
+    let (kind, channels) = match parent {
+        None => (
+            "ROOT",
+            "6 Xposition Yposition Zposition Zrotation Xrotation Yrotation",
+        ),
+        Some(_) => ("JOINT", "3 Zrotation Xrotation Yrotation"),
+    };
+    writeln!(
+        out,
+        "{kind} {name}\n{{\nOFFSET {x} {y} {z}\nCHANNELS {channels}"
+    )
+    .unwrap();
+    let below: Vec<usize> = (0..joints.len())
+        .filter(|&j| joints[j].1 == Some(at))
+        .collect();
+    for &child in &below {
+        branch(joints, child, out);
+    }
+    if below.is_empty() {
+        writeln!(out, "End Site\n{{\nOFFSET 0 1 0\n}}").unwrap();
+    }
+    writeln!(out, "}}").unwrap();
+}
+
+/// Two seconds of a body that sways.
+fn bvh(joints: &[Made]) -> String {
+    let mut text = "HIERARCHY\n".to_owned();
+    branch(joints, 0, &mut text);
+    text += "MOTION\nFrames: 120\nFrame Time: 0.0166667\n";
+    for frame in 0..120 {
+        let sway = (f64::from(frame) * 0.1).sin();
+        let place = [5.0 * sway, joints[0].2[1], 0.0];
+        let turns = vec![10.0 * sway; 3 * joints.len()];
+        let values: Vec<String> = place
+            .iter()
+            .chain(&turns)
+            .map(|v| format!("{v:.4}"))
+            .collect();
+        writeln!(text, "{}", values.join(" ")).unwrap();
+    }
+    text
+}
+
+/// Eight legs and two claws.
+fn crab() -> Vec<Made> {
+    let mut joints: Vec<Made> = vec![
+        ("body".to_owned(), None, [0.0, 20.0, 0.0]),
+        ("thorax".to_owned(), Some(0), [0.0, 0.0, 3.0]),
+    ];
+    let mut limb = |name: &str, steps: [[f64; 3]; 3]| {
+        for (side, sign) in [("L", 1.0), ("R", -1.0)] {
+            let mut parent = 1;
+            for (at, [x, y, z]) in steps.iter().enumerate() {
+                joints.push((
+                    format!("{name}_{side}_{at}"),
+                    Some(parent),
+                    [sign * x, *y, *z],
+                ));
+                parent = joints.len() - 1;
+            }
+        }
+    };
+    for leg in 0..4 {
+        let z = 1.0 - 3.0 * f64::from(leg);
+        let steps = [[6.0, 0.0, z], [12.0, 6.0, 0.5 * z], [10.0, -26.0, 0.5 * z]];
+        limb(&format!("leg{leg}"), steps);
+    }
+    limb(
+        "claw",
+        [[5.0, 0.0, 5.0], [9.0, 0.0, 8.0], [-4.0, 0.0, 10.0]],
+    );
+    joints
+}
+
+/// Markers of nobody knows what, two metres apart at most, about a place far from the origin.
+fn markers() -> String {
+    let names = ["aa", "bb", "cc", "dd", "ee"];
+    let mut text = "PathFileType\t4\t(X/Y/Z)\tmarkers.trc\nDataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\n\
+        60\t60\t120\t5\tm\n"
+        .to_owned();
+    text += &format!("Frame#\tTime\t{}\t\t\n", names.join("\t\t\t"));
+    let axes: Vec<String> = (1..=5).map(|n| format!("X{n}\tY{n}\tZ{n}")).collect();
+    text += &format!("\t\t{}\n\n", axes.join("\t"));
+    for frame in 0..120 {
+        write!(text, "{}\t{:.5}", frame + 1, f64::from(frame) / 60.0).unwrap();
+        for marker in 0..5 {
+            let away = 0.5 * f64::from(marker);
+            let sway = 0.1 * (f64::from(frame) * 0.1 + away).sin();
+            write!(
+                text,
+                "\t{:.4}\t{:.4}\t{:.4}",
+                7.0 + away + sway,
+                1.0 + away,
+                5.0
+            )
+            .unwrap();
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// Before the library with one clip of these contents.
+fn with(name: &str, contents: &str) -> (tempfile::TempDir, Person) {
+    let folder = tempfile::tempdir().unwrap();
+    let path: PathBuf = folder.path().join(name);
+    std::fs::write(&path, contents).unwrap();
+    let mut person = Person::before(&[path]);
+    person.settle();
+    assert!(person.state().player.motion.is_some());
+    (folder, person)
+}
+
+#[test]
+fn an_animal_is_named_as_such_and_gets_no_limbs_of_a_person() {
+    let (_folder, mut person) = with("crab.bvh", &bvh(&crab()));
+    let motion = person.state().player.motion.clone().unwrap();
+    for panel in [Panel::Library, Panel::Label] {
+        person.goes_to(panel);
+        assert!(person.sees_part("This hardly is a human body: it has a joint `claw_L_0`"));
+    }
+    let thick = |body: &crate::body::Body| {
+        let radii = body.limbs.iter().map(|limb| limb.radii[0]);
+        radii.fold(0.0, f64::max)
+    };
+    assert!(thick(&motion.body) < 0.01, "{}", thick(&motion.body));
+    assert!(motion.body.head.is_none());
+    // A person is not doubted, and is drawn as one.
+    let folder = tempfile::tempdir().unwrap();
+    let person = Person::before(&[made(folder.path(), 0)]);
+    assert!(!person.sees_part("hardly is a human body"));
+    let motion = person.state().player.motion.clone().unwrap();
+    assert!(motion.doubts.is_empty(), "{:?}", motion.doubts);
+    assert!(thick(&motion.body) > 0.05);
+}
+
+/// Places in the picture of the performer at which something small and round is drawn.
+fn dots(person: &Person) -> Vec<egui::Pos2> {
+    let view = person.place("Performer");
+    let shapes = person.window.output().shapes.iter();
+    let round = shapes.filter_map(|s| match &s.shape {
+        egui::Shape::Circle(circle) if circle.radius < 4.0 => Some(circle.center),
+        _ => None,
+    });
+    round.filter(|at| view.contains(*at)).collect()
+}
+
+#[test]
+fn markers_are_drawn_in_the_picture_and_move() {
+    let (_folder, mut person) = with("markers.trc", &markers());
+    person.goes_to(Panel::Label);
+    let before = dots(&person);
+    assert_eq!(before.len(), 5, "all of them lie in the picture");
+    assert!(person.sees_part("Only 5 points are drawn"));
+    person.command(Command::Play(PlayCommand::Seek(0.7)));
+    let after = dots(&person);
+    assert!(
+        before
+            .iter()
+            .zip(&after)
+            .any(|(a, b)| (*a - *b).length() > 1.0)
+    );
+}
+
+#[test]
+fn a_clip_of_two_joints_says_why_there_is_no_body() {
+    let joints: Vec<Made> = vec![
+        ("root".to_owned(), None, [0.0, 0.0, 0.0]),
+        ("tip".to_owned(), Some(0), [0.0, 40.0, 0.0]),
+    ];
+    let text = bvh(&joints).replace("OFFSET 0 1 0", "OFFSET 0 0 0");
+    let (_folder, mut person) = with("two.bvh", &text);
+    person.goes_to(Panel::Label);
+    assert!(person.sees_part("joints alone make no body"));
+    assert!(!dots(&person).is_empty());
+}
+
+#[test]
+fn clips_of_positions_say_why_the_tracks_of_2009_are_empty() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), 2)]);
+    person.command(Command::Train(TrainCommand::Thesis));
+    let path = folder.path().join("markers.trc");
+    std::fs::write(&path, markers()).unwrap();
+    person.command(Command::File(crate::state::FileCommand::Import(vec![path])));
+    let snapshot = person.state().store.as_ref().unwrap().snapshot.clone();
+    let clip = snapshot
+        .clips
+        .iter()
+        .find(|c| c.name == "markers")
+        .unwrap()
+        .id;
+    person.goes_to(Panel::Label);
+    person.command(Command::Library(LibraryCommand::Open(clip)));
+    let said = crate::jobs::cut::NO_ROTATIONS;
+    assert!(person.sees(&format!("2009: confidence: {said}")));
+    assert!(person.sees_part("Misfit (thesis): "));
+    assert!(
+        person.state().notices.is_empty(),
+        "{:?}",
+        person.state().notices
+    );
+}
