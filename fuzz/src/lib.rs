@@ -10,6 +10,7 @@ pub const LIMITS: Limits = Limits {
     depth: 32,
     line_bytes: 4096,
     frames: 4096,
+    memory: 64 << 20,
 };
 
 /// Asserts that every frame is whole and every number finite, and that rotations have length 1.

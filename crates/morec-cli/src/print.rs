@@ -10,7 +10,7 @@ use crate::table::TextTable;
 
 /// One value as JSON on standard output.
 pub fn print_json(value: &impl Serialize) -> Result<()> {
-    let mut out = std::io::stdout().lock();
+    let mut out = crate::console::stdout();
     write_json(&mut out, value)?;
     out.flush()?;
     Ok(())
@@ -18,7 +18,7 @@ pub fn print_json(value: &impl Serialize) -> Result<()> {
 
 /// Text on standard output.
 pub fn print(text: impl std::fmt::Display) -> Result<()> {
-    let mut out = std::io::stdout().lock();
+    let mut out = crate::console::stdout();
     write!(out, "{text}")?;
     out.flush()?;
     Ok(())
@@ -27,7 +27,7 @@ pub fn print(text: impl std::fmt::Display) -> Result<()> {
 /// A table that fits the terminal, and a last line below it. Whoever reads it through a pipe gets all of it, separated by
 /// tabs, and the last line on standard error.
 pub fn print_table(table: &TextTable, last: &str) -> Result<()> {
-    let mut out = std::io::stdout().lock();
+    let mut out = crate::console::stdout();
     if std::io::stdout().is_terminal() {
         let width = terminal_size::terminal_size().map_or(80, |(width, _)| usize::from(width.0));
         write!(out, "{}{last}", table.fitted(width))?;

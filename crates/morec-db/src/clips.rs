@@ -3,6 +3,7 @@
 use rusqlite::{Connection, OptionalExtension, Row, params};
 
 use crate::history::counted;
+use crate::labels::LONGEST_NAME;
 use crate::{DbError, MotionDb, names};
 
 /// A clip's number in its database.
@@ -177,10 +178,11 @@ impl MotionDb {
     /// Gives a clip another name; its labels, cuts and tags stay with it.
     ///
     /// # Errors
-    /// There is no such clip, another one has the new name, or the name is empty or holds control characters.
+    /// There is no such clip, another one has the new name, or the name is empty, longer than 200 bytes or holds control characters.
     pub fn rename_clip(&mut self, from: &str, to: &str) -> Result<(), DbError> {
-        if to.trim() != to || to.is_empty() || to.chars().any(char::is_control) {
-            let expected = "a clip's name, without blanks around it, tabs, line ends or other control characters";
+        let blank = to.trim() != to || to.is_empty();
+        if blank || to.len() > LONGEST_NAME || to.chars().any(char::is_control) {
+            let expected = "a clip's name: 1 to 200 bytes without blanks around it, tabs, line ends or other control characters";
             return Err(DbError::Invalid(format!(
                 "expected {expected}, found {to:?}"
             )));

@@ -1,5 +1,6 @@
 //! The file itself: made, opened, counted, shrunk.
 
+use std::fs::{File, OpenOptions};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -57,8 +58,9 @@ impl MotionDb {
         if path.exists() {
             return Err(DbError::Exists(path.to_owned()));
         }
-        let mut conn = Connection::open(path)?;
-        begin(&mut conn)?;
+        let made = Connection::open(path).map_err(DbError::from);
+        let made = made.and_then(|mut conn| begin(&mut conn).map(|()| conn));
+        let conn = made.map_err(|error| error.with_place(|| File::create_new(path)))?;
         Ok(Self {
             conn,
             path: path.to_owned(),
@@ -71,6 +73,11 @@ impl MotionDb {
     /// # Errors
     /// No such file, another kind of file, a newer schema, a file that may not be written.
     pub fn open(path: &Path) -> Result<Self, DbError> {
+        let opened = Self::open_for_writing(path);
+        opened.map_err(|error| error.with_place(|| OpenOptions::new().write(true).open(path)))
+    }
+
+    fn open_for_writing(path: &Path) -> Result<Self, DbError> {
         let mut conn = existing(path, OpenFlags::SQLITE_OPEN_READ_WRITE)?;
         let found = schema::check(&conn, path)?;
         match found {

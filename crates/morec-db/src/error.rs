@@ -1,5 +1,7 @@
 //! Errors of the database, in plain words.
 
+use std::fs::File;
+use std::io::{self, ErrorKind};
 use std::path::PathBuf;
 
 use rusqlite::ErrorCode;
@@ -26,6 +28,14 @@ pub enum DbError {
         /// Its application id.
         found: i32,
     },
+    /// The file is marked as a motion database, but its tables, triggers or views are not those of one.
+    #[error("{}: expected the schema of a motion database, found {found}", path.display())]
+    Altered {
+        /// The file.
+        path: PathBuf,
+        /// What is there and should not be, or the other way round.
+        found: String,
+    },
     /// The file was written by a newer version.
     #[error(
         "{path}: schema {found} is newer than this program knows ({known}); a newer morec reads it"
@@ -51,6 +61,9 @@ pub enum DbError {
     /// The file may not be written.
     #[error("the database cannot be written: the file or its folder is read-only")]
     ReadOnly,
+    /// The disk may not be written.
+    #[error("the database cannot be written: its disk is read-only")]
+    ReadOnlyDisk,
     /// Another program writes for longer than was waited.
     #[error("the database is busy: another program is writing to it; try again when it is done")]
     Busy,
@@ -102,6 +115,19 @@ impl From<rusqlite::Error> for DbError {
 }
 
 impl DbError {
+    /// The error of a file that could not be opened for writing, in the terms of the system where SQLite has none: `open` opens
+    /// it once more.
+    pub(crate) fn with_place(self, open: impl FnOnce() -> io::Result<File>) -> Self {
+        if !matches!(self, Self::Disk(_) | Self::ReadOnly) {
+            return self;
+        }
+        match open().map_err(|error| error.kind()) {
+            Err(ErrorKind::ReadOnlyFilesystem) => Self::ReadOnlyDisk,
+            Err(ErrorKind::PermissionDenied) => Self::ReadOnly,
+            _ => self,
+        }
+    }
+
     pub(crate) fn unknown(kind: &'static str, name: &str) -> Self {
         Self::Unknown {
             kind,
@@ -116,5 +142,25 @@ fn kind_of(path: &std::path::Path) -> &'static str {
     match path.is_dir() {
         true => "a folder",
         false => "another kind of file",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_cannot_be_written_is_named() {
+        let told = |error: DbError, kind: ErrorKind| {
+            let told = error.with_place(|| Err(kind.into()));
+            told.to_string()
+        };
+        let disk = || DbError::Disk("unable to open database file".into());
+        let read_only = "its disk is read-only";
+        assert!(told(disk(), ErrorKind::ReadOnlyFilesystem).ends_with(read_only));
+        assert!(told(DbError::ReadOnly, ErrorKind::ReadOnlyFilesystem).ends_with(read_only));
+        assert!(told(disk(), ErrorKind::PermissionDenied).contains("the file or its folder"));
+        assert!(told(disk(), ErrorKind::NotFound).contains("unable to open"));
+        assert!(told(DbError::Busy, ErrorKind::ReadOnlyFilesystem).contains("busy"));
     }
 }

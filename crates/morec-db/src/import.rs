@@ -5,17 +5,22 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use morec::files::{FileReader, is_large, read_file, split_choice};
+use morec::formats::Limits;
 use morec::progress::Progress;
 use rayon::prelude::*;
 use rusqlite::{Connection, OptionalExtension, Row, params};
 
 use crate::history::counted;
 use crate::kept::{FileContent, KeptClip, KeptFile, packed_rows, rows_recipe};
+use crate::labels::LONGEST_NAME;
 use crate::time::now_secs;
 use crate::{ClipId, ClipUpdate, DbError, MotionDb, history, rows};
 
 /// Files in one transaction: a crash loses the work of this many at most, and nothing that was committed.
 const BATCH: usize = 32;
+
+/// Memory that the files read side by side have together, bytes. What needs more than its share is read again, by itself.
+const SHARED_MEMORY: usize = 2 << 30;
 
 /// Outcome of importing one file.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -103,6 +108,8 @@ pub struct ImportCounts {
 pub(crate) enum PreparedFile {
     Known(i64),
     Refused(String),
+    /// Refused for the memory it needs.
+    TooLarge(String),
     New(Vec<KeptClip>),
 }
 
@@ -119,8 +126,21 @@ impl MotionDb {
         about: &ClipUpdate,
         progress: &dyn Progress,
     ) -> Result<ImportLog, DbError> {
+        self.import_sharing(paths, reader, about, progress, SHARED_MEMORY)
+    }
+
+    /// [`import`](Self::import) with so much memory for files that are read side by side.
+    pub(crate) fn import_sharing(
+        &mut self,
+        paths: &[PathBuf],
+        reader: &FileReader,
+        about: &ClipUpdate,
+        progress: &dyn Progress,
+        memory: usize,
+    ) -> Result<ImportLog, DbError> {
         let mut report = ImportLog::default();
         let done = AtomicUsize::new(0);
+        let sharing = sharing(reader, memory);
         // All batches are one step of the history, as the person sees one import.
         let mut step = None;
         for batch in paths.chunks(BATCH) {
@@ -129,13 +149,13 @@ impl MotionDb {
                 break;
             }
             let known = self.known_hashes()?;
-            let made: Vec<Option<PreparedFile>> = batch
+            let mut made: Vec<Option<PreparedFile>> = batch
                 .par_iter()
                 .map(|path| {
                     if progress.cancelled() {
                         return None;
                     }
-                    let made = make(path, reader, about, &known);
+                    let made = make(path, &sharing, about, &known);
                     progress.report(
                         "importing",
                         done.fetch_add(1, Ordering::Relaxed) + 1,
@@ -145,6 +165,11 @@ impl MotionDb {
                 })
                 .collect();
             let program = self.program.clone();
+            for (path, made) in batch.iter().zip(&mut made) {
+                if matches!(made, Some(PreparedFile::TooLarge(_))) && !progress.cancelled() {
+                    *made = Some(make(path, reader, about, &known));
+                }
+            }
             let tx = self.write()?;
             let recording = history::record(&tx, "import", step, &program)?;
             for (path, made) in batch.iter().zip(made) {
@@ -284,6 +309,19 @@ impl MotionDb {
     }
 }
 
+/// The reader of one of several files that are read side by side.
+fn sharing(reader: &FileReader, memory: usize) -> FileReader {
+    let share = memory / rayon::current_num_threads().max(1);
+    let limits = Limits {
+        memory: reader.limits.memory.min(share),
+        ..reader.limits
+    };
+    FileReader {
+        limits,
+        ..reader.clone()
+    }
+}
+
 pub(crate) fn make(
     path: &Path,
     reader: &FileReader,
@@ -308,7 +346,8 @@ pub(crate) fn make(
         false => KeptClip::of_file(path, &bytes, reader),
     };
     match kept {
-        Err(reason) => PreparedFile::Refused(reason),
+        Err(refused) if refused.of_memory => PreparedFile::TooLarge(refused.reason),
+        Err(refused) => PreparedFile::Refused(refused.reason),
         Ok(clips) => {
             let told = |clip| KeptClip {
                 source: about.source.clone(),
@@ -325,7 +364,7 @@ pub(crate) fn make(
 fn store(conn: &Connection, path: &Path, made: PreparedFile) -> Result<ImportOutcome, DbError> {
     let shown = path.to_string_lossy();
     match made {
-        PreparedFile::Refused(reason) => {
+        PreparedFile::Refused(reason) | PreparedFile::TooLarge(reason) => {
             // Refused for the same reason again, it is no change.
             let sql = "INSERT INTO refused (path, reason, tried_secs) VALUES (?1, ?2, ?3) \
                 ON CONFLICT (path) DO UPDATE SET reason = excluded.reason, tried_secs = excluded.tried_secs \
@@ -377,16 +416,22 @@ fn insert(
     clips: &[KeptClip],
 ) -> Result<ImportOutcome, DbError> {
     let number = insert_file(conn, path, file)?;
-    let mut names = Vec::new();
+    let (mut names, mut warnings) = (Vec::new(), file.warnings.clone());
     for clip in clips {
         let name = free_name(conn, path, &clip.name)?;
+        if clip.name.len() > LONGEST_NAME {
+            warnings.push(format!(
+                "a name of {} bytes, of which a clip has at most {LONGEST_NAME}: it is called {name}",
+                clip.name.len()
+            ));
+        }
         let id = insert_clip(conn, number, &name, clip)?;
         rows::keep(conn, id, &clip.recipe, clip.bones, &clip.rows)?;
         names.push(name);
     }
     Ok(ImportOutcome::Imported {
         clips: names,
-        warnings: file.warnings.clone(),
+        warnings,
     })
 }
 
@@ -440,14 +485,29 @@ fn free_name(conn: &Connection, path: &Path, name: &str) -> Result<String, DbErr
     let folder = path
         .parent()
         .and_then(Path::file_name)
-        .map(|f| format!("{}/{name}", sanitized_name(&f.to_string_lossy())));
-    let numbered = (2..).map(|number| format!("{name}~{number}"));
-    for candidate in [name.to_owned()].into_iter().chain(folder).chain(numbered) {
+        .map(|f| format!("{}/{name}", sanitized_name(&f.to_string_lossy())))
+        .filter(|name| name.len() <= LONGEST_NAME);
+    let numbered = (2..).map(|number| {
+        let behind = format!("~{number}");
+        let begin = shortened(name, LONGEST_NAME - behind.len());
+        format!("{begin}{behind}")
+    });
+    let own = shortened(name, LONGEST_NAME).to_owned();
+    for candidate in [own].into_iter().chain(folder).chain(numbered) {
         if !taken(&candidate)? {
             return Ok(candidate);
         }
     }
     unreachable!("numbers do not end")
+}
+
+/// The beginning of a name, at most this many bytes.
+fn shortened(name: &str, bytes: usize) -> &str {
+    let mut end = bytes.min(name.len());
+    while !name.is_char_boundary(end) {
+        end -= 1;
+    }
+    name[..end].trim_end()
 }
 
 fn insert_clip(

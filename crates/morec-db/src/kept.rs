@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use morec::clip::Clip;
 use morec::features::{FeatureParams, Rows};
-use morec::files::{ClipFile, FileReader, each_piece, split_choice};
+use morec::files::{ClipFile, FileError, FileReader, each_piece, split_choice};
 use morec::formats::{Place, Warning};
 use morec::import::{ImportOptions, normalize};
 
@@ -109,15 +109,47 @@ impl FileContent {
     }
 }
 
+/// Why there is no clip of a file to keep.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{reason}")]
+pub struct NotKept {
+    /// The reason in a sentence.
+    pub reason: String,
+    /// True if it is the memory that the file needs.
+    pub of_memory: bool,
+}
+
+impl From<String> for NotKept {
+    fn from(reason: String) -> Self {
+        Self {
+            reason,
+            of_memory: false,
+        }
+    }
+}
+
+impl From<FileError> for NotKept {
+    fn from(error: FileError) -> Self {
+        Self {
+            reason: error.kind.to_string(),
+            of_memory: error.kind.is_of_memory(),
+        }
+    }
+}
+
 impl KeptClip {
     /// The clips in `bytes`, which are the file at `path`, made ready and compressed. The same bytes give the same.
     ///
     /// # Errors
     /// Why there are none, in a sentence.
-    pub fn of_file(path: &Path, bytes: &[u8], reader: &FileReader) -> Result<Vec<Self>, String> {
-        let parsed = reader.parse(path, bytes);
-        let parsed = parsed.map_err(|error| error.kind.to_string())?;
-        Self::of_parsed(path, parsed, FileContent::of(path, bytes), reader)
+    pub fn of_file(path: &Path, bytes: &[u8], reader: &FileReader) -> Result<Vec<Self>, NotKept> {
+        let parsed = reader.parse(path, bytes)?;
+        Ok(Self::of_parsed(
+            path,
+            parsed,
+            FileContent::of(path, bytes),
+            reader,
+        )?)
     }
 
     /// The same for a large file of this content, which is not held as a whole if its format allows it.
@@ -125,12 +157,12 @@ impl KeptClip {
         path: &Path,
         content: FileContent,
         reader: &FileReader,
-    ) -> Result<Vec<Self>, String> {
-        let parsed = reader.read(path).map_err(|error| error.kind.to_string())?;
+    ) -> Result<Vec<Self>, NotKept> {
+        let parsed = reader.read(path)?;
         if FileContent::of_large(path).map_err(|error| error.to_string())? != content {
-            return Err("the file changed while it was read".to_owned());
+            return Err("the file changed while it was read".to_owned().into());
         }
-        Self::of_parsed(path, parsed, content, reader)
+        Ok(Self::of_parsed(path, parsed, content, reader)?)
     }
 
     fn of_parsed(

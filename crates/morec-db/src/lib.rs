@@ -56,7 +56,7 @@ pub use health::Health;
 pub use history::{Effect, HistoryStep, ReplayedStep, STEPS_KEPT};
 pub use import::{ImportCounts, ImportLog, ImportOutcome, Refused};
 pub use indexes::IndexInfo;
-pub use kept::{KeptClip, KeptFile, clip_rows, packed_rows, rows_recipe, stored_clip};
+pub use kept::{KeptClip, KeptFile, NotKept, clip_rows, packed_rows, rows_recipe, stored_clip};
 pub use motion::StoredClip;
 pub use names::hint;
 pub use propose::{Proposal, ProposeOptions, most_informative};

@@ -45,7 +45,9 @@ impl MotionDb {
         let refuse = |why: String| Err(DbError::Invalid(format!("{}: {why}", path.display())));
         let known = self.known_hashes()?;
         let clip = match make(path, reader, &ClipUpdate::default(), &known) {
-            PreparedFile::Refused(reason) => return refuse(reason),
+            PreparedFile::Refused(reason) | PreparedFile::TooLarge(reason) => {
+                return refuse(reason);
+            }
             PreparedFile::Known(file) => {
                 let sql =
                     "SELECT coalesce(group_concat(name, ', '), '') FROM clips WHERE file = ?1";

@@ -6,6 +6,7 @@ use morec::progress::Progress;
 use tempfile::TempDir;
 
 use morec::files::FileReader;
+use morec::formats::Limits;
 
 use crate::testing::{database_of_waves, waves, write_bvh};
 use crate::{ClipFilter, ClipInfo, ClipUpdate, DbError, ImportOutcome, MotionDb};
@@ -62,6 +63,109 @@ fn other_files_are_plain_errors() {
         MotionDb::create(&path("newer")),
         Err(DbError::Exists(_))
     ));
+}
+
+/// What a file brings along may run whenever a clip is added, or hide what is there.
+#[test]
+fn a_schema_of_another_hand_is_refused_by_name() {
+    let delete = "AFTER UPDATE ON clips BEGIN DELETE FROM samples; END";
+    for (sql, named) in [
+        (
+            format!("CREATE TRIGGER gone {delete}"),
+            r#"the trigger "gone""#,
+        ),
+        (
+            "CREATE VIEW people AS SELECT subject FROM clips".into(),
+            r#"the view "people""#,
+        ),
+        (
+            "DROP TRIGGER clips_moved".into(),
+            r#"no trigger "clips_moved""#,
+        ),
+        (
+            format!("DROP TRIGGER clips_moved; CREATE TRIGGER clips_moved {delete}"),
+            r#"another trigger "clips_moved""#,
+        ),
+        (
+            "ALTER TABLE clips ADD COLUMN secret TEXT GENERATED ALWAYS AS (name) VIRTUAL".into(),
+            r#"another table "clips""#,
+        ),
+    ] {
+        let folder = TempDir::new().unwrap();
+        let path = folder.path().join("a.mdb");
+        MotionDb::create(&path).unwrap();
+        assert!(MotionDb::open(&path).is_ok());
+        let conn = rusqlite::Connection::open(&path).unwrap();
+        conn.execute_batch(&sql).unwrap();
+        for opened in [MotionDb::open(&path), MotionDb::open_read_only(&path)] {
+            let error = opened.map(drop).unwrap_err().to_string();
+            assert!(error.contains("a.mdb") && error.contains(named), "{error}");
+        }
+    }
+}
+
+#[test]
+fn names_of_clips_are_as_long_as_those_of_classes() {
+    let folder = TempDir::new().unwrap();
+    let take = waves(1).remove(0);
+    let long = "é".repeat(120);
+    let paths = [
+        write_bvh(folder.path(), &long, &take.clip),
+        write_bvh(folder.path(), &format!("{long}x"), &waves(2)[1].clip),
+    ];
+    let mut db = MotionDb::create(&folder.path().join("a.mdb")).unwrap();
+    let report = db
+        .import(&paths, &FileReader::default(), &ClipUpdate::default(), &())
+        .unwrap();
+    let clips = db.clips(&ClipFilter::default()).unwrap();
+    let names: Vec<&str> = clips.iter().map(|clip| clip.name.as_str()).collect();
+    let (whole, numbered) = ("é".repeat(100), format!("{}~2", "é".repeat(99)));
+    assert_eq!(names, [numbered.as_str(), whole.as_str()]);
+    let ImportOutcome::Imported { warnings, .. } = &report.files[0].1 else {
+        panic!("{report:?}");
+    };
+    assert!(
+        warnings.iter().any(|text| text.contains("240 bytes")),
+        "{warnings:?}"
+    );
+    let first = names[0].to_owned();
+    assert!(db.rename_clip(&first, &"a".repeat(200)).is_ok());
+    let error = db.rename_clip(&"a".repeat(200), &"a".repeat(201));
+    assert!(error.unwrap_err().to_string().contains("1 to 200 bytes"));
+}
+
+/// One file that needs too much does not cost the others; one that needs more than its share is read by itself.
+#[test]
+fn memory_is_shared_among_files_that_are_read_side_by_side() {
+    let folder = TempDir::new().unwrap();
+    let takes = waves(2);
+    let large = write_bvh(folder.path(), "large", &takes[0].clip);
+    let small = folder.path().join("small.bvh");
+    let text = "HIERARCHY\nROOT Hips\n{\nOFFSET 0 0 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nEnd Site\n{\nOFFSET 0 1 0\n}\n}\n\
+                MOTION\nFrames: 3\nFrame Time: 0.02\n1 2 3\n4 5 6\n7 8 9\n";
+    std::fs::write(&small, text).unwrap();
+    let paths = [large, small];
+    let mut db = MotionDb::create(&folder.path().join("a.mdb")).unwrap();
+    let little = FileReader {
+        limits: Limits {
+            memory: 10_000,
+            ..Limits::default()
+        },
+        ..FileReader::default()
+    };
+    let about = ClipUpdate::default();
+    let report = db.import(&paths, &little, &about, &()).unwrap();
+    let counts = report.counts();
+    assert_eq!((counts.imported, counts.refused), (1, 1), "{report:?}");
+    let ImportOutcome::Refused(refused) = &report.files[0].1 else {
+        panic!("{report:?}");
+    };
+    assert!(refused.reason.contains("memory"), "{}", refused.reason);
+    let report = db
+        .import_sharing(&paths, &FileReader::default(), &about, &(), 10_000)
+        .unwrap();
+    let counts = report.counts();
+    assert_eq!((counts.imported, counts.known), (1, 1), "{report:?}");
 }
 
 #[test]

@@ -112,7 +112,7 @@ pub fn keep_file<'py>(
     let reader = reader(options)?;
     let clips = py.detach(|| KeptClip::of_file(&path, bytes, &reader));
     clips
-        .map_err(MorecError::new_err)?
+        .map_err(|refused| MorecError::new_err(refused.to_string()))?
         .iter()
         .map(|clip| row(py, clip))
         .collect()

@@ -40,7 +40,7 @@ pub fn db_error(error: DbError) -> PyErr {
     match error {
         DbError::Missing(_) => PyFileNotFoundError::new_err(text),
         DbError::Exists(_) => PyFileExistsError::new_err(text),
-        DbError::ReadOnly => PyPermissionError::new_err(text),
+        DbError::ReadOnly | DbError::ReadOnlyDisk => PyPermissionError::new_err(text),
         DbError::Unknown { .. } => PyKeyError::new_err(text),
         DbError::Invalid(_) => value_error(text),
         _ => MorecError::new_err(text),

@@ -83,7 +83,7 @@ impl NamePattern {
     }
 }
 
-/// The end of a path with so many folders, without the file's ending.
+/// The end of a path with this many folders, without the file's ending.
 fn tail(path: &str, folders: usize) -> Option<String> {
     let parts: Vec<&str> = path.split(['/', '\\']).collect();
     let from = parts.len().checked_sub(folders + 1)?;

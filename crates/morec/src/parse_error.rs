@@ -48,7 +48,26 @@ impl ParseError {
             found: found.into(),
         }
     }
+
+    /// The error of a file for which `most` bytes of memory do not suffice.
+    #[cfg(feature = "formats")]
+    pub(crate) fn of_memory(most: usize, needed: usize) -> Self {
+        let megabytes = |bytes: usize| bytes.div_ceil(1 << 20);
+        let expected = format!("{OF_MEMORY}{} MiB of memory", megabytes(most));
+        let found = format!("a file that needs {} MiB or more", megabytes(needed));
+        Self::new(Place::File, expected, found)
+    }
+
+    /// True if the file was refused for the memory it needs: it may be read with more, or in parts.
+    #[cfg(feature = "formats")]
+    pub fn is_of_memory(&self) -> bool {
+        self.expected.starts_with(OF_MEMORY)
+    }
 }
+
+/// Beginning of what is expected of a file that needs too much memory.
+#[cfg(feature = "formats")]
+const OF_MEMORY: &str = "a file that is read with ";
 
 /// At most 60 characters of `text` for an error message, with `…` for the rest.
 #[cfg(feature = "formats")]

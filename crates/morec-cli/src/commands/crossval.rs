@@ -152,7 +152,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         };
         figures::write_report(path, &report)?;
     }
-    let mut out = std::io::stdout().lock();
+    let mut out = crate::console::stdout();
     if args.json {
         let named = |p: &(Perturbation, Evaluation)| PerturbedFigures {
             perturbation: p.0.to_string(),

@@ -148,7 +148,7 @@ fn show(folder: &DemoFolder, cast: &Cast, args: &Args) -> Result<()> {
         cast.whose
     );
     match args.quiet {
-        true => show::write_events(&scene, &mut std::io::stdout().lock()),
+        true => show::write_events(&scene, &mut crate::console::stdout()),
         false => show::play(&scene, args.speed),
     }
     .context("showing the stream")

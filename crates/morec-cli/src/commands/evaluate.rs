@@ -135,7 +135,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         };
         figures::write_report(path, &report)?;
     }
-    let mut out = std::io::stdout().lock();
+    let mut out = crate::console::stdout();
     if args.json {
         let missed = args.index.is_some().then_some(misses.as_slice());
         let evaluation = &evaluation;

@@ -109,7 +109,7 @@ pub fn run(args: Args) -> Result<ExitCode> {
     }
     drop(progress);
     if args.json {
-        let mut out = std::io::stdout().lock();
+        let mut out = crate::console::stdout();
         write_json(&mut out, &reports)?;
     }
     Ok(if failed {
@@ -121,7 +121,7 @@ pub fn run(args: Args) -> Result<ExitCode> {
 
 fn print(report: &FileReport, full: bool) -> Result<()> {
     match report {
-        FileReport::Read(report) => report.write(&mut std::io::stdout().lock(), full)?,
+        FileReport::Read(report) => report.write(&mut crate::console::stdout(), full)?,
         FileReport::Failed { error, .. } => eprintln!("morec: {error}"),
     }
     Ok(())

@@ -168,7 +168,10 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         .iter()
         .filter_map(CountedSink::farewell)
         .for_each(|text| eprintln!("morec: {text}"));
-    Ok(ExitCode::SUCCESS)
+    Ok(match outlets.iter().any(CountedSink::is_incomplete) {
+        true => ExitCode::FAILURE,
+        false => ExitCode::SUCCESS,
+    })
 }
 
 fn tell(said: &NamedEvent, outlets: &mut [CountedSink], line: &mut StatusLine) -> Result<()> {

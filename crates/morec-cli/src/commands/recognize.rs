@@ -152,7 +152,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     }
     let failed = match &args.output {
         None => recognize_all(
-            &mut std::io::stdout().lock(),
+            &mut crate::console::stdout(),
             &paths,
             &index,
             &options,

@@ -86,7 +86,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         table: &table,
         components: &pca,
     };
-    let mut out = std::io::stdout().lock();
+    let mut out = crate::console::stdout();
     if args.json {
         write_json(&mut out, &reduced)?;
     } else {

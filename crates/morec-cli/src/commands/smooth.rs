@@ -118,7 +118,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             eprintln!("morec: {error}");
         }
     }
-    let mut out = std::io::stdout().lock();
+    let mut out = crate::console::stdout();
     if args.json {
         write_json(&mut out, &reports)?;
     } else {

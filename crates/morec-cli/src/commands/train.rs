@@ -62,7 +62,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         database::open(db)?.store_index(&name, &bytes)?;
     }
     if args.json {
-        let mut out = std::io::stdout().lock();
+        let mut out = crate::console::stdout();
         write_json(&mut out, &report)?;
     } else {
         print_report(&report, bytes.len(), &material, &args.output);

@@ -39,7 +39,7 @@ impl Sink for Terminal {
         if e.phase != Phase::End {
             return Ok(());
         }
-        let mut out = io::stdout().lock();
+        let mut out = crate::console::stdout();
         writeln!(
             out,
             "{:9.2} to {:7.2} s  {:20} {:.2}  reported {:.2} s after its end{}",
@@ -86,6 +86,11 @@ impl CountedSink {
         }
         self.failures += 1;
         Ok((self.failures == 1).then(|| format!("{}: {error}", self.address)))
+    }
+
+    /// True if a record of the events lacks some: whoever reads it later cannot know.
+    pub fn is_incomplete(&self) -> bool {
+        self.failures > 0 && self.address.kind == "json"
     }
 
     /// Closing line about it, if there is one.

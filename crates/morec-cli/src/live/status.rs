@@ -49,18 +49,25 @@ impl StatusLine {
         let text = describe(statuses, classes, self.rate_hz);
         let width = terminal_size::terminal_size().map_or(100, |(width, _)| usize::from(width.0));
         let text: String = text.chars().take(width.saturating_sub(1)).collect();
-        eprint!("\r\x1b[2K{text}");
-        // If nobody sees it, nothing is lost.
-        let _ = std::io::stderr().flush();
+        let text: String = text
+            .chars()
+            .map(|c| if c.is_control() { '?' } else { c })
+            .collect();
+        draw(&format!("\r\x1b[2K{text}"));
     }
 
     /// Takes the line away, so that something else can be printed.
     pub fn clear(&mut self) {
         if std::mem::take(&mut self.drawn) {
-            eprint!("\r\x1b[2K");
-            let _ = std::io::stderr().flush();
+            draw("\r\x1b[2K");
         }
     }
+}
+
+/// Writes what moves the cursor. If nobody sees it, nothing is lost.
+fn draw(text: &str) {
+    let mut out = std::io::stderr();
+    let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
 }
 
 /// Frames lost on the way, as far as anybody can tell.

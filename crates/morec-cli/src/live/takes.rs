@@ -212,9 +212,9 @@ impl TakeRecorder {
 
     fn ring(&self) {
         if self.bell {
-            eprint!("\x07");
+            let mut out = std::io::stderr();
             // If nobody hears it, nothing is lost.
-            let _ = std::io::stderr().flush();
+            let _ = out.write_all(b"\x07").and_then(|()| out.flush());
         }
     }
 

@@ -557,3 +557,20 @@ fn kill_nine_leaves_whole_clips() {
     folder.morec(&["db", "import", "m.mdb", "clips"]).ok();
     assert_eq!(json(&folder, &["db", "info", "m.mdb"])["clips"], 101);
 }
+
+/// One clip that cannot be written does not cost the others.
+#[test]
+fn an_export_names_what_it_cannot_write_and_goes_on() {
+    let (folder, takes) = studio(2);
+    folder.morec(&["db", "init", "m.mdb"]).ok();
+    folder.morec(&["db", "import", "m.mdb", "clips"]).ok();
+    let [first, second] = [0, 1].map(|at| takes[at].clip.name.clone());
+    // A folder of the file's name.
+    let file = |name: &str| folder.path().join(format!("out/{name}.bvh"));
+    std::fs::create_dir_all(file(&first).join("taken")).unwrap();
+    let ran = folder.morec(&["db", "export", "m.mdb", "out", "--motion", "*"]);
+    assert_eq!(ran.code, Some(1), "{ran:?}");
+    let named = format!("morec: clip {first} left out: ");
+    assert!(ran.err.contains(&named), "{ran:?}");
+    assert!(file(&second).is_file(), "{ran:?}");
+}

@@ -259,3 +259,26 @@ fn a_class_that_is_not_there_is_named_with_the_nearest() {
         );
     }
 }
+
+/// Names in files may hold what moves the cursor or changes what a terminal shows.
+#[test]
+fn control_characters_do_not_reach_the_terminal() {
+    let text = WAVE_BVH.replace("lower", "lo\u{9b}31mw\u{7f}er");
+    assert_ne!(text, WAVE_BVH);
+    let folder = Folder::with(&[("wave\u{1b}[31m.bvh", &text), ("x.bvh", &text)]);
+    let missing = "no\u{1b}]0;title\u{7}.bvh";
+    for args in [
+        &["inspect", "wave\u{1b}[31m.bvh"][..],
+        &["inspect", "--full", "x.bvh"],
+        &["inspect", missing],
+    ] {
+        let ran = folder.morec(args);
+        for shown in [&ran.out, &ran.err] {
+            let raw = shown
+                .chars()
+                .find(|c| c.is_control() && !matches!(c, '\n' | '\t'));
+            assert_eq!(raw, None, "{args:?}: {shown:?}");
+        }
+        assert!(format!("{}{}", ran.out, ran.err).contains('?'), "{ran:?}");
+    }
+}

@@ -237,7 +237,7 @@ fn the_figures_of_2009_are_set_and_its_plane_is_large_with_its_thresholds() {
     assert!(person.sees_part("it says t = 0.40"));
     person.click("τ");
     assert!(person.offers("Value of τ"));
-    assert!(person.sees("The figures have changed since it was trained."));
+    assert!(person.sees("The parameters have changed since it was trained."));
 }
 
 #[test]

@@ -5,9 +5,11 @@ use std::fs::File;
 use std::io::{Read, Seek};
 use std::path::Path;
 
+use crate::clip::{Clip, Joint};
 use crate::formats::container::{self, Member};
 use crate::formats::probe::{Format, format_of_name, probe};
-use crate::formats::{ParseError, Place, Warning, mocopi};
+use crate::formats::{Limits, ParseError, Place, Warning, mocopi};
+use crate::math::Vec3;
 
 use super::choice::{chosen, split_choice};
 use super::neighbours::Around;
@@ -24,7 +26,13 @@ impl FileReader {
     /// Those of the format, of an archive in which nothing can be read, and of a choice that is not there.
     pub fn parse(&self, path: &Path, bytes: &[u8]) -> Result<ClipFile, FileError> {
         let (file, choice) = split_choice(path);
-        let parsed = self.parse_packed(&file, bytes, Around::Folder, 0);
+        let mut parsed = self.parse_packed(&file, bytes, Around::Folder, 0);
+        if let Err(FileErrorKind::Parse(error)) = &mut parsed
+            && error.is_of_memory()
+            && (container::is_gzip(bytes) || container::is_zip(bytes))
+        {
+            error.found.push_str("; unpack it and give the files in it");
+        }
         let chosen = parsed.and_then(|parsed| choose(parsed, choice.as_deref()));
         chosen.map_err(|kind| kind.at(path))
     }
@@ -59,12 +67,14 @@ impl FileReader {
         depth: usize,
     ) -> Result<ClipFile, FileErrorKind> {
         if depth < DEEPEST && container::is_gzip(bytes) {
-            let unpacked = container::gunzip(bytes)?;
+            let limits = self.limits.of_packed(bytes.len());
+            let unpacked = container::gunzip(bytes, limits.memory)?;
+            let reader = self.with_limits(limits.without(unpacked.len())?);
             let inner = match path.extension() {
                 Some(ending) if ending.eq_ignore_ascii_case("gz") => path.with_extension(""),
                 _ => path.to_owned(),
             };
-            return self.parse_packed(&inner, &unpacked, around, depth + 1);
+            return reader.parse_packed(&inner, &unpacked, around, depth + 1);
         }
         let is_archive = container::is_zip(bytes) && probe(bytes, "") != Ok(Format::Smpl);
         if depth < DEEPEST && is_archive {
@@ -72,7 +82,13 @@ impl FileReader {
         }
         let bare = container::without_padding(bytes);
         let text: Cow<'_, [u8]> = container::utf8(bare);
-        let mut opened = self.parse_bare(path, &text, around)?;
+        let mut opened = match &text {
+            Cow::Borrowed(text) => self.parse_bare(path, text, around)?,
+            Cow::Owned(text) => {
+                let reader = self.with_limits(self.limits.without(text.len())?);
+                reader.parse_bare(path, text, around)?
+            }
+        };
         if bare.len() < bytes.len() {
             let note = format!(
                 "{} zero bytes behind the text left out",
@@ -87,6 +103,13 @@ impl FileReader {
         Ok(opened)
     }
 
+    pub(super) fn with_limits(&self, limits: Limits) -> Self {
+        Self {
+            limits,
+            ..self.clone()
+        }
+    }
+
     /// The clips of all files in a zip archive that can be read; the others are named in warnings.
     fn parse_archive(
         &self,
@@ -94,14 +117,23 @@ impl FileReader {
         bytes: &[u8],
         depth: usize,
     ) -> Result<ClipFile, FileErrorKind> {
-        let members = sequence::join(container::unzip(bytes, &may_be_needed)?);
+        let mut limits = self.limits.of_packed(bytes.len());
+        let members = container::unzip(bytes, &may_be_needed, limits.memory)?;
+        limits = limits.without(members.iter().map(|member| member.bytes.len()).sum())?;
+        let members = sequence::join(members);
         let mut all: Option<ClipFile> = None;
         let mut first_error = None;
         let mut refused = Vec::new();
         for member in members.iter().filter(|member| is_motion(member)) {
             let inner = Path::new(&member.path);
-            match self.parse_packed(inner, &member.bytes, Around::Archive(&members), depth + 1) {
-                Ok(opened) => gather(&mut all, opened, &member.path),
+            let reader = self.with_limits(limits);
+            match reader.parse_packed(inner, &member.bytes, Around::Archive(&members), depth + 1) {
+                Ok(opened) => {
+                    limits = limits.without(opened.clips.iter().map(memory_of).sum())?;
+                    gather(&mut all, opened, &member.path);
+                }
+                // What comes behind it would be left out as well.
+                Err(error) if error.is_of_memory() => return Err(error),
                 Err(error) => {
                     refused.push(format!("{}: {error}", member.path));
                     first_error.get_or_insert(error);
@@ -130,6 +162,16 @@ impl FileReader {
         }
         Ok(opened)
     }
+}
+
+/// Bytes of memory that a clip takes.
+fn memory_of(clip: &Clip) -> usize {
+    let joint = |joint: &Joint| size_of::<Joint>() + joint.name.len();
+    let positions = clip.tracks.iter().map(|track| track.positions.len());
+    size_of_val(clip.rotations.as_slice())
+        + positions.sum::<usize>() * size_of::<Vec3>()
+        + clip.skeleton.joints().iter().map(joint).sum::<usize>()
+        + size_of::<Clip>()
 }
 
 /// Files of an archive worth unpacking: motions, skeletons, what scenes keep in files of their own.

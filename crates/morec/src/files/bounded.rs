@@ -24,6 +24,25 @@ pub(super) fn read_whole(path: &Path) -> io::Result<Vec<u8>> {
     read_stream(file)
 }
 
+/// The bytes of a file that another one needs. Nobody named it, so it must be a file: a pipe may never be written to, a
+/// device may never end.
+///
+/// # Errors
+/// It is no file, and those of [`read_whole`].
+pub(super) fn read_regular(path: &Path) -> io::Result<Vec<u8>> {
+    // Looked at before it is opened, which would wait for the writer of a pipe.
+    let about = fs::metadata(path)?;
+    if about.is_file() {
+        return read_whole(path);
+    }
+    let found = match about.is_dir() {
+        true => "a folder",
+        false => "a pipe or a device",
+    };
+    let text = format!("expected a file, found {found}");
+    Err(io::Error::new(ErrorKind::InvalidInput, text))
+}
+
 /// A file of this many bytes is not held as a whole where there is another way.
 const LARGE_FILE: u64 = 8 << 20;
 
@@ -102,7 +121,8 @@ fn read_up_to(from: impl Read, length: u64, most: u64) -> io::Result<Vec<u8>> {
     if length > most {
         return Err(too_large(most));
     }
-    let mut bytes = Vec::with_capacity(length as usize);
+    let mut bytes = Vec::new();
+    bytes.try_reserve_exact(length as usize)?;
     from.take(most + 1).read_to_end(&mut bytes)?;
     match bytes.len() as u64 > most {
         true => Err(too_large(most)),

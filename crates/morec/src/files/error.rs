@@ -74,6 +74,16 @@ pub enum FileErrorKind {
 }
 
 impl FileErrorKind {
+    /// True if the file was refused for the memory it needs: it may be read with more, or in parts.
+    pub fn is_of_memory(&self) -> bool {
+        match self {
+            Self::Parse(why) | Self::Skeleton { why, .. } | Self::Motion { why, .. } => {
+                why.is_of_memory()
+            }
+            _ => false,
+        }
+    }
+
     /// The error of the file at `path`.
     pub fn at(self, path: &Path) -> FileError {
         FileError {

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::formats::acclaim::{self, AmcOptions};
-use crate::formats::{Loaded, Place, Warning, opensim};
+use crate::formats::{Limits, Loaded, Place, Warning, opensim};
 use crate::kinematics::WorldPose;
 
 use super::neighbours::Around;
@@ -22,16 +22,23 @@ impl FileReader {
         stem: &str,
         around: Around<'_>,
     ) -> Result<(Loaded, Option<PathBuf>), FileErrorKind> {
-        let with = |skeleton: &Path, around| self.motion_with(kind, bytes, stem, skeleton, around);
         if let Some(skeleton) = &self.skeleton {
-            let loaded = with(skeleton, Around::Folder)?;
+            let loaded = self.motion_with(kind, bytes, stem, skeleton, Around::Folder)?;
             return Ok((loaded, Some(skeleton.clone())));
         }
         let mut candidates = near(path, stem, kind, around);
         if kind == SkeletonKind::Asf {
             prefer_stated(&mut candidates, bytes);
         }
-        let found = likeliest(&candidates, |path| with(path, around));
+        // Two readings of it are held while they are compared.
+        let memory = self.limits.memory / candidates.len().clamp(1, 2);
+        let reader = self.with_limits(Limits {
+            memory,
+            ..self.limits
+        });
+        let found = likeliest(&candidates, |path| {
+            reader.motion_with(kind, bytes, stem, path, around)
+        });
         let (loaded, skeleton) = found.unwrap_or_else(|| Err(kind.missing()))?;
         Ok((loaded, Some(skeleton)))
     }
@@ -93,21 +100,27 @@ fn likeliest(
     candidates: &[SkeletonFile],
     read: impl Fn(&Path) -> Result<Loaded, FileErrorKind>,
 ) -> Option<Result<(Loaded, PathBuf), FileErrorKind>> {
-    let mut fitting: Vec<Fitting> = Vec::new();
+    let (mut best, mut alike): (Option<Fitting>, usize) = (None, 0);
     let mut first_error = None;
     for skeleton in candidates {
         // A skeleton whose name says less is asked only where none that says more fits.
         let says_less = |fits: &Fitting| skeleton.kinship < fits.skeleton.kinship;
-        if fitting.len() == MOST_COMPARED || fitting.first().is_some_and(says_less) {
+        if alike == MOST_COMPARED || best.as_ref().is_some_and(says_less) {
             break;
         }
         match read(&skeleton.path) {
-            Ok(loaded) => fitting.push(Fitting { skeleton, loaded }),
+            Ok(loaded) => {
+                let fits = Fitting { skeleton, loaded };
+                alike += 1;
+                best = match best.take() {
+                    Some(best) if Fitting::compare(&fits, &best).is_ge() => Some(best),
+                    _ => Some(fits),
+                };
+            }
             Err(error) => _ = first_error.get_or_insert(error),
         }
     }
-    let alike = fitting.len();
-    let Some(mut best) = fitting.into_iter().min_by(Fitting::compare) else {
+    let Some(mut best) = best else {
         return first_error.map(Err);
     };
     let path = &best.skeleton.path;

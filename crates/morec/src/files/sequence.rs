@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use crate::formats::container::Member;
 use crate::formats::landmarks::is_one_frame;
 
-use super::bounded::{LARGEST_FILE, read_whole, too_large};
+use super::bounded::{LARGEST_FILE, read_regular, read_whole, too_large};
 
 /// A file's bytes; of one frame of a clip whose frames are files (`walk_000000000012_keypoints.json`), those of all its frames.
 ///
@@ -106,7 +106,7 @@ impl FrameFiles {
         let mut all = Vec::new();
         self.each(|path| {
             match path {
-                Some(path) => all.extend(read_whole(path)?),
+                Some(path) => all.extend(read_regular(path)?),
                 None => all.extend(b"null"),
             }
             all.push(b'\n');
@@ -154,11 +154,11 @@ fn are_frames(files: &BTreeMap<u64, PathBuf>) -> bool {
 
 fn is_frame(path: &Path) -> bool {
     let small = fs::metadata(path).is_ok_and(|about| about.len() <= LARGEST_FRAME);
-    small && read_whole(path).is_ok_and(|bytes| is_one_frame(&bytes))
+    small && read_regular(path).is_ok_and(|bytes| is_one_frame(&bytes))
 }
 
 /// The files of an archive with those of one frame each put together, in place of the first.
-pub(super) fn join(members: Vec<Member>) -> Vec<Member> {
+pub(super) fn join(mut members: Vec<Member>) -> Vec<Member> {
     let folder = |path: &str| {
         path.rsplit_once('/')
             .map_or("", |(folder, _)| folder)
@@ -172,7 +172,8 @@ pub(super) fn join(members: Vec<Member>) -> Vec<Member> {
         }
     }
     let is_frames = |files: &BTreeMap<u64, usize>| {
-        files.len() >= LEAST_FILES && files.values().all(|&at| is_one_frame(&members[at].bytes))
+        let is_frame = |bytes: &[u8]| bytes.len() as u64 <= LARGEST_FRAME && is_one_frame(bytes);
+        files.len() >= LEAST_FILES && files.values().all(|&at| is_frame(&members[at].bytes))
     };
     all.retain(|_, files| is_frames(files));
     let mut joined: BTreeMap<usize, Member> = BTreeMap::new();
@@ -182,14 +183,18 @@ pub(super) fn join(members: Vec<Member>) -> Vec<Member> {
             .iter()
             .map(|(&number, &at)| (number, PathBuf::from(&members[at].path)))
             .collect();
+        let places = known.values().cloned().zip(files.values().copied());
+        let places: BTreeMap<PathBuf, usize> = places.collect();
         let known = FrameFiles(known);
-        let of = |&at: &usize| (Path::new(&members[at].path), at);
-        let places: BTreeMap<&Path, usize> = files.values().map(of).collect();
         let mut bytes = Vec::new();
         // Nothing fails here: all is in memory.
         let _ = known.each(|path| {
-            let at = path.and_then(|path| places.get(path.as_path()));
-            bytes.extend(at.map_or(&b"null"[..], |&at| &members[at].bytes));
+            let at = path.and_then(|path| places.get(path));
+            // What is joined is held once.
+            match at {
+                Some(&at) => bytes.append(&mut members[at].bytes),
+                None => bytes.extend(b"null"),
+            }
             bytes.push(b'\n');
             Ok(())
         });

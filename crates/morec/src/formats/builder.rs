@@ -32,6 +32,17 @@ impl ClipBuilder {
         }
     }
 
+    /// Makes room for this many frames more.
+    ///
+    /// # Errors
+    /// The system has no memory for them.
+    pub(super) fn reserve(&mut self, frames: usize) -> Result<(), ParseError> {
+        let poses = frames.saturating_mul(self.joints.len());
+        let reserved = self.rotations.try_reserve_exact(poses);
+        let reserved = reserved.and_then(|()| self.positions.try_reserve_exact(poses));
+        reserved.map_err(|_| ParseError::of_memory(0, poses.saturating_mul(BYTES_A_POSE)))
+    }
+
     /// Adds a frame of rotations and positions in the world. O(joints).
     pub(super) fn push_world(&mut self, rotations: &[Quat], positions: &[Vec3]) {
         for (j, joint) in self.joints.iter().enumerate() {
@@ -190,10 +201,14 @@ const FREE_POSES: usize = 1 << 22;
 /// and this many for each of its bytes: two keys may stand far apart, and a short file could fill the memory with that.
 const POSES_A_BYTE: usize = 16;
 
-/// Refuses to make more frames of a file than its size lets believe.
+/// Memory for a pose while a clip is made: rotation, position and, of what moves, its track.
+const BYTES_A_POSE: usize = size_of::<Quat>() + 2 * size_of::<Vec3>();
+
+/// Refuses to make more frames of a file than its size lets believe. `earlier` poses have been made of it before.
 pub(super) fn check_size(
     frames: usize,
     joints: usize,
+    earlier: usize,
     bytes: usize,
     limits: &super::Limits,
 ) -> Result<(), ParseError> {
@@ -207,12 +222,12 @@ pub(super) fn check_size(
         return refuse(format!("at most {} frames", limits.frames), frames);
     }
     let most = FREE_POSES.max(bytes.saturating_mul(POSES_A_BYTE));
-    match frames.saturating_mul(joints) {
+    match frames.saturating_mul(joints).saturating_add(earlier) {
         poses if poses > most => refuse(
             format!("at most {most} rotations in {bytes} bytes of keys"),
             poses,
         ),
-        _ => Ok(()),
+        poses => limits.afford(poses, BYTES_A_POSE),
     }
 }
 

@@ -83,6 +83,8 @@ pub(super) fn lines<'a>(
             "a zero byte",
         ));
     }
+    let ends = bytes.iter().filter(|b| matches!(b, b'\n' | b'\r'));
+    limits.afford(ends.count() + 1, 2 * size_of::<(u64, &str)>())?;
     let mut rows = Vec::new();
     let mut line = 0;
     for row in bytes.split(|&b| b == b'\n').flat_map(mac_lines) {

@@ -5,12 +5,10 @@ use std::io::{Cursor, Read};
 
 use super::{ParseError, Place};
 
-/// Bytes that are unpacked however small an archive is,
-const FREE_BYTES: u64 = 64 << 20;
-/// this many for each of its bytes (text of motion has 3 to 20, stillness some hundred),
-const BYTES_A_BYTE: u64 = 256;
-/// and never more than this.
-const MOST_BYTES: u64 = 4 << 30;
+/// Memory for what is unpacked of an archive and made of it, however small it is,
+const FREE_BYTES: usize = 64 << 20;
+/// and this much for each of its bytes: text of motion has 3 to 10, and becomes once or twice as much.
+const BYTES_A_BYTE: usize = 32;
 /// Files in one archive.
 const MOST_MEMBERS: usize = 100_000;
 
@@ -23,11 +21,12 @@ pub struct Member {
     pub bytes: Vec<u8>,
 }
 
-/// Most bytes that an archive may unpack to.
-fn budget(packed: usize) -> u64 {
-    FREE_BYTES
-        .saturating_add((packed as u64).saturating_mul(BYTES_A_BYTE))
-        .min(MOST_BYTES)
+/// Memory for all that is unpacked of a packed file of this many bytes and made of it, bytes: 64 MiB and 32 times as many. What
+/// it holds packed once more has no more of its own.
+pub fn memory_of_packed(bytes: usize) -> usize {
+    bytes
+        .saturating_mul(BYTES_A_BYTE)
+        .saturating_add(FREE_BYTES)
 }
 
 /// True if `bytes` begin as a gzip file does.
@@ -40,78 +39,71 @@ pub fn is_zip(bytes: &[u8]) -> bool {
     bytes.starts_with(b"PK\x03\x04") || bytes.starts_with(b"PK\x05\x06")
 }
 
-/// Unpacks a gzip file.
+/// Unpacks a gzip file to at most `most` bytes.
 ///
 /// # Errors
-/// Bytes that are no gzip or break off, and more than 256 bytes for each packed one (64 MiB are free).
-pub fn gunzip(bytes: &[u8]) -> Result<Vec<u8>, ParseError> {
-    gunzip_within(bytes, budget(bytes.len()))
+/// Bytes that are no gzip or break off, and more than `most`.
+pub fn gunzip(bytes: &[u8], most: usize) -> Result<Vec<u8>, ParseError> {
+    read_within(flate2::read::MultiGzDecoder::new(bytes), most, || {
+        "a whole gzip file".to_owned()
+    })
 }
 
-fn gunzip_within(bytes: &[u8], most: u64) -> Result<Vec<u8>, ParseError> {
+/// All bytes of `from`, of which there may be `most`.
+fn read_within(
+    from: impl Read,
+    most: usize,
+    expected: impl FnOnce() -> String,
+) -> Result<Vec<u8>, ParseError> {
     let mut unpacked = Vec::new();
-    let mut reader = flate2::read::MultiGzDecoder::new(bytes).take(most + 1);
-    reader
-        .read_to_end(&mut unpacked)
-        .map_err(|error| ParseError::new(Place::File, "a whole gzip file", error.to_string()))?;
-    match unpacked.len() as u64 {
-        length if length > most => Err(too_much(most)),
-        _ => Ok(unpacked),
+    let limit = (most as u64).saturating_add(1);
+    match from.take(limit).read_to_end(&mut unpacked) {
+        Ok(read) if read > most => Err(ParseError::of_memory(most, read)),
+        Ok(_) => Ok(unpacked),
+        Err(error) => Err(ParseError::new(Place::File, expected(), error.to_string())),
     }
 }
 
-fn too_much(most: u64) -> ParseError {
-    ParseError::new(
-        Place::File,
-        format!("an archive that unpacks to at most {} MiB", most >> 20),
-        "more",
-    )
-}
-
-/// The files of a zip archive for which `wanted` holds, unpacked, in their order there.
+/// The files of a zip archive for which `wanted` holds, unpacked to at most `most` bytes together, in their order there.
 ///
 /// # Errors
-/// Bytes that are no zip archive or break off, encryption and packing other than deflate, and more than 256 bytes for
-/// each packed one (64 MiB are free).
-pub fn unzip(bytes: &[u8], wanted: &dyn Fn(&str) -> bool) -> Result<Vec<Member>, ParseError> {
-    unzip_within(bytes, wanted, budget(bytes.len()))
-}
-
-fn unzip_within(
+/// Bytes that are no zip archive or break off, files that lie on the same bytes, encryption and packing other than deflate, and
+/// more than `most`.
+pub fn unzip(
     bytes: &[u8],
     wanted: &dyn Fn(&str) -> bool,
-    most: u64,
+    most: usize,
 ) -> Result<Vec<Member>, ParseError> {
     let fail = |error: zip::result::ZipError| {
         ParseError::new(Place::File, "a whole zip archive", error.to_string())
     };
+    let refuse =
+        |expected: String, found: String| Err(ParseError::new(Place::File, expected, found));
     let mut archive = zip::ZipArchive::new(Cursor::new(bytes)).map_err(fail)?;
     if archive.len() > MOST_MEMBERS {
         let expected = format!("at most {MOST_MEMBERS} files in an archive");
-        return Err(ParseError::new(
-            Place::File,
-            expected,
-            archive.len().to_string(),
-        ));
+        return refuse(expected, archive.len().to_string());
     }
-    let mut left = most;
+    let (mut left, mut packed) = (most, 0u64);
     let mut members = Vec::new();
     for number in 0..archive.len() {
         let file = archive.by_index(number).map_err(fail)?;
+        // Files that lie on the same bytes are more than the archive can hold side by side.
+        packed = packed.saturating_add(file.compressed_size());
+        if packed > bytes.len() as u64 {
+            let expected = "files side by side in a zip archive".to_owned();
+            return refuse(expected, "files that lie on the same bytes".to_owned());
+        }
         let path = file.name().replace('\\', "/");
         if file.is_dir() || !wanted(&path) {
             continue;
         }
-        let mut unpacked = Vec::new();
-        file.take(left + 1)
-            .read_to_end(&mut unpacked)
-            .map_err(|error| {
-                let expected = format!("{path} whole in the archive");
-                ParseError::new(Place::File, expected, error.to_string())
-            })?;
+        let unpacked = read_within(file, left, || format!("{path} whole in the archive"))?;
+        // A file takes memory beside its bytes, and there may be many.
+        let used = unpacked.len() + path.len() + size_of::<Member>();
         left = left
-            .checked_sub(unpacked.len() as u64)
-            .ok_or_else(|| too_much(most))?;
+            .checked_sub(used)
+            .ok_or_else(|| ParseError::of_memory(most, most - left + used))?;
         members.push(Member {
             path,
             bytes: unpacked,
@@ -190,10 +182,10 @@ mod tests {
     #[test]
     fn archives_unpack_to_what_was_packed() {
         let text = b"HIERARCHY".repeat(50);
-        assert_eq!(gunzip(&gz(&text)).unwrap(), text);
+        assert_eq!(gunzip(&gz(&text), 1000).unwrap(), text);
         let zip = zip_of(&[("a/b.bvh", &text), ("c.txt", b"no")]);
         assert!(is_zip(&zip));
-        let members = unzip(&zip, &|path| path.ends_with(".bvh")).unwrap();
+        let members = unzip(&zip, &|path| path.ends_with(".bvh"), 1000).unwrap();
         assert_eq!(members.len(), 1);
         assert_eq!(
             (members[0].path.as_str(), &members[0].bytes),
@@ -205,25 +197,44 @@ mod tests {
     #[test]
     fn bombs_are_refused() {
         let zeros = vec![0; 3 << 20];
-        assert!(gunzip_within(&gz(&zeros), 3 << 20).is_ok());
-        let error = gunzip_within(&gz(&zeros), 2 << 20).map(drop).unwrap_err();
-        assert!(error.expected.contains("at most 2 MiB"), "{error}");
+        assert!(gunzip(&gz(&zeros), 3 << 20).is_ok());
+        let error = gunzip(&gz(&zeros), 2 << 20).unwrap_err();
+        assert!(error.is_of_memory(), "{error}");
         let zip = zip_of(&[("a", &zeros[..1 << 20]), ("b", &zeros)]);
-        assert!(unzip_within(&zip, &|_| true, 4 << 20).is_ok());
-        let error = unzip_within(&zip, &|_| true, 3 << 20)
-            .map(drop)
-            .unwrap_err();
-        assert!(error.expected.contains("at most 3 MiB"), "{error}");
-        assert_eq!(budget(1 << 30), MOST_BYTES);
+        assert!(unzip(&zip, &|_| true, 5 << 20).is_ok());
+        let error = unzip(&zip, &|_| true, 3 << 20).unwrap_err();
+        assert!(error.is_of_memory(), "{error}");
+    }
+
+    /// Every entry of the directory is pointed at the first file, whose bytes would be unpacked for each of them.
+    #[test]
+    fn files_on_the_same_bytes_are_refused() {
+        let text: Vec<u8> = (0..4000u32)
+            .flat_map(|n| n.wrapping_mul(2_654_435_761).to_le_bytes())
+            .collect();
+        let names: Vec<String> = (0..9).map(|n| format!("{n}.bvh")).collect();
+        let files: Vec<(&str, &[u8])> = names.iter().map(|n| (n.as_str(), &b""[..])).collect();
+        let mut zip = zip_of(&[&[("a.bvh", &text[..])], &files[..]].concat());
+        let entries: Vec<usize> = (0..zip.len() - 4)
+            .filter(|&at| zip[at..].starts_with(b"PK\x01\x02"))
+            .collect();
+        let first = zip[entries[0]..entries[0] + 46].to_vec();
+        for &entry in &entries[1..] {
+            // Method, sums and sizes; place of the file.
+            zip[entry + 10..entry + 28].copy_from_slice(&first[10..28]);
+            zip[entry + 42..entry + 46].copy_from_slice(&first[42..46]);
+        }
+        let error = unzip(&zip, &|_| true, 1 << 30).unwrap_err();
+        assert!(error.found.contains("same bytes"), "{error}");
     }
 
     #[test]
     fn cut_and_altered_archives_never_panic() {
         let zip = zip_of(&[("a.bvh", &b"HIERARCHY".repeat(50)), ("b", b"no")]);
         crate::formats::mangle::each(&zip, 400, |bytes| {
-            let _ = unzip(bytes, &|_| true);
+            let _ = unzip(bytes, &|_| true, 1 << 20);
         });
-        crate::formats::mangle::each(&gz(b"abc"), 100, |bytes| _ = gunzip(bytes));
+        crate::formats::mangle::each(&gz(b"abc"), 100, |bytes| _ = gunzip(bytes, 1 << 20));
     }
 
     #[test]

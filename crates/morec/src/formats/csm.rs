@@ -31,7 +31,7 @@ pub fn read(
         return Err(ParseError::new(Place::File, expected, "none"));
     }
     let body = &rows[heading.rows..];
-    check_size(heading.markers.len(), body.len(), bytes.len())?;
+    check_size(heading.markers.len(), body.len(), bytes.len(), limits)?;
     let mut warnings = Vec::new();
     let (points, times) = heading.frames(body, limits, &mut warnings)?;
     let clock = Clock {

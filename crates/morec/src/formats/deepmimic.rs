@@ -95,6 +95,7 @@ pub(super) fn looks_so(head: &[u8]) -> bool {
 pub fn read(bytes: &[u8], name: &str, limits: &Limits) -> Result<Loaded, ParseError> {
     let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
     let mut warnings = Vec::new();
+    let limits = &json::limits_beside(bytes, limits)?;
     let document = json::read(bytes, &mut warnings)?;
     let frames = document.get("Frames").and_then(Value::as_array);
     let frames = frames.filter(|frames| !frames.is_empty());
@@ -108,7 +109,7 @@ pub fn read(bytes: &[u8], name: &str, limits: &Limits) -> Result<Loaded, ParseEr
         (width, Some(_)) if width + 1 == VALUES => false,
         _ => return Err(another_body(width)),
     };
-    check_size(frames.len(), JOINTS.len(), bytes.len(), limits)?;
+    check_size(frames.len(), JOINTS.len(), 0, bytes.len(), limits)?;
     let mut durations = Vec::with_capacity(frames.len());
     let mut builder = ClipBuilder::new(joints());
     let mut spoiled = 0;

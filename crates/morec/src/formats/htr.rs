@@ -266,7 +266,7 @@ impl HtrFile {
                 found,
             ));
         }
-        check_size(count, ordered.len(), bytes, limits)?;
+        check_size(count, ordered.len(), 0, bytes, limits)?;
         let mut builder = ClipBuilder::new(self.joints(&ordered));
         let mut missing = 0;
         for frame in first..=last {

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use super::{ParseError, Place, Warning};
+use super::{Limits, ParseError, Place, Warning};
 
 /// Reads a document; one that breaks off within a list of at least two whole elements is read up to the last of them, with
 /// a warning. O(bytes).
@@ -21,6 +21,26 @@ pub(super) fn read(bytes: &[u8], warnings: &mut Vec<Warning>) -> Result<Value, P
         return Ok(document);
     }
     Err(located(&error))
+}
+
+/// What is left of `limits` beside the parsed document. O(bytes).
+///
+/// # Errors
+/// The document takes more memory than there is.
+pub(super) fn limits_beside(bytes: &[u8], limits: &Limits) -> Result<Limits, ParseError> {
+    /// A node of an object's tree, with room for eleven fields.
+    const OBJECT: usize = 700;
+    /// An element of a list, of which up to half of the room is not used; a text with what the allocator takes.
+    const VALUE: usize = 2 * size_of::<Value>();
+    if limits.memory == usize::MAX {
+        return Ok(*limits);
+    }
+    let memory = bytes.iter().map(|byte| match byte {
+        b'{' => OBJECT,
+        b',' | b'[' | b':' => VALUE,
+        _ => 1,
+    });
+    limits.without(memory.sum())
 }
 
 /// An error of the parser at its line.

@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::cells::lines;
 use super::points::{Point, PointTable, UNSEEN, check_size};
 use super::timing::{Clock, Schedule};
-use super::{Limits, Loaded, ParseError, Place, Warning};
+use super::{Limits, Loaded, ParseError, Place, Warning, json};
 use crate::clip::{Clip, Joint, JointTrack, Skeleton};
 use crate::humanoid::{HUMANOID, HumanoidBone};
 use crate::math::{Quat, Vec3, rotation_of_xyzw, same_hemisphere, slerp};
@@ -49,6 +49,7 @@ pub fn read(
 ) -> Result<Loaded, ParseError> {
     let mut warnings = Vec::new();
     let mut performers: BTreeMap<u16, RecordedPerformer> = BTreeMap::new();
+    let limits = &json::limits_beside(bytes, limits)?;
     let rows = lines(bytes, limits)?;
     if rows.len() > limits.frames {
         let expected = format!("at most {} lines", limits.frames);
@@ -129,7 +130,7 @@ fn positions(
         .collect();
     let values: usize = lines.iter().map(|line| line.positions.len()).sum();
     // A position takes twelve bytes at least.
-    check_size(names.len(), lines.len(), 12 * values)?;
+    check_size(names.len(), lines.len(), 12 * values, limits)?;
     let mut points: Vec<Point> = Vec::new();
     let mut of_name: BTreeMap<&str, usize> = BTreeMap::new();
     for (frame, line) in lines.iter().enumerate() {

@@ -98,6 +98,7 @@ pub fn read(
     limits: &Limits,
 ) -> Result<Loaded, ParseError> {
     let mut warnings = Vec::new();
+    let limits = &json::limits_beside(bytes, limits)?;
     let mut document = parse(bytes, &mut warnings)?;
     let names = names_in(&document, DEEPEST);
     rows::into_points(&mut document, names.as_ref().map(Vec::len));
@@ -142,7 +143,7 @@ pub fn read(
             point.positions.push(place);
         }
     }
-    check_size(points.len(), frames.len(), bytes.len())?;
+    check_size(points.len(), frames.len(), bytes.len(), limits)?;
     for point in &mut points {
         point.positions.resize(frames.len(), UNSEEN);
     }

@@ -1,6 +1,7 @@
 //! The stored form of compressed clips, read as any other clip: its curves at the frames of their source.
 
 use super::{Limits, Loaded, ParseError, Place, Warning};
+use crate::math::{Quat, Vec3};
 use crate::smooth::CompressedClip;
 
 /// Rotations that are made of a file however small it is: an hour of a body that stands still,
@@ -27,6 +28,7 @@ pub fn read(bytes: &[u8], name: &str, limits: &Limits) -> Result<Loaded, ParseEr
             rotations.to_string(),
         ));
     }
+    limits.afford(rotations, size_of::<Quat>() + size_of::<Vec3>())?;
     let clip = stored
         .sample(stored.source_rate_hz())
         .map_err(|error| ParseError::new(Place::File, "a usable rate", error.to_string()))?;

@@ -77,7 +77,7 @@ pub fn read(bytes: &[u8], name: &str, limits: &Limits) -> Result<Loaded, ParseEr
         }
     };
     let (bones, joints) = joints(bones);
-    check_size(recording.frames.len(), joints.len(), bytes.len(), limits)?;
+    check_size(recording.frames.len(), joints.len(), 0, bytes.len(), limits)?;
     let rate_hz = recording.rate(&mut warnings);
     let mut builder = ClipBuilder::new(joints);
     for frame in &recording.frames {

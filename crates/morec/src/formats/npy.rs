@@ -112,6 +112,19 @@ pub(super) fn read(bytes: &[u8]) -> Result<Array, ParseError> {
     })
 }
 
+/// Memory that the numbers or texts of an array take, bytes; none of what is no array.
+pub(super) fn memory(bytes: &[u8]) -> usize {
+    let Ok(header) = header(bytes) else {
+        return 0;
+    };
+    let data = bytes.len().saturating_sub(header.begin);
+    match NumberKind::of(&header.descr) {
+        Some(kind) => data / kind.size * size_of::<f64>(),
+        // As many texts as there are letters, at most.
+        None => data.saturating_mul(size_of::<String>()),
+    }
+}
+
 /// True if an array holds objects of Python.
 pub(super) fn is_of_objects(bytes: &[u8]) -> bool {
     header(bytes).is_ok_and(|header| header.descr.contains('O'))

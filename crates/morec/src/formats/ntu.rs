@@ -66,7 +66,7 @@ pub fn read(
     let rows = lines(bytes, limits)?;
     let mut rows = NtuLines(rows.iter());
     let declared = rows.count("the number of frames")?;
-    check_size(JOINTS.len(), declared, bytes.len())?;
+    check_size(JOINTS.len(), declared, bytes.len(), limits)?;
     let mut warnings = Vec::new();
     let mut bodies: BTreeMap<String, Vec<Vec<Vec3>>> = BTreeMap::new();
     let mut frames = 0;

@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use super::builder::ClipBuilder;
+use super::builder::{self, ClipBuilder};
 use super::npy::{self, Array};
 use super::points::{BODY_OF_THESE, Point, UNSEEN, WITH_HANDS_AND_FACE, check_size};
 use super::timing::{Clock, TimedPoints};
@@ -83,26 +83,33 @@ pub fn read(
     limits: &Limits,
 ) -> Result<Loaded, ParseError> {
     let mut archive = ArrayArchive::default();
+    let mut limits = limits.of_packed(bytes.len());
     if bytes.starts_with(b"PK") {
         let keys = || POSITIONS.iter().chain(&NAMES).chain(&RATE);
         let wanted = |path: &str| {
             let key = key_of(path);
             SKELETON.contains(&key) || keys().any(|known| *known == key)
         };
-        for member in container::unzip(bytes, &wanted)? {
-            archive.add(key_of(&member.path), &member.bytes)?;
+        for member in container::unzip(bytes, &wanted, limits.memory)? {
+            limits = limits.without(member.bytes.len())?;
+            archive.add(key_of(&member.path), &member.bytes, &mut limits)?;
         }
-        if let Some(loaded) = skeleton(&archive, name, rate_hz, limits)? {
+        if let Some(loaded) = skeleton(&archive, name, rate_hz, bytes.len(), &limits)? {
             return Ok(loaded);
         }
     } else {
-        archive.add(POSITIONS[0], bytes)?;
+        archive.add(POSITIONS[0], bytes, &mut limits)?;
     }
     let array = archive
         .first(&POSITIONS)
         .ok_or_else(|| ParseError::new(Place::File, "an array of positions", "none"))?;
     let shape = PointArray::of(array)?;
-    check_size(shape.points * shape.people, shape.frames, bytes.len())?;
+    check_size(
+        shape.points * shape.people,
+        shape.frames,
+        bytes.len(),
+        &limits,
+    )?;
     if shape.frames > limits.frames {
         let expected = format!("at most {} frames", limits.frames);
         return Err(ParseError::new(
@@ -128,7 +135,7 @@ pub fn read(
         clock,
         metres_per_unit: None,
     };
-    timed.into_loaded(name, warnings, limits)
+    timed.into_loaded(name, warnings, &limits)
 }
 
 /// Arrays found in an archive.
@@ -139,7 +146,9 @@ struct ArrayArchive {
 }
 
 impl ArrayArchive {
-    fn add(&mut self, key: &str, bytes: &[u8]) -> Result<(), ParseError> {
+    /// Adds an array, and takes its memory from `limits`.
+    fn add(&mut self, key: &str, bytes: &[u8], limits: &mut Limits) -> Result<(), ParseError> {
+        *limits = limits.without(npy::memory(bytes))?;
         if let Some(texts) = npy::texts(bytes) {
             self.texts.insert(key.to_owned(), texts);
             return Ok(());
@@ -273,6 +282,7 @@ fn skeleton(
     archive: &ArrayArchive,
     name: &str,
     rate_hz: Option<f64>,
+    bytes: usize,
     limits: &Limits,
 ) -> Result<Option<Loaded>, ParseError> {
     let numbers = |key: &str| archive.numbers.get(key);
@@ -301,6 +311,7 @@ fn skeleton(
             .map_or_else(Vec3::zeros, Vec3::from_column_slice),
         tip: None,
     };
+    builder::check_size(frames, joints, 0, bytes, limits)?;
     let mut builder = ClipBuilder::new((0..joints).map(joint).collect());
     let rows = rotations.values.chunks_exact(4 * joints);
     for (rotations, places) in rows.zip(places.values.chunks_exact(3 * joints)) {

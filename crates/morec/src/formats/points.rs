@@ -11,7 +11,7 @@ use self::gaps::{Filled, union};
 use self::point::{SHOWN, is_seen};
 use super::{Limits, Loaded, ParseError, Place, Warning};
 use crate::clip::{Clip, Points};
-use crate::math::Vec3;
+use crate::math::{Quat, Vec3};
 use crate::roles::points::{numbered_counts, recognise_posed, subject_of};
 
 /// Models of face and hands beside the body: their points come behind its 33.
@@ -287,12 +287,19 @@ fn is_root_name(name: &str) -> bool {
 /// Positions that a file of `bytes` bytes is believed to hold: one takes three cells, unless rows are cut short.
 ///
 /// # Errors
-/// More positions than that.
-pub(super) fn check_size(points: usize, frames: usize, bytes: usize) -> Result<(), ParseError> {
+/// More positions than that, or than `limits` have memory for.
+pub(super) fn check_size(
+    points: usize,
+    frames: usize,
+    bytes: usize,
+    limits: &Limits,
+) -> Result<(), ParseError> {
+    /// Twice the position while times are made regular, and a rotation that is none.
+    const BYTES_A_POSITION: usize = 2 * size_of::<Vec3>() + size_of::<Quat>();
     let most = bytes.saturating_mul(4).max(1 << 20);
     let positions = points.saturating_mul(frames);
     if positions <= most {
-        return Ok(());
+        return limits.afford(positions, BYTES_A_POSITION);
     }
     let expected = format!("at most {most} positions in {bytes} bytes");
     let found = format!("{points} points in {frames} frames");

@@ -285,14 +285,22 @@ fn only_children(nodes: &[SceneNode]) -> Vec<Option<usize>> {
         .collect()
 }
 
+/// Size of a scene, for the limit on its frames.
+#[derive(Clone, Copy)]
+pub(super) struct SceneSize {
+    /// Bytes that the keys have.
+    pub(super) bytes: usize,
+    /// Poses that were made of them so far.
+    pub(super) earlier: usize,
+}
+
 /// Sampling of a rig.
 pub(super) struct Sampling<'a> {
     pub(super) nodes: &'a [SceneNode],
     pub(super) grid: KeyGrid,
     /// Name of a joint, by its node.
     pub(super) name: &'a dyn Fn(usize) -> String,
-    /// Bytes that the keys have, for the limit on frames.
-    pub(super) bytes: usize,
+    pub(super) size: SceneSize,
     pub(super) limits: &'a Limits,
 }
 
@@ -304,7 +312,8 @@ pub(super) fn sample(
     mut local: impl FnMut(usize, f64) -> Local,
 ) -> Result<Clip, ParseError> {
     let Sampling { nodes, grid, .. } = *sampling;
-    check_size(grid.frames, rig.len(), sampling.bytes, sampling.limits)?;
+    let SceneSize { bytes, earlier } = sampling.size;
+    check_size(grid.frames, rig.len(), earlier, bytes, sampling.limits)?;
     let mut worlds = vec![World::ORIGIN; nodes.len()];
     let joints = joints_at_rest(nodes, rig, &mut worlds, sampling.name);
     let finite = joints
@@ -318,6 +327,7 @@ pub(super) fn sample(
         ));
     }
     let mut builder = ClipBuilder::new(joints);
+    builder.reserve(grid.frames)?;
     let (mut rotations, mut positions) = (Vec::new(), Vec::new());
     for frame in 0..grid.frames {
         let time = grid.start_secs + frame as f64 / grid.rate_hz;

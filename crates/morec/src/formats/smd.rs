@@ -24,7 +24,7 @@ pub fn read(bytes: &[u8], name: &str, limits: &Limits) -> Result<Loaded, ParseEr
         .collect();
     let nodes = nodes(section(&rows, "nodes")?, limits)?;
     let frames = frames(section(&rows, "skeleton")?, &nodes, limits)?;
-    check_size(frames.len(), nodes.len(), bytes.len(), limits)?;
+    check_size(frames.len(), nodes.len(), 0, bytes.len(), limits)?;
     let mut warnings = Vec::new();
     let text = format!(
         "the format has no frame rate; {ASSUMED_HZ} Hz is assumed (--file-rate says another)"

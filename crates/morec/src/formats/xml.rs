@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use roxmltree::{Document, Node, ParsingOptions};
 
-use super::{ParseError, Place};
+use super::{Limits, ParseError, Place};
 
 /// UTF-8; producers of other encodings keep them to names and comments.
 ///
@@ -19,6 +19,18 @@ pub(super) fn text_of(bytes: &[u8]) -> Result<Cow<'_, str>, ParseError> {
         Ok(text) => text.into(),
         Err(_) => encoding_rs::WINDOWS_1252.decode(bytes).0,
     })
+}
+
+/// What is left of `limits` beside the parsed document. O(bytes).
+///
+/// # Errors
+/// The document takes more memory than there is.
+pub(super) fn limits_beside(text: &str, limits: &Limits) -> Result<Limits, ParseError> {
+    /// For each element, text or attribute, in lists of which up to half of the room is not used.
+    const NODE: usize = 160;
+    // An element has two of these, or one and an end.
+    let nodes = text.bytes().filter(|b| matches!(b, b'<' | b'='));
+    limits.without(nodes.count().saturating_mul(NODE))
 }
 
 /// A document of at most `most_nodes` nodes.

@@ -30,7 +30,7 @@ pub fn train_clips(
     let mut prepared = build_train_set(&all, labelling, options.bones, &options.params.features);
     if prepared.bones == BoneSet::NONE {
         return Err(if options.bones == BoneSet::ALL {
-            TrainError::NoSamples
+            prepared.no_bone()
         } else {
             let wanted: Vec<String> = options.bones.into();
             TrainError::Params(format!(
@@ -69,4 +69,58 @@ pub fn everyday_clips(seed: u64) -> Vec<TrainClip> {
         clip,
     })
     .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::clip::{Clip, Points};
+    use crate::labels::Sample;
+    use crate::math::Vec3;
+
+    /// A hand by its joints, as trackers of hands give it.
+    #[test]
+    fn a_recording_without_a_body_is_named() {
+        let place = |joint: usize, frame: usize| {
+            let along = 0.02 * joint as f64;
+            Vec3::new(along, 1.0 + 0.001 * frame as f64, 0.0)
+        };
+        let joint = |joint: usize| {
+            let positions = (0..90).map(|frame| place(joint, frame)).collect();
+            (format!("Finger{joint}"), positions)
+        };
+        let clip = Clip::of_points("hand".into(), 30.0, (0..21).map(joint), Points::default());
+        let clip = TrainClip {
+            name: "hand".into(),
+            roles: RoleMap::find(&clip.skeleton),
+            rest: 0..0,
+            source: StreamKind::Labelled,
+            person: None,
+            clip,
+        };
+        let sample = Sample {
+            clip: "hand".into(),
+            class: "fist".into(),
+            start_secs: 0.5,
+            stop_secs: 1.5,
+            whole_clip: false,
+            person: None,
+            line: 2,
+        };
+        let labelling = LabelSet {
+            samples: &[sample],
+            classes: &["fist".to_owned()],
+            ..LabelSet::default()
+        };
+        let options = TrainOptions {
+            everyday: Everyday::Never,
+            ..TrainOptions::default()
+        };
+        let trained = train_clips(&[clip], &labelling, &options, &());
+        let error = trained.map(drop).unwrap_err().to_string();
+        assert!(
+            error.starts_with("no body to learn from in hand: "),
+            "{error}"
+        );
+    }
 }

@@ -12,6 +12,7 @@ use crate::labels::Sample;
 use crate::roles::RoleMap;
 
 use super::set::{LabelledSpan, StreamKind, TrainSet, TrainStream};
+use super::templates::TrainError;
 use super::trim::motion_span;
 
 /// A clip ready for training: Y up, its joints' roles known.
@@ -65,8 +66,31 @@ pub struct Prepared {
     pub set: TrainSet,
     /// Bones that every labelled clip shows.
     pub bones: BoneSet,
+    /// Number of clips that hold samples.
+    pub teaching: usize,
+    /// Those among them that show no bone at all.
+    pub bodiless: Vec<String>,
     /// Background clips left out because they lack bones that the labelled ones have.
     pub lacking: Vec<String>,
+}
+
+impl Prepared {
+    /// Why there is no bone to learn from, where [`bones`](Self::bones) is empty.
+    pub fn no_bone(&self) -> TrainError {
+        const NAMED: usize = 3;
+        match (self.bodiless.len(), self.teaching) {
+            (0, 0) => TrainError::NoSamples,
+            (0, _) => TrainError::NoCommonBone,
+            (count, _) => {
+                let named = self.bodiless[..count.min(NAMED)].join(", ");
+                let more = count.saturating_sub(NAMED);
+                TrainError::NoBody(match more {
+                    0 => named,
+                    more => format!("{named} and {more} more clips"),
+                })
+            }
+        }
+    }
 }
 
 /// Cuts clips into what training needs. Rows are made in parallel, in the order of `clips`.
@@ -87,7 +111,13 @@ pub fn build_train_set(
         .iter()
         .zip(&shown)
         .filter(|(c, _)| by_clip.contains_key(c.name.as_str()));
+    let bodiless = taught
+        .clone()
+        .filter(|(_, shown)| shown.is_empty())
+        .map(|(clip, _)| clip.name.clone())
+        .collect();
     let bones = taught
+        .clone()
         .map(|(_, b)| *b)
         .reduce(BoneSet::and)
         .unwrap_or(BoneSet::NONE)
@@ -107,6 +137,8 @@ pub fn build_train_set(
             streams,
         },
         bones,
+        teaching: taught.clone().count(),
+        bodiless,
         lacking: left_out.into_iter().map(|(c, _)| c.name.clone()).collect(),
     }
 }

@@ -32,6 +32,15 @@ pub enum TrainError {
     /// There is no sample to learn from.
     #[error("no sample to learn from: none of the labels lies inside its clip")]
     NoSamples,
+    /// Labelled clips of which none shows a body.
+    #[error(
+        "no body to learn from in {0}: hips and limbs are not found among the joints (`morec inspect` shows what is); hands, faces \
+         and things alone cannot be learned"
+    )]
+    NoBody(String),
+    /// Labelled clips that show bodies, but no bone in common.
+    #[error("no bone to learn from: the labelled clips show none in common")]
+    NoCommonBone,
     /// More classes than an index numbers.
     #[error("{0} classes; an index holds at most 65535")]
     TooManyClasses(usize),

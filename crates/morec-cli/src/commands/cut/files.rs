@@ -48,7 +48,7 @@ pub fn run(cutter: &CheckedCutter, args: &Args) -> Result<ExitCode> {
         CheckedCutter::Kernel(_) => bail!("--plot draws the misfit of --method ppca"),
         CheckedCutter::Ppca(params) => by_ppca(&reader, params, args)?,
     };
-    let mut out = std::io::stdout().lock();
+    let mut out = crate::console::stdout();
     if args.json {
         write_json(&mut out, &found)?;
     } else {

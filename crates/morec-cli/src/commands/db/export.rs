@@ -20,8 +20,12 @@ use crate::print;
 pub fn run(args: &Args) -> Result<ExitCode> {
     let db = database::open_read_only(&args.db)?;
     if let Some(pattern) = &args.motion {
-        let (files, frames) = motion::export(args, &db, pattern)?;
-        return said(args, files, frames, "frames");
+        let written = motion::export(args, &db, pattern)?;
+        said(args, written.files, written.frames, "frames")?;
+        return Ok(match written.failed {
+            0 => ExitCode::SUCCESS,
+            _ => ExitCode::FAILURE,
+        });
     }
     let clip = args
         .clip

@@ -79,7 +79,7 @@ pub fn run(paths: &[PathBuf], args: &Args) -> Result<ExitCode> {
         clusters,
         agreement,
     };
-    let mut out = std::io::stdout().lock();
+    let mut out = crate::console::stdout();
     if args.json {
         write_json(&mut out, &grouped)?;
     } else {

@@ -6,6 +6,7 @@ use super::motion::{AmcRow, AmcRows, assemble, channels};
 use super::skeleton::Asf;
 use super::text::{AsfLines, number, quoted, text, tokens};
 use crate::formats::{Limits, Loaded, ParseError, Place, Warning};
+use crate::math::{Quat, Vec3};
 
 /// Frames a second where nothing says otherwise: what the CMU and HDM05 libraries were recorded at.
 pub const DEFAULT_RATE_HZ: f64 = 120.0;
@@ -64,6 +65,8 @@ pub fn read_amc(
             found,
         ));
     }
+    let left = limits.without(rows.memory())?;
+    left.afford(cells, size_of::<Quat>() + size_of::<Vec3>())?;
     let clip = assemble(name, skeleton, rows, rate_hz, &mut warnings)?;
     Ok(Loaded {
         clips: vec![clip],

@@ -2,6 +2,7 @@
 
 use super::skeleton::{AmcChannel, Asf, composed};
 use crate::clip::{Clip, JointTrack, Span};
+use crate::formats::loaded::room;
 use crate::formats::{ParseError, Place, Warning};
 use crate::math::{Quat, Vec3, same_hemisphere, slerp};
 
@@ -30,6 +31,12 @@ impl AmcRows {
             of_slot,
             degrees: true,
         }
+    }
+
+    /// Bytes of memory that they take.
+    pub(super) fn memory(&self) -> usize {
+        let rows = self.of_slot.iter().map(Vec::len).sum::<usize>();
+        rows * size_of::<AmcRow>() + self.values.len() * size_of::<f64>()
     }
 
     /// Adds a row of the latest frame; true if that frame already had one of this slot, which it replaces.
@@ -87,9 +94,12 @@ pub(super) fn assemble(
 ) -> Result<Clip, ParseError> {
     let spoiled = missing_frames(asf, &rows, warnings)?;
     let skeleton = asf.skeleton();
+    let count = rows.frames * skeleton.len();
+    let mut rotations = room(count)?;
+    rotations.resize(count, Quat::identity());
     let mut clip = Clip {
         name: name.to_owned(),
-        rotations: vec![Quat::identity(); rows.frames * skeleton.len()],
+        rotations,
         skeleton,
         rate_hz,
         tracks: Vec::new(),

@@ -4,6 +4,8 @@ use super::gaps::{self, Gaps};
 use super::half_angles::HalfAngles;
 use super::hierarchy::{BvhHierarchy, Channel};
 use crate::clip::{Joint, Span};
+use crate::formats::ParseError;
+use crate::formats::loaded::room;
 use crate::math::{Axis, Quat, Vec3, same_hemisphere};
 
 /// Motion of a character, read so far. Only the row at hand is ever held as numbers.
@@ -76,12 +78,16 @@ impl Character {
         }
     }
 
-    /// Makes room for this many frames more.
-    pub fn reserve(&mut self, frames: usize) {
-        self.rotations.reserve(frames * self.turns.len());
-        self.positions
-            .iter_mut()
-            .for_each(|p| p.values.reserve(frames));
+    /// Makes room for this many frames.
+    ///
+    /// # Errors
+    /// The system has no memory for them.
+    pub fn reserve(&mut self, frames: usize) -> Result<(), ParseError> {
+        self.rotations = room(frames * self.turns.len())?;
+        for positions in &mut self.positions {
+            positions.values = room(frames)?;
+        }
+        Ok(())
     }
 
     /// Adds one frame from a whole row of the motion table. O(joints).

@@ -7,6 +7,7 @@ use super::rows::{LinesSoFar, MotionLine, MotionLines};
 use super::source::TableText;
 use super::text::{Cursor, show};
 use crate::formats::{Limits, ParseError, Place};
+use crate::math::{Quat, Vec3};
 
 /// Lines between MOTION and the table.
 #[derive(Debug)]
@@ -103,6 +104,8 @@ fn value(cursor: &mut Cursor<'_>) -> Option<f64> {
 /// Joint rotations a file may ask for, for each byte of its table: ordinary files stay below a tenth, and without a limit a
 /// short file with many joints and one channel would fill the memory.
 const SAMPLES_PER_BYTE: usize = 4;
+/// Memory of a sample: a rotation, and a position where the joint has one.
+const BYTES_A_SAMPLE: usize = size_of::<Quat>() + size_of::<Vec3>();
 /// And this many, however short it is: props of a hundred joints, of which one moves.
 const FREE_SAMPLES: usize = 1 << 20;
 
@@ -117,16 +120,20 @@ pub(super) fn table(
 ) -> Result<Vec<usize>, ParseError> {
     let joints = characters.iter().map(|c| c.joints.len()).sum::<usize>();
     let samples = FREE_SAMPLES + text.bytes().saturating_mul(SAMPLES_PER_BYTE);
+    let memory = BYTES_A_SAMPLE.saturating_mul(joints.max(1));
+    let affordable = request.limits.memory / memory;
     let max_frames = request.limits.frames.min(samples / joints.max(1));
     // As many frames as are declared, as far as the table has two bytes for each of their numbers.
     let believed = (text.bytes() / (2 * width)).min(max_frames);
     let frames = usize::try_from(request.declared.unwrap_or(0)).unwrap_or(believed);
-    characters
-        .iter_mut()
-        .for_each(|c| c.reserve(frames.min(believed)));
+    for character in characters.iter_mut() {
+        character.reserve(frames.min(believed).min(affordable))?;
+    }
     let table = MotionTable {
         width,
         max_frames,
+        affordable,
+        limits: request.limits,
         characters,
         tally: RepairCounts::default(),
     };
@@ -140,6 +147,8 @@ pub(super) fn table(
         let table = MotionTable {
             width,
             max_frames,
+            affordable,
+            limits: request.limits,
             characters,
             tally: RepairCounts::default(),
         };
@@ -183,17 +192,23 @@ pub(super) struct TableSpec<'a> {
 struct MotionTable<'a> {
     width: usize,
     max_frames: usize,
+    /// Frames that there is memory for.
+    affordable: usize,
+    limits: &'a Limits,
     characters: &'a mut [Character],
     tally: RepairCounts,
 }
 
 impl MotionTable<'_> {
     fn push(&mut self, row: &[f64], line: u64) -> Result<(), ParseError> {
-        if self
-            .characters
-            .first()
-            .is_some_and(|c| c.frames >= self.max_frames)
-        {
+        let frames = self.characters.first().map_or(0, |c| c.frames);
+        if frames >= self.affordable {
+            return Err(ParseError::of_memory(
+                self.limits.memory,
+                self.limits.memory + 1,
+            ));
+        }
+        if frames >= self.max_frames {
             let expected = format!("at most {} frames", self.max_frames);
             return Err(ParseError::new(Place::Line(line), expected, "more"));
         }

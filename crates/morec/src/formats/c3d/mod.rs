@@ -18,7 +18,7 @@ use self::header::C3dHeader;
 use self::layout::C3dLayout;
 use self::number::Processor;
 use self::params::{BLOCK, Parameters};
-use super::points::{PointTable, metres_of};
+use super::points::{PointTable, check_size, metres_of};
 use super::{Limits, Loaded, ParseError, Place, Warning};
 
 /// Frames a second of a file that does not say.
@@ -76,6 +76,8 @@ pub fn read(
         };
         warnings.push(Warning::new(Place::File, text));
     }
+    // The length of the file bounds them.
+    check_size(wanted.len(), layout.frames, bytes.len(), limits)?;
     let table = PointTable {
         points: frames::points(bytes, &layout, processor, scale, &names, &wanted),
         rate_hz,

@@ -7,7 +7,7 @@ use ufbx::{ElementType, LoadOpts, Scene as Fbx};
 
 use super::builder::clip_names;
 use super::keys::{self, KeyGrid};
-use super::scene::{self, Local, Sampling, SceneNode, SceneSkeleton};
+use super::scene::{self, Local, Sampling, SceneNode, SceneSize, SceneSkeleton};
 use super::{Limits, Loaded, ParseError, Place, Warning};
 use crate::clip::Clip;
 use crate::math::{Axis, Quat, Vec3};
@@ -109,22 +109,19 @@ fn read_scene(fbx: &Fbx, bytes: usize, name: &str, limits: &Limits) -> Result<Lo
         })
         .collect();
     let mut clips = Vec::with_capacity(takes.len());
+    let mut size = SceneSize { bytes, earlier: 0 };
     for (take, clip_name) in takes.iter().zip(clip_names(name, &titles)) {
-        clips.push(clip(
-            fbx,
-            take,
-            &nodes,
-            clip_name,
-            bytes,
-            limits,
-            &mut warnings,
-        )?);
+        let clip = clip(fbx, take, &nodes, clip_name, size, limits, &mut warnings)?;
+        size.earlier += clip.rotations.len();
+        clips.push(clip);
     }
     Ok(Loaded { clips, warnings })
 }
 
 fn load(bytes: &[u8], limits: &Limits) -> Result<ufbx::SceneRoot, ParseError> {
     let memory = FREE_BYTES.saturating_add(bytes.len().saturating_mul(MEMORY_A_BYTE));
+    // Two allocators have it.
+    let memory = memory.min(limits.memory / 2);
     let mut options = LoadOpts {
         ignore_geometry: true,
         ignore_embedded: true,
@@ -138,6 +135,9 @@ fn load(bytes: &[u8], limits: &Limits) -> Result<ufbx::SceneRoot, ParseError> {
     options.temp_allocator.memory_limit = memory;
     options.result_allocator.memory_limit = memory;
     ufbx::load_memory(bytes, options).map_err(|error| {
+        if error.type_ == ufbx::ErrorType::MemoryLimit {
+            return ParseError::of_memory(2 * memory, 2 * memory + 1);
+        }
         // Not its `info`, which may be no UTF-8 and then panics.
         let what: &str = &error.description;
         let found = match (error.type_, version(bytes)) {
@@ -359,7 +359,7 @@ fn clip(
     take: &AnimationStack<'_>,
     nodes: &[SceneNode],
     clip_name: String,
-    bytes: usize,
+    size: SceneSize,
     limits: &Limits,
     warnings: &mut Vec<Warning>,
 ) -> Result<Clip, ParseError> {
@@ -367,7 +367,7 @@ fn clip(
         nodes,
         grid: grid(fbx, take, &clip_name, warnings),
         name: &|node| nodes[node].name.clone(),
-        bytes,
+        size,
         limits,
     };
     scene::sample(&sampling, take.rig, clip_name, |node, time| {

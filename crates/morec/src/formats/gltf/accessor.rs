@@ -2,23 +2,31 @@
 
 use std::borrow::Cow;
 use std::collections::HashMap;
+use std::io;
 
 use base64::Engine;
 use serde_json::Value;
 
-use super::super::{ParseError, Place};
+use super::super::{Limits, ParseError, Place};
 use super::document::{Document, index};
 
 /// Gives the bytes of a file that lies beside the one that is read, by its relative address.
-pub type Beside<'a> = &'a dyn Fn(&str) -> Option<Vec<u8>>;
+pub type Beside<'a> = &'a dyn Fn(&str) -> io::Result<Vec<u8>>;
 
 /// The buffers of a document, opened when they are first needed.
 pub(super) struct Buffers<'a> {
     document: &'a Document<'a>,
     beside: Beside<'a>,
     opened: HashMap<usize, Cow<'a, [u8]>>,
-    /// Numbers that may still be read: any number of accessors may lie on the same bytes.
-    budget: usize,
+    /// For each file beside the scene, the first buffer that is in it.
+    files: HashMap<String, usize>,
+    /// Bytes of all buffers that were opened,
+    bytes: usize,
+    /// of those among them that lie beside the scene,
+    beside_bytes: usize,
+    /// and the numbers that were read: any number of accessors may lie on the same bytes.
+    numbers: usize,
+    limits: Limits,
 }
 
 /// Numbers of an accessor, `width` for each element, integers mapped as `normalized` says.
@@ -28,20 +36,47 @@ pub(super) struct Numbers {
     pub(super) width: usize,
 }
 
-/// All animations of a file may have this many numbers: an hour of 100 joints at 60 Hz has 150 million.
+/// All animations of a file may have this many numbers however small it is, for accessors may lie on the same bytes,
+const FREE_NUMBERS: usize = 1 << 22;
+/// this many for each byte of it and its buffers,
+const NUMBERS_A_BYTE: usize = 4;
+/// and never more: an hour of 100 joints at 60 Hz has 150 million.
 const MOST_NUMBERS: usize = 1 << 28;
+
+/// All files beside a scene have this many bytes at most.
+const MOST_BESIDE: usize = 2 << 30;
 
 /// An accessor may stand for this many numbers without any bytes (they are zeros).
 const MOST_ZEROS: usize = 1 << 22;
 
 impl<'a> Buffers<'a> {
-    pub(super) fn new(document: &'a Document<'a>, beside: Beside<'a>) -> Self {
+    pub(super) fn new(document: &'a Document<'a>, beside: Beside<'a>, limits: &Limits) -> Self {
         Self {
             document,
             beside,
             opened: HashMap::new(),
-            budget: MOST_NUMBERS,
+            files: HashMap::new(),
+            bytes: 0,
+            beside_bytes: 0,
+            numbers: 0,
+            limits: *limits,
         }
+    }
+
+    /// Counts numbers before they are read.
+    fn spend(&mut self, accessor: usize, numbers: usize) -> Result<(), ParseError> {
+        self.numbers = self.numbers.saturating_add(numbers);
+        let most = FREE_NUMBERS + self.bytes.saturating_mul(NUMBERS_A_BYTE);
+        let most = most.min(MOST_NUMBERS);
+        if self.numbers > most {
+            return Err(fail(accessor, &format!("at most {most} numbers"), "more"));
+        }
+        self.limits.afford(self.memory(), 1)
+    }
+
+    /// Bytes of memory for what was opened and read.
+    fn memory(&self) -> usize {
+        (self.numbers.saturating_mul(size_of::<f64>())).saturating_add(self.beside_bytes)
     }
 
     /// All numbers of accessor `number`; integers become −1..1 or 0..1 if the file or `normalize` says so.
@@ -73,7 +108,10 @@ impl<'a> Buffers<'a> {
                 let at = index(&accessor["byteOffset"]).unwrap_or(0);
                 self.column(number, view, at, count, width, kind, normalize)?
             }
-            None if count.saturating_mul(width) <= MOST_ZEROS => vec![0.0; count * width],
+            None if count.saturating_mul(width) <= MOST_ZEROS => {
+                self.spend(number, count * width)?;
+                vec![0.0; count * width]
+            }
             None => return Err(fail(number, "a bufferView", "none")),
         };
         self.replace(
@@ -141,6 +179,7 @@ impl<'a> Buffers<'a> {
             return Err(fail(number, "a plain bufferView", found));
         }
         let buffer = index(&view["buffer"]).ok_or_else(|| fail(number, "a buffer", "none"))?;
+        let buffer = self.of_same_file(buffer);
         let length = self.buffer(buffer)?.len();
         let element = width * kind.size();
         let stride = index(&view["byteStride"])
@@ -161,10 +200,7 @@ impl<'a> Buffers<'a> {
             return Err(fail(number, &expected, &length.to_string()));
         }
         let all = count.saturating_mul(width);
-        self.budget = self
-            .budget
-            .checked_sub(all)
-            .ok_or_else(|| fail(number, &format!("at most {MOST_NUMBERS} numbers"), "more"))?;
+        self.spend(number, all)?;
         let bytes = &self.opened[&buffer];
         let mut values = Vec::with_capacity(all);
         for k in 0..count {
@@ -178,9 +214,34 @@ impl<'a> Buffers<'a> {
     fn buffer(&mut self, number: usize) -> Result<&[u8], ParseError> {
         if !self.opened.contains_key(&number) {
             let bytes = self.open(number)?;
+            self.bytes = self.bytes.saturating_add(bytes.len());
+            if self.file_of(number).is_some() {
+                self.beside_bytes = self.beside_bytes.saturating_add(bytes.len());
+            }
+            if self.beside_bytes > MOST_BESIDE {
+                let expected = format!("at most {} MB in files beside it", MOST_BESIDE >> 20);
+                return Err(ParseError::new(Place::File, expected, "more"));
+            }
+            self.limits.afford(self.memory(), 1)?;
             self.opened.insert(number, bytes);
         }
         Ok(&self.opened[&number])
+    }
+
+    /// The file beside the scene that a buffer is in.
+    fn file_of(&self, number: usize) -> Option<String> {
+        let uri = self.document.list("buffers").get(number)?["uri"].as_str()?;
+        let file = percent_decoded(uri);
+        let file = file.trim_start_matches("./");
+        (!uri.starts_with("data:")).then(|| file.to_owned())
+    }
+
+    /// The first buffer that is in the same file: each is opened once.
+    fn of_same_file(&mut self, number: usize) -> usize {
+        match self.file_of(number) {
+            Some(file) => *self.files.entry(file).or_insert(number),
+            None => number,
+        }
     }
 
     fn open(&self, number: usize) -> Result<Cow<'a, [u8]>, ParseError> {
@@ -204,13 +265,19 @@ impl<'a> Buffers<'a> {
                 .map(Cow::Owned)
                 .map_err(|error| wrong(error.to_string()));
         }
-        let file = percent_decoded(uri);
+        let file = self.file_of(number).unwrap_or_default();
         // Files elsewhere are none of the scene's business.
         let outside = file.starts_with(['/', '\\']) || file.contains(':') || file.contains("..");
-        let bytes = if outside { None } else { (self.beside)(&file) };
-        bytes
-            .map(Cow::Owned)
-            .ok_or_else(|| wrong(format!("no file {file} beside it")))
+        let bytes = match outside {
+            true => Err(io::Error::from(io::ErrorKind::NotFound)),
+            false => (self.beside)(&file),
+        };
+        bytes.map(Cow::Owned).map_err(|error| {
+            wrong(match error.kind() {
+                io::ErrorKind::NotFound => format!("no file {file} beside it"),
+                _ => format!("{file} beside it: {error}"),
+            })
+        })
     }
 }
 

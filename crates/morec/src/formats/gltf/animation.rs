@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use super::super::scene::{Local, SceneSkeleton};
-use super::super::{ParseError, Place, Warning};
+use super::super::{Limits, ParseError, Place, Warning};
 use super::Beside;
 use super::accessor::{Buffers, Numbers};
 use super::document::{Document, index};
@@ -49,9 +49,10 @@ const EPSILON_SECS: f64 = 1e-5;
 pub(super) fn all(
     document: &Document,
     beside: Beside<'_>,
+    limits: &Limits,
     warnings: &mut Vec<Warning>,
 ) -> Result<Vec<Animation>, ParseError> {
-    let mut buffers = Buffers::new(document, beside);
+    let mut buffers = Buffers::new(document, beside, limits);
     let mut animations = Vec::new();
     for (number, json) in document.list("animations").iter().enumerate() {
         let name = json["name"].as_str().unwrap_or_default().to_owned();
@@ -65,6 +66,7 @@ pub(super) fn all(
             match read(channel, &json["samplers"], document, &mut buffers) {
                 Ok(Some(channel)) => animation.channels.push(channel),
                 Ok(None) => {}
+                Err(error) if error.is_of_memory() => return Err(error),
                 Err(error) => {
                     lost += 1;
                     why.get_or_insert(error);

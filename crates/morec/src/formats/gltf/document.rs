@@ -2,6 +2,7 @@
 
 use serde_json::Value;
 
+use super::super::json::limits_beside;
 use super::super::{Limits, ParseError, Place, Warning};
 
 /// A parsed file. Values are looked up leniently: what is missing or of another type is `None`.
@@ -34,6 +35,17 @@ impl<'a> Document<'a> {
         };
         document.check(limits)?;
         Ok(document)
+    }
+
+    /// What is left of `limits` beside the document.
+    pub(super) fn limits_beside(bytes: &[u8], limits: &Limits) -> Result<Limits, ParseError> {
+        // The keys of a binary file are no document, and lie behind it.
+        let length = || Some(u32::from_le_bytes(bytes.get(12..16)?.try_into().ok()?) as usize);
+        let text = match bytes.starts_with(MAGIC) {
+            true => length().and_then(|length| bytes.get(..length.saturating_add(20))),
+            false => None,
+        };
+        limits_beside(text.unwrap_or(bytes), limits)
     }
 
     fn binary(bytes: &'a [u8], warnings: &mut Vec<Warning>) -> Result<Self, ParseError> {

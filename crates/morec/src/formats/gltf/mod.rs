@@ -17,7 +17,7 @@ use self::animation::Animation;
 use self::document::Document;
 use self::nodes::GltfScene;
 use super::builder::clip_names;
-use super::scene::{self, Local, Sampling, SceneSkeleton};
+use super::scene::{self, Local, Sampling, SceneSize, SceneSkeleton};
 use super::{Limits, Loaded, ParseError, Place, Warning, keys};
 use crate::clip::Clip;
 
@@ -38,9 +38,15 @@ pub fn read(
     limits: &Limits,
 ) -> Result<Loaded, ParseError> {
     let mut warnings = Vec::new();
+    let limits = &Document::limits_beside(bytes, limits)?;
     let document = Document::parse(bytes, limits, &mut warnings)?;
     let stage = GltfScene::of(&document, limits, &mut warnings)?;
-    let mut animations = animation::all(&document, beside, &mut warnings)?;
+    // Half for the keys, half for the poses that are made of them.
+    let limits = &Limits {
+        memory: limits.memory / 2,
+        ..*limits
+    };
+    let mut animations = animation::all(&document, beside, limits, &mut warnings)?;
     if animations.is_empty() {
         return Err(without_animation(&document, &stage, ""));
     }
@@ -118,10 +124,11 @@ fn clips(
         })
         .collect();
     let mut clips = Vec::with_capacity(pairs.len());
+    let mut size = SceneSize { bytes, earlier: 0 };
     for ((animation, rig), clip_name) in pairs.into_iter().zip(clip_names(name, &titles)) {
-        clips.push(clip(
-            animation, rig, stage, clip_name, bytes, limits, warnings,
-        )?);
+        let clip = clip(animation, rig, stage, clip_name, size, limits, warnings)?;
+        size.earlier += clip.rotations.len();
+        clips.push(clip);
     }
     Ok(clips)
 }
@@ -131,7 +138,7 @@ fn clip(
     rig: &SceneSkeleton,
     stage: &GltfScene,
     clip_name: String,
-    bytes: usize,
+    size: SceneSize,
     limits: &Limits,
     warnings: &mut Vec<Warning>,
 ) -> Result<Clip, ParseError> {
@@ -147,7 +154,7 @@ fn clip(
         nodes: &stage.nodes,
         grid,
         name: &|node| stage.joint_name(node),
-        bytes,
+        size,
         limits,
     };
     let by_node = animation.by_node(stage.nodes.len());

@@ -3,6 +3,7 @@ use crate::import::{ImportOptions, normalize};
 use crate::kinematics::WorldPose;
 use crate::math::{Axis, Quat, Vec3};
 use serde_json::{Value, json};
+use std::io;
 
 /// Floats in a buffer of a data address, with the accessors that lie on it.
 #[derive(Default)]
@@ -35,7 +36,12 @@ impl Keys {
 }
 
 fn open(bytes: &[u8]) -> Result<Loaded, ParseError> {
-    read(bytes, "f", &|_| None, &Limits::default())
+    read(
+        bytes,
+        "f",
+        &|_| Err(io::ErrorKind::NotFound.into()),
+        &Limits::default(),
+    )
 }
 
 fn quat(q: Quat) -> [f32; 4] {
@@ -198,7 +204,10 @@ fn what_cannot_be_read_is_said_plainly() {
         serde_json::from_slice::<Value>(&keys.file(bent("LINEAR", &mut Keys::default()))).unwrap();
     file["buffers"][0]["uri"] = "far%20away.bin".into();
     assert!(error(file.clone()).contains("no file far away.bin"));
-    let beside = |name: &str| (name == "far away.bin").then(|| keys.bytes.clone());
+    let beside = |name: &str| match name {
+        "far away.bin" => Ok(keys.bytes.clone()),
+        _ => Err(io::ErrorKind::NotFound.into()),
+    };
     assert!(
         read(
             file.to_string().as_bytes(),

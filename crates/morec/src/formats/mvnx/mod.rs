@@ -10,7 +10,7 @@ use roxmltree::{Document, Node};
 
 use self::body::MvnxSegment;
 use super::builder::{ClipBuilder, check_size, clip_names};
-use super::xml::{child, is, parse, place, text_of};
+use super::xml::{child, is, limits_beside, parse, place, text_of};
 use super::{Limits, Loaded, ParseError, Warning};
 use crate::clip::{Clip, Joint};
 use crate::math::{Quat, Vec3};
@@ -25,6 +25,7 @@ const ASSUMED_HZ: f64 = 60.0;
 /// A file that breaks off is read as far as it goes. O(bytes) time and memory.
 pub fn read(bytes: &[u8], name: &str, limits: &Limits) -> Result<Loaded, ParseError> {
     let text = text_of(bytes)?;
+    let limits = &limits_beside(&text, limits)?;
     // A frame has some dozen elements.
     let most_nodes = limits.frames.saturating_mul(64);
     let mut warnings = Vec::new();
@@ -75,8 +76,11 @@ fn read_document(
     }
     let names = clip_names(name, &labels);
     let mut clips = Vec::with_capacity(subjects.len());
+    let mut earlier = 0;
     for (subject, name) in subjects.into_iter().zip(names) {
-        clips.push(read_subject(subject, name, bytes, limits, warnings)?);
+        let clip = read_subject(subject, name, earlier, bytes, limits, warnings)?;
+        earlier += clip.rotations.len();
+        clips.push(clip);
     }
     Ok(clips)
 }
@@ -84,6 +88,7 @@ fn read_document(
 fn read_subject(
     subject: Node<'_, '_>,
     name: String,
+    earlier: usize,
     bytes: usize,
     limits: &Limits,
     warnings: &mut Vec<Warning>,
@@ -95,8 +100,9 @@ fn read_subject(
         .children()
         .filter(|n| is(*n, "frame") && is_motion(*n))
         .collect();
-    check_size(frames.len(), segments.len(), bytes, limits)?;
+    check_size(frames.len(), segments.len(), earlier, bytes, limits)?;
     let mut builder = ClipBuilder::new(joints(&segments));
+    builder.reserve(frames.len())?;
     let mut broken = 0;
     let mut first = None;
     for frame in &frames {

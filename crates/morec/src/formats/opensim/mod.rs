@@ -20,11 +20,12 @@ use super::{Limits, ParseError, Warning};
 /// The place and the cause: no well-formed XML, no bodies, a joint or function of a kind that is not read, a joint between bodies that are not
 /// there, more than `limits` allow. O(bytes).
 pub fn read_model(bytes: &[u8], limits: &Limits) -> Result<(OsimModel, Vec<Warning>), ParseError> {
-    // Elements that a model has for each of its joints, muscles and shapes among them.
-    const NODES_A_JOINT: usize = 4096;
+    // Elements of a model; the largest have a hundred thousand, for muscles and shapes.
+    const MOST_NODES: usize = 1 << 20;
     let text = super::xml::text_of(bytes)?;
-    let document = super::xml::parse(&text, limits.joints.saturating_mul(NODES_A_JOINT))?;
-    model::of_document(&document, limits)
+    let limits = super::xml::limits_beside(&text, limits)?;
+    let document = super::xml::parse(&text, MOST_NODES)?;
+    model::of_document(&document, &limits)
 }
 
 #[cfg(test)]

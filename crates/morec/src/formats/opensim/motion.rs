@@ -34,7 +34,7 @@ pub fn read_motion(
     };
     let schedule = Schedule::of(&table.times_secs, &clock, &mut warnings);
     let frames = schedule.places.as_ref().map_or(table.rows.len(), Vec::len);
-    check_size(frames, model.bodies.len(), bytes.len(), limits)?;
+    check_size(frames, model.bodies.len(), 0, bytes.len(), limits)?;
     let mut builder = ClipBuilder::new(model.joints());
     let mut push = |row: Option<&[f64]>| match row {
         Some(values) => {

@@ -59,10 +59,12 @@ pub fn read(bytes: &[u8], name: &str, limits: &Limits) -> Result<Loaded, ParseEr
             .iter()
             .any(|keys| keys.contains(&key))
     };
-    let members = container::unzip(bytes, &wanted)?;
+    let mut limits = limits.of_packed(bytes.len());
+    let members = container::unzip(bytes, &wanted, limits.memory)?;
     let mut arrays = BTreeMap::new();
     for member in &members {
         let key = key_of(&member.path);
+        limits = limits.without(member.bytes.len() + npy::memory(&member.bytes))?;
         let array = npy::read(&member.bytes).map_err(|error| ParseError {
             expected: format!("{} in `{key}`", error.expected),
             ..error
@@ -76,7 +78,7 @@ pub fn read(bytes: &[u8], name: &str, limits: &Limits) -> Result<Loaded, ParseEr
         (None, Some(root), Some(body)) => SmplFrames::of_parts(root, body)?,
         _ => return Err(no_poses(bytes)),
     };
-    check_size(frames.count, body::JOINTS, bytes.len(), limits)?;
+    check_size(frames.count, body::JOINTS, 0, bytes.len(), &limits)?;
     if frames.joints > body::JOINTS {
         let text = format!(
             "{} joints are read, the other {} (hands, fingers, face) left out",

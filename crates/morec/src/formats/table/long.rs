@@ -193,7 +193,7 @@ pub(super) fn frames(
     let bytes = body
         .iter()
         .map(|(_, cells)| cells.iter().map(|c| c.len() + 1).sum::<usize>());
-    check_size(points.len(), times.len(), bytes.sum())?;
+    check_size(points.len(), times.len(), bytes.sum(), limits)?;
     for point in &mut points {
         point.positions.resize(times.len(), UNSEEN);
     }

@@ -41,6 +41,7 @@ pub fn read(
 ) -> Result<Loaded, ParseError> {
     let rows = lines(bytes, limits)?;
     let separator = separator(&rows);
+    let limits = &limits_beside(&rows, separator, limits)?;
     let mut cells: Vec<TableLine> = Vec::with_capacity(rows.len());
     for (line, row) in &rows {
         cells.push((*line, split(row, separator)));
@@ -54,7 +55,7 @@ pub fn read(
     let (points, times, layout) = match section.or_else(|| header(head)) {
         Some(TableHeader::Long(columns)) => long::frames(&columns, &cells, limits)?,
         Some(TableHeader::Wide(layout)) => {
-            check_size(layout.points.len(), cells.len(), bytes.len())?;
+            check_size(layout.points.len(), cells.len(), bytes.len(), limits)?;
             wide(layout, &cells, limits, &mut warnings)?
         }
         None => match plain::layout(&cells) {
@@ -62,7 +63,7 @@ pub fn read(
             None => return Err(no_columns(&cells)),
         },
     };
-    check_size(points.len(), times.len(), bytes.len())?;
+    check_size(points.len(), times.len(), bytes.len(), limits)?;
     for note in layout.notes {
         warnings.push(Warning::new(Place::File, note));
     }
@@ -185,6 +186,20 @@ fn no_columns(rows: &[TableLine]) -> ParseError {
     let shown = named[..named.len().min(SHOWN)].join(", ");
     let more = if named.len() > SHOWN { ", …" } else { "" };
     ParseError::new(Place::Line(*line), expected, format!("`{shown}{more}`"))
+}
+
+/// What is left of `limits` beside the cells of the rows.
+fn limits_beside(
+    rows: &[(u64, &str)],
+    separator: Option<char>,
+    limits: &Limits,
+) -> Result<Limits, ParseError> {
+    let ends = |c: char| separator.map_or(c.is_whitespace(), |separator| c == separator);
+    let cells = |row: &str| row.chars().filter(|c| ends(*c)).count() + 1;
+    let cells = rows.iter().map(|(_, row)| cells(row)).sum::<usize>();
+    // Lists grow to twice what they hold.
+    let used = cells * 2 * size_of::<&str>() + rows.len() * size_of::<TableLine>();
+    limits.without(used)
 }
 
 /// What a table measures in place of positions, as far as its header tells.

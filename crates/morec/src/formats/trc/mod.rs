@@ -67,7 +67,7 @@ pub fn read(
         .map(|&(line, text)| (line, split(text, separator)))
         .filter(|(_, cells)| !is_axes_row(cells))
         .collect();
-    check_size(columns.len(), body.len(), bytes.len())?;
+    check_size(columns.len(), body.len(), bytes.len(), limits)?;
     let table = frames(&columns, &body, limits, &mut warnings)?;
     if let Some(stated) = heading.frames.filter(|&n| n != table.times.len() as f64) {
         let text = format!(

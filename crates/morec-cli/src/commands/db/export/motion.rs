@@ -11,9 +11,17 @@ use crate::commands::convert::{ClipForm, CsvContent, write_take};
 use crate::print;
 use crate::progress::SlowProgress;
 
-/// Writes the clips whose names match `pattern`: one as the file that `args` name, several into it as a folder. Gives how many
-/// files and frames.
-pub(super) fn export(args: &Args, db: &MotionDb, pattern: &str) -> Result<(usize, usize)> {
+/// What was written.
+#[derive(Default)]
+pub(super) struct Written {
+    pub files: usize,
+    pub frames: usize,
+    /// Clips that could not be.
+    pub failed: usize,
+}
+
+/// Writes the clips whose names match `pattern`: one as the file that `args` name, several into it as a folder.
+pub(super) fn export(args: &Args, db: &MotionDb, pattern: &str) -> Result<Written> {
     let clips = match pattern.contains(['*', '?']) {
         true => db.find_clips(&ClipFilter {
             name: Some(pattern.to_owned()),
@@ -22,12 +30,15 @@ pub(super) fn export(args: &Args, db: &MotionDb, pattern: &str) -> Result<(usize
         false => vec![db.find_clip(pattern)?],
     };
     let form = args.form.map(|form| form.of_motion()).transpose()?;
-    let (frames, files) = match clips.as_slice() {
+    match clips.as_slice() {
         [] => bail!("--motion {pattern}: there is no such clip"),
-        [clip] if !args.output.is_dir() => (one(args, db, clip, form)?, 1),
-        several => (folder(args, db, several, form)?, several.len()),
-    };
-    Ok((files, frames))
+        [clip] if !args.output.is_dir() => Ok(Written {
+            files: 1,
+            frames: one(args, db, clip, form)?,
+            failed: 0,
+        }),
+        several => folder(args, db, several, form),
+    }
 }
 
 fn one(args: &Args, db: &MotionDb, clip: &ClipInfo, form: Option<ClipForm>) -> Result<usize> {
@@ -56,7 +67,12 @@ fn one(args: &Args, db: &MotionDb, clip: &ClipInfo, form: Option<ClipForm>) -> R
     Ok(take.clip.frames)
 }
 
-fn folder(args: &Args, db: &MotionDb, clips: &[ClipInfo], form: Option<ClipForm>) -> Result<usize> {
+fn folder(
+    args: &Args,
+    db: &MotionDb,
+    clips: &[ClipInfo],
+    form: Option<ClipForm>,
+) -> Result<Written> {
     let folder = &args.output;
     if folder == Path::new("-") || folder.is_file() {
         bail!(
@@ -72,14 +88,30 @@ fn folder(args: &Args, db: &MotionDb, clips: &[ClipInfo], form: Option<ClipForm>
     std::fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
     let names = exchange::file_names(clips.iter().map(|clip| clip.name.as_str()));
     let mut progress = SlowProgress::new(clips.len(), "writing clips");
-    let mut frames = 0;
+    let mut written = Written::default();
     for (clip, name) in clips.iter().zip(&names) {
-        let take = db.clip(clip.id)?.into_take()?;
         let path = folder.join(format!("{name}.{}", form.ending()));
-        write_take(&take, form, args.table.into(), &path)
-            .with_context(|| path.display().to_string())?;
-        frames += take.clip.frames;
+        let write = || {
+            let take = db.clip(clip.id)?.into_take()?;
+            write_take(&take, form, args.table.into(), &path)
+                .with_context(|| path.display().to_string())?;
+            anyhow::Ok(take.clip.frames)
+        };
+        match write() {
+            Ok(frames) => {
+                written.files += 1;
+                written.frames += frames;
+            }
+            // The others do not suffer for one.
+            Err(error) => {
+                progress.suspend(|| eprintln!("morec: clip {} left out: {error:#}", clip.name));
+                written.failed += 1;
+            }
+        }
         progress.step();
     }
-    Ok(frames)
+    match written.files {
+        0 => bail!("none of the {} clips could be written", clips.len()),
+        _ => Ok(written),
+    }
 }
