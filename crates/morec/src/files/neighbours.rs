@@ -39,7 +39,8 @@ impl Around<'_> {
     }
 }
 
-#[cfg(all(test, unix))]
+#[cfg(test)]
+#[cfg(unix)]
 mod tests {
     use std::fs::{self, File};
     use std::os::unix::fs::symlink;
