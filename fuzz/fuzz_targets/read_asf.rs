@@ -11,6 +11,7 @@ fuzz_target!(|bytes: &[u8]| {
         depth: 32,
         line_bytes: 4096,
         frames: 4096,
+        memory: 64 << 20,
     };
     let Ok((asf, _)) = read_asf(bytes, &limits) else {
         return;

@@ -3,7 +3,6 @@
 use rusqlite::{Connection, OptionalExtension, Row, params};
 
 use crate::history::counted;
-use crate::labels::LONGEST_NAME;
 use crate::{DbError, MotionDb, names};
 
 /// A clip's number in its database.
@@ -181,7 +180,7 @@ impl MotionDb {
     /// There is no such clip, another one has the new name, or the name is empty, longer than 200 bytes or holds control characters.
     pub fn rename_clip(&mut self, from: &str, to: &str) -> Result<(), DbError> {
         let blank = to.trim() != to || to.is_empty();
-        if blank || to.len() > LONGEST_NAME || to.chars().any(char::is_control) {
+        if blank || to.len() > names::LONGEST || to.chars().any(char::is_control) {
             let expected = "a clip's name: 1 to 200 bytes without blanks around it, tabs, line ends or other control characters";
             return Err(DbError::Invalid(format!(
                 "expected {expected}, found {to:?}"

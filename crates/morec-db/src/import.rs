@@ -12,7 +12,7 @@ use rusqlite::{Connection, OptionalExtension, Row, params};
 
 use crate::history::counted;
 use crate::kept::{FileContent, KeptClip, KeptFile, packed_rows, rows_recipe};
-use crate::labels::LONGEST_NAME;
+use crate::names::LONGEST as LONGEST_NAME;
 use crate::time::now_secs;
 use crate::{ClipId, ClipUpdate, DbError, MotionDb, history, rows};
 

@@ -12,7 +12,6 @@ mod whole;
 mod write;
 
 pub use classes::ClassCount;
-pub(crate) use classes::LONGEST_NAME;
 pub use plan::{ChangedLabel, LabelChange, LabelOptions, Labelled};
 pub use sample::{Added, DbSample, GROUPED_BY, NewSample, SampleFilter, SampleId, SampleState};
 pub use whole::WholeClip;

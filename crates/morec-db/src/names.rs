@@ -6,6 +6,9 @@ use rusqlite::Connection;
 
 use crate::{DbError, MotionDb};
 
+/// Bytes in the name of a class or a clip: with what is escaped of it and an ending it is still a file's.
+pub(crate) const LONGEST: usize = 200;
+
 /// Most names listed when none is similar.
 const LISTED: usize = 8;
 

@@ -22,7 +22,7 @@ pub struct TakeArgs {
     pub count_down: f64,
     /// Number of the performer of the source, from 0
     #[arg(long, value_name = "N", default_value = "0", value_parser = clap::value_parser!(u16).range(..MAX_PERFORMERS as i64))]
-    pub performer: u16,
+    pub actor: u16,
     /// No bell at the beginning and the end of a take
     #[arg(long)]
     pub no_bell: bool,
@@ -71,7 +71,7 @@ impl TakeRecorder {
         let keys = (!opened.name.starts_with("json:")).then(typed);
         Self {
             opened,
-            actor: PerformerId(args.performer),
+            actor: PerformerId(args.actor),
             bell: !args.no_bell,
             count_down_secs: args.count_down,
             stop,

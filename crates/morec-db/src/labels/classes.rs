@@ -20,13 +20,11 @@ pub struct ClassCount {
     pub secs: f64,
 }
 
-/// Bytes in the name of a class or a clip: with what is escaped of it and an ending it is still a file's.
-pub(crate) const LONGEST_NAME: usize = 200;
-
 /// Checks a class name, which must survive tables, track names and terminals.
 pub(super) fn check_name(name: &str) -> Result<&str, DbError> {
     let trimmed = name.trim();
-    if trimmed.is_empty() || trimmed.len() > LONGEST_NAME || trimmed.chars().any(char::is_control) {
+    if trimmed.is_empty() || trimmed.len() > names::LONGEST || trimmed.chars().any(char::is_control)
+    {
         let expected =
             "a class's name: 1 to 200 bytes without tabs, line ends or other control characters";
         return Err(DbError::Invalid(format!(

@@ -18,7 +18,7 @@ use crate::store::BY;
 
 /// A larger file is no file of labels, bytes.
 const LARGEST: u64 = 64 << 20;
-/// The format of motion is told by so much of a file, bytes.
+/// The format of motion is recognised by this much of a file, bytes.
 const HEAD: u64 = 64 << 10;
 /// Number of files beside clips that are looked at.
 const LOOKED_AT: usize = 2000;

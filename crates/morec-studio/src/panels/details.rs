@@ -1,6 +1,6 @@
 //! Details of the chosen clip, which can be changed.
 
-use egui::{Grid, TextEdit, Ui, WidgetType};
+use egui::{Grid, Ui};
 use morec_db::{ClipInfo, ClipUpdate};
 
 use super::{Out, background, roles, whole, widgets};
@@ -36,7 +36,7 @@ fn several(ui: &mut Ui, state: &State, out: Out) {
     ui.label(format!("{} clips are selected", selected.len()));
     ui.horizontal(|ui| {
         ui.label("Person");
-        if let Some(name) = committed(ui, "Person of all", "") {
+        if let Some(name) = widgets::committed(ui, "Person of all", "") {
             let update = ClipUpdate {
                 subject: Some(name),
                 ..ClipUpdate::default()
@@ -60,7 +60,7 @@ fn several(ui: &mut Ui, state: &State, out: Out) {
     });
     ui.horizontal(|ui| {
         ui.label("Add tags");
-        if let Some(text) = committed(ui, "Tags of all", "") {
+        if let Some(text) = widgets::committed(ui, "Tags of all", "") {
             let update = ClipUpdate {
                 add_tags: tags_of(&text),
                 ..ClipUpdate::default()
@@ -90,31 +90,6 @@ fn tags_of(text: &str) -> Vec<String> {
     tags.filter(|tag| !tag.is_empty()).collect()
 }
 
-/// A field whose text counts once Enter is pressed or it is left.
-pub fn committed(ui: &mut Ui, name: &str, text: &str) -> Option<String> {
-    let id = ui.make_persistent_id((name, text));
-    let mut now = ui
-        .data(|d| d.get_temp::<String>(id))
-        .unwrap_or_else(|| text.to_owned());
-    let edit = TextEdit::singleline(&mut now)
-        .id(id.with("edit"))
-        .desired_width(220.0);
-    let response = ui.add(edit);
-    response.widget_info(|| {
-        let mut info = egui::WidgetInfo::labeled(WidgetType::TextEdit, true, name);
-        info.current_text_value = Some(now.clone());
-        info
-    });
-    if response.lost_focus() {
-        ui.data_mut(|d| d.remove::<String>(id));
-        return (now != text).then_some(now);
-    }
-    if response.has_focus() {
-        ui.data_mut(|d| d.insert_temp(id, now));
-    }
-    None
-}
-
 fn known(ui: &mut Ui, clip: &ClipInfo, out: Out) {
     let c = Colours::now(ui);
     Grid::new("known")
@@ -125,7 +100,7 @@ fn known(ui: &mut Ui, clip: &ClipInfo, out: Out) {
             ui.spacing_mut().interact_size.y = 19.0;
             let name = |ui: &mut Ui, text: &str| ui.colored_label(c.muted, text);
             name(ui, "Name");
-            if let Some(to) = committed(ui, "Clip name", &clip.name) {
+            if let Some(to) = widgets::committed(ui, "Clip name", &clip.name) {
                 let from = clip.name.clone();
                 out.push(Command::Edit(Edit::RenameClip { from, to }));
             }
@@ -137,7 +112,9 @@ fn known(ui: &mut Ui, clip: &ClipInfo, out: Out) {
                 }));
             };
             name(ui, "Person");
-            if let Some(subject) = committed(ui, "Person", clip.subject.as_deref().unwrap_or("")) {
+            if let Some(subject) =
+                widgets::committed(ui, "Person", clip.subject.as_deref().unwrap_or(""))
+            {
                 describe(ClipUpdate {
                     subject: Some(subject),
                     ..ClipUpdate::default()
@@ -146,7 +123,7 @@ fn known(ui: &mut Ui, clip: &ClipInfo, out: Out) {
             ui.end_row();
             name(ui, "Tags");
             let tags = clip.tags.join(", ");
-            if let Some(text) = committed(ui, "Tags", &tags) {
+            if let Some(text) = widgets::committed(ui, "Tags", &tags) {
                 let wanted = tags_of(&text);
                 let gone = clip.tags.iter().filter(|t| !wanted.contains(t)).cloned();
                 describe(ClipUpdate {

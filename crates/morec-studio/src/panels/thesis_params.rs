@@ -1,4 +1,4 @@
-//! The figures of the method of 2009, as controls.
+//! The parameters of the method of 2009, as controls.
 
 use egui::{ComboBox, DragValue, Ui, WidgetType};
 use morec::pca::ComponentCount;

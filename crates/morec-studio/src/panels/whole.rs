@@ -4,7 +4,7 @@ use egui::{RichText, TextEdit, Ui, WidgetInfo, WidgetType};
 use morec_db::labels::WholeClip;
 use morec_db::{ClipId, ClipInfo};
 
-use super::{Out, details, widgets};
+use super::{Out, widgets};
 use crate::format;
 use crate::name_pattern::{NamePattern, guess};
 use crate::state::{Command, LibraryCommand, State};
@@ -52,7 +52,7 @@ pub fn menu(ui: &mut Ui, state: &State, clips: &[ClipId], out: Out) {
 /// A field for a class that is new.
 pub fn new_class(ui: &mut Ui, clips: &[ClipId], out: Out) {
     ui.label("or a new class");
-    let name = details::committed(ui, "New class of whole clips", "");
+    let name = widgets::committed(ui, "New class of whole clips", "");
     if let Some(name) = name.filter(|name| !name.trim().is_empty()) {
         out.push(of_class(clips, name.trim()));
     }

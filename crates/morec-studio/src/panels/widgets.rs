@@ -141,3 +141,28 @@ pub fn train_again(ui: &mut Ui, out: Out) {
         }
     });
 }
+
+/// A field whose text counts once Enter is pressed or it is left.
+pub fn committed(ui: &mut Ui, name: &str, text: &str) -> Option<String> {
+    let id = ui.make_persistent_id((name, text));
+    let mut now = ui
+        .data(|d| d.get_temp::<String>(id))
+        .unwrap_or_else(|| text.to_owned());
+    let edit = egui::TextEdit::singleline(&mut now)
+        .id(id.with("edit"))
+        .desired_width(220.0);
+    let response = ui.add(edit);
+    response.widget_info(|| {
+        let mut info = WidgetInfo::labeled(WidgetType::TextEdit, true, name);
+        info.current_text_value = Some(now.clone());
+        info
+    });
+    if response.lost_focus() {
+        ui.data_mut(|d| d.remove::<String>(id));
+        return (now != text).then_some(now);
+    }
+    if response.has_focus() {
+        ui.data_mut(|d| d.insert_temp(id, now));
+    }
+    None
+}

@@ -126,7 +126,7 @@ impl StoreWorker {
     }
 }
 
-/// The message of what is only told if it fails.
+/// The message of what is only reported if it fails.
 fn failure(done: Result<(), DbError>) -> Option<StoreMessage> {
     let error = done.err()?;
     Some(StoreMessage::Failed(sentence(&error.to_string())))

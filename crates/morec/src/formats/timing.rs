@@ -103,7 +103,7 @@ impl Schedule {
         // Printed times have few digits: a step may be off by one of the last.
         let allowed = IRREGULAR * usual_secs + 0.0011;
         let odd = steps.iter().filter(|s| (*s - usual_secs).abs() > allowed);
-        // A few long pauses are no odd steps to speak of, and make another mean.
+        // A few long pauses are not odd steps, and make another mean.
         let paused = (mean_secs / usual_secs - 1.0).abs() > SAME_RATE;
         if paused || odd.count() as f64 > MANY * steps.len() as f64 {
             let rate_hz = stated.unwrap_or(rounded(1.0 / usual_secs)).clamp(1e-3, 1e5);

@@ -137,7 +137,10 @@ fn the_tree_alone_is_enough() {
             wrong.push(format!("{}: {differ:?}", case.title));
         }
         assert!(
-            found.notes.iter().any(|n| n.contains("toes point")),
+            found
+                .notes
+                .iter()
+                .any(|n| n.contains("inferred from the toes")),
             "{}",
             case.title
         );
