@@ -46,7 +46,8 @@ pub struct CopiedStretch {
 impl ImportSummary {
     /// True if there is more to say than the number of files.
     pub fn says_anything(&self) -> bool {
-        !self.refused.is_empty()
+        self.cancelled
+            || !self.refused.is_empty()
             || !self.warnings.is_empty()
             || !self.copies.is_empty()
             || !self.labels.is_empty()

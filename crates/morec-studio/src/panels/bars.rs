@@ -233,15 +233,7 @@ fn jobs(ui: &mut Ui, state: &State, out: Out) {
         let stage = job.stage();
         ui.add(egui::Spinner::new().size(13.0));
         ui.label(RichText::new(&job.name).size(12.0));
-        if let Some(share) = stage.share() {
-            ui.add(
-                egui::ProgressBar::new(share)
-                    .desired_width(90.0)
-                    .desired_height(5.0),
-            );
-            let text = format!("{} {} of {}", stage.name, stage.done, stage.total);
-            ui.label(RichText::new(text).size(11.0).weak());
-        }
+        // Before the bar, whose text grows: a button that moves is missed by a click.
         let text = if job.is_cancelled() {
             "stopping …"
         } else {
@@ -250,6 +242,15 @@ fn jobs(ui: &mut Ui, state: &State, out: Out) {
         let button = Button::new(RichText::new(text).size(11.0)).small();
         if ui.add_enabled(!job.is_cancelled(), button).clicked() {
             out.push(Command::Cancel(at));
+        }
+        if let Some(share) = stage.share() {
+            ui.add(
+                egui::ProgressBar::new(share)
+                    .desired_width(90.0)
+                    .desired_height(5.0),
+            );
+            let text = format!("{} {} of {}", stage.name, stage.done, stage.total);
+            ui.label(RichText::new(text).size(11.0).weak());
         }
         ui.separator();
     }
