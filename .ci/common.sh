@@ -108,12 +108,27 @@ have_cargo_deny() {
     cargo deny --version >/dev/null 2>&1
 }
 
-# Builds the Python package with the given profile and installs it into the environment.
+# Installs the Python package into the environment, as it lies in the folder, around the library as it is compiled in the workspace:
+# a wheel's own build chooses fewer features of what several crates share, and compiles everything once more.
+install_module() {
+    local site
+    site=$("$venv/bin/python" -c 'import sysconfig; print(sysconfig.get_path("purelib"))')
+    run cargo build --workspace --lib
+    rm -rf "$site/morec"
+    cp -R crates/morec-py/python/morec "$site/morec"
+    if [ -e target/debug/lib_morec.dylib ]; then
+        cp target/debug/lib_morec.dylib "$site/morec/_morec.abi3.so"
+    else
+        cp target/debug/lib_morec.so "$site/morec/_morec.abi3.so"
+    fi
+}
+
+# Builds the wheel as it is released and installs it into the environment.
 install_wheel() {
     rm -rf target/wheels
     (
         cd crates/morec-py
-        PATH="$venv/bin:$PATH" run maturin build --profile "$1" --out ../../target/wheels
+        PATH="$venv/bin:$PATH" run maturin build --out ../../target/wheels
     )
     run "$venv/bin/pip" install -q --force-reinstall --no-deps target/wheels/morec-*.whl
     ls -l target/wheels
