@@ -113,7 +113,8 @@ have_cargo_deny() {
 install_module() {
     local site
     site=$("$venv/bin/python" -c 'import sysconfig; print(sysconfig.get_path("purelib"))')
-    run cargo build --workspace --lib
+    # With the tests, whose dependencies have more features than without.
+    run cargo build --workspace --lib --tests
     rm -rf "$site/morec"
     cp -R crates/morec-py/python/morec "$site/morec"
     if [ -e target/debug/lib_morec.dylib ]; then
