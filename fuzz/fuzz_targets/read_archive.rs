@@ -5,7 +5,12 @@ use std::path::Path;
 
 use libfuzzer_sys::fuzz_target;
 use morec::files::FileReader;
+use morec_fuzz::LIMITS;
 
 fuzz_target!(|bytes: &[u8]| {
-    let _ = FileReader::default().parse(Path::new("clip"), bytes);
+    let reader = FileReader {
+        limits: LIMITS,
+        ..FileReader::default()
+    };
+    let _ = reader.parse(Path::new("clip"), bytes);
 });

@@ -14,6 +14,7 @@ use morec::live::axis::{AxisOptions, AxisReceiver, AxisSkeleton};
 use morec::live::{Frame, Source, SourceCounts, SourceEvent, wall_now_secs};
 
 use crate::error::Context;
+use crate::places::machine_number;
 use crate::{Address, LiveError, Notices};
 
 /// A source must not wait longer than this.
@@ -121,9 +122,11 @@ impl Source for AxisSource {
                 Err(RecvTimeoutError::Timeout) => {}
                 Err(RecvTimeoutError::Disconnected) => thread::sleep(WAIT),
             },
-            From::Udp(socket, buffer) => match socket.recv(buffer) {
-                Ok(length) => {
-                    self.receiver.bytes(wall_now_secs(), &buffer[..length]);
+            From::Udp(socket, buffer) => match socket.recv_from(buffer) {
+                Ok((length, from)) => {
+                    let machine = machine_number(from.ip());
+                    let bytes = &buffer[..length];
+                    self.receiver.bytes_from(machine, wall_now_secs(), bytes);
                     self.receiver.cut();
                 }
                 Err(error)

@@ -40,6 +40,14 @@ fn machine_at(address: IpAddr) -> IpAddr {
     }
 }
 
+/// A number for the machine at an address.
+pub fn machine_number(address: IpAddr) -> u128 {
+    match machine_at(address) {
+        IpAddr::V4(v4) => v4.to_ipv6_mapped().to_bits(),
+        IpAddr::V6(v6) => v6.to_bits(),
+    }
+}
+
 /// The machine that holds the most places (`held` has the machine of each place), if it holds at least two more than
 /// `newcomer`.
 pub fn largest_holder(held: &[IpAddr], newcomer: IpAddr) -> Option<IpAddr> {

@@ -120,10 +120,14 @@ impl Diagnoser {
     /// Takes the pose at `time_secs` on the stream's clock, which arrived at `arrived_secs` on any clock. O(roles), no
     /// allocation, never fails.
     pub fn push(&mut self, time_secs: f64, arrived_secs: f64, pose: &KeyPose) {
+        let repeated = *pose == self.last && self.looked > 0.0;
+        if repeated && self.timing.is_copy(time_secs) {
+            self.timing.copy();
+            return;
+        }
         let Some(interval) = self.timing.push(time_secs, arrived_secs) else {
             return;
         };
-        let repeated = *pose == self.last && self.looked > 0.0;
         if repeated {
             self.timing.repeat();
         } else {

@@ -132,6 +132,21 @@ impl Timing {
         }
     }
 
+    /// True if a frame at this time that shows the same as the one before is the same packet, come twice: no sender is so
+    /// fast. What lies between the two is no interval of the stream.
+    pub(super) fn is_copy(&self, time_secs: f64) -> bool {
+        const LEAST_SECS: f64 = 1e-3;
+        let interval = time_secs - self.last_secs;
+        interval > 0.0 && interval < LEAST_SECS
+    }
+
+    /// Counts such a frame.
+    pub(super) fn copy(&mut self) {
+        self.frames += 1;
+        self.taken += 1.0;
+        self.repeated += 1.0;
+    }
+
     /// The frame just taken shows the same as the one before.
     pub(super) fn repeat(&mut self) {
         self.repeated += 1.0;

@@ -82,7 +82,7 @@ impl fmt::Display for Finding {
             ),
             FramesRepeated { share } => write!(
                 f,
-                "{} of the frames repeat the one before: the sender is faster than its tracker, which does no harm",
+                "{} of the frames repeat the one before: the sender is faster than its tracker, or every packet comes twice, which does no harm",
                 percent(share)
             ),
             UnevenArrival { jitter_secs } => write!(

@@ -92,8 +92,9 @@ impl FeatureParams {
             ("velocity_weight", self.velocity_weight),
             ("root_weight", self.root_weight),
         ];
-        if let Some((name, value)) = weights.iter().find(|(_, v)| !(v.is_finite() && *v >= 0.0)) {
-            return Err(format!("{name} must be 0 or more, found {value}"));
+        // Directions have the weight 1: beside a weight beyond all use nothing else would count.
+        if let Some((name, value)) = weights.iter().find(|(_, v)| !(0.0..=100.0).contains(v)) {
+            return Err(format!("{name} must be 0 to 100, found {value}"));
         }
         if !(1..=64).contains(&self.frames_per_tick) {
             return Err(format!(
@@ -107,10 +108,11 @@ impl FeatureParams {
                 "filters must be at most 63 frames a side, found {widest}"
             ));
         }
-        // A push makes every frame since the one before: a rate without bounds would be a push without end.
-        if self.rate_hz > 1000.0 {
+        // A push makes every frame since the one before: a rate without bounds would be a push without end. At a few frames a
+        // second no motion is seen.
+        if !(10.0..=1000.0).contains(&self.rate_hz) {
             return Err(format!(
-                "rate_hz must be at most 1000, found {}",
+                "rate_hz must be 10 to 1000, found {}",
                 self.rate_hz
             ));
         }

@@ -3,7 +3,7 @@
 use super::Loaded;
 
 /// Calls `each` with every `bytes` cut short at up to `count` places and altered `count` times; the same on every run.
-pub(super) fn each(bytes: &[u8], count: usize, mut each: impl FnMut(&[u8])) {
+pub(crate) fn each(bytes: &[u8], count: usize, mut each: impl FnMut(&[u8])) {
     for k in 0..count.min(bytes.len()) {
         each(&bytes[..k * bytes.len() / count.min(bytes.len())]);
     }

@@ -21,7 +21,7 @@ mod keys;
 pub mod landmarks;
 mod loaded;
 #[cfg(test)]
-mod mangle;
+pub(crate) mod mangle;
 pub mod mclip;
 pub mod mocopi;
 pub mod mvnx;

@@ -124,7 +124,25 @@ impl TemplateModel {
             return Err(TemplateModelError::Value(message));
         }
         self.check_class_thresholds()
+            .and_then(|()| self.check_sizes())
             .map_err(TemplateModelError::Value)
+    }
+
+    /// Values of rows and covariances whose squares are no numbers any more would match everything or nothing.
+    fn check_sizes(&self) -> Result<(), String> {
+        /// Directions are within 1, velocities and the root within their saturation, all times weights of at most 100.
+        const LARGEST: f32 = 1e4;
+        let beyond = |values: &[f32], most: f32| {
+            let mut values = values.iter();
+            let value = values.find(|v| v.is_nan() || v.abs() > most)?;
+            Some(format!("values must be within {most}, found {value}"))
+        };
+        let rows = self.samples.iter().map(|sample| &sample.rows);
+        let mut rows = rows.chain(&self.negatives);
+        let mut tables = [&self.ridged, &self.total].into_iter();
+        let of_rows = rows.find_map(|rows| beyond(rows.values(), LARGEST));
+        let of_metric = || tables.find_map(|table| beyond(table.packed(), LARGEST * LARGEST));
+        of_rows.or_else(of_metric).map_or(Ok(()), Err)
     }
 
     fn check_class_thresholds(&self) -> Result<(), String> {

@@ -163,6 +163,9 @@ pub struct Verifier {
     pub classes: Vec<Exemplars>,
 }
 
+/// Evidence is measured in deviations, so that weights are a few at most.
+const LARGEST_WEIGHT: f32 = 1e4;
+
 impl Verifier {
     /// Says which part does not fit the others, if one does not.
     ///
@@ -180,6 +183,13 @@ impl Verifier {
             if exemplars.shapes.len() != n * SHAPE_ROWS || exemplars.beside.len() != n {
                 return Err(format!(
                     "exemplars of class {}: shapes and weights differ in number",
+                    exemplars.class.0
+                ));
+            }
+            let mut weights = exemplars.weights.iter();
+            if let Some(weight) = weights.find(|w| w.is_nan() || w.abs() > LARGEST_WEIGHT) {
+                return Err(format!(
+                    "exemplars of class {}: weights must be within {LARGEST_WEIGHT}, found {weight}",
                     exemplars.class.0
                 ));
             }

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::{Arc, OnceLock};
 
+use morec::features::Rows;
 use morec::index::{INDEX_VERSION, IndexError, MotionIndex, Provenance};
 use morec::live::Model;
 use morec::roles::Role;
@@ -229,6 +230,18 @@ fn figures_no_training_gives_are_refused() {
     refused(&|m| m.features.frames_per_tick = 0);
     refused(&|m| m.features.smooth_cut_frames = usize::MAX);
     refused(&|m| m.features.rate_hz = 1e12);
+    refused(&|m| m.features.rate_hz = 2.0);
+    refused(&|m| m.features.velocity_weight = 65_536.0);
+    refused(&|m| m.features.root_weight = 65_536.0);
+    for value in [3e20, f32::NAN] {
+        refused(&|m| {
+            let rows = &mut m.samples[0].rows;
+            let mut values = rows.values().to_vec();
+            values[3] = value;
+            *rows = Rows::from_values(rows.dim(), values);
+            m.step = None;
+        });
+    }
     refused(&|m| m.classes.clear());
     refused(&|m| m.decode.gate_ticks = 1 << 60);
     refused(&|m| m.decode.gate = -1.0);

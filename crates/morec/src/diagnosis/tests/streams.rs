@@ -115,6 +115,11 @@ fn frames_that_are_few_lost_repeated_or_uneven_are_reported() {
         .map(|i| (poses[i].0, poses[i & !1].1))
         .collect();
     assert_eq!(found(&held), ["frames repeated"]);
+    // Every packet comes twice, as through two network cards.
+    let doubled: Vec<Timed> = (poses.iter())
+        .flat_map(|&(secs, pose)| [(secs, pose), (secs + 1e-4, pose)])
+        .collect();
+    assert_eq!(found(&doubled), ["frames repeated"]);
     let mut diagnoser = Diagnoser::live();
     for (at, (secs, pose)) in poses.iter().enumerate() {
         // Three at once, a tenth of a second apart.

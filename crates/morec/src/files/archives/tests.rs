@@ -1,4 +1,5 @@
 use super::*;
+use crate::formats::mangle;
 use std::io;
 use std::io::Write;
 
@@ -96,4 +97,39 @@ fn a_clip_is_chosen_by_number_or_name() {
     let odd = folder.path().join("odd#2");
     std::fs::write(&odd, b"x").unwrap();
     assert_eq!(split_choice(&odd), (odd, None));
+}
+
+/// Motions with their skeletons, buffers and frames, cut and altered: whatever is wrong with one is said.
+#[test]
+fn altered_neighbours_never_panic() {
+    let frame: &[u8] = br#"{"version": 1.3, "people": []}"#;
+    let scene: &[u8] = br#"{"asset": {"version": "2.0"}, "buffers": [{"uri": "keys.bin"}, {"uri": "./keys.bin"}],
+        "bufferViews": [{"buffer": 1}], "nodes": [{"children": [1]}, {}], "skins": [{"joints": [0, 1]}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 2, "type": "SCALAR"}],
+        "animations": [{"channels": [{"sampler": 0, "target": {"node": 0, "path": "rotation"}}],
+            "samplers": [{"input": 0, "output": 0}]}]}"#;
+    let of = |changed: &str, bytes: &[u8]| {
+        let files: [(&str, &[u8]); 8] = [
+            ("13.asf", ASF),
+            ("13_29.amc", AMC),
+            ("a.gltf", scene),
+            ("keys.bin", &[0; 8]),
+            ("f_1.json", frame),
+            ("f_2.json", frame),
+            ("f_3.json", frame),
+            ("a.bvh", BVH.as_bytes()),
+        ];
+        zip_of(&files.map(|(name, own)| (name, if name == changed { bytes } else { own })))
+    };
+    for (name, own) in [
+        ("13.asf", ASF),
+        ("13_29.amc", AMC),
+        ("a.gltf", scene),
+        ("f_2.json", frame),
+    ] {
+        mangle::each(own, 60, |bytes| {
+            let read = open("all.zip", &of(name, bytes)).unwrap();
+            assert!(read.clips.iter().any(|clip| clip.name.ends_with('a')));
+        });
+    }
 }

@@ -48,8 +48,8 @@ pub struct AxisReceiver {
 #[derive(Debug)]
 struct Followed {
     rig: Arc<Rig>,
-    /// By the numbers of their avatars.
-    performers: PerformerTable<u32>,
+    /// By their machines and the numbers of their avatars.
+    performers: PerformerTable<(u128, u32)>,
     /// For each place.
     avatars: Vec<Avatar>,
     items: VecDeque<AxisItem>,
@@ -102,15 +102,21 @@ impl AxisReceiver {
         self.last_error.take()
     }
 
-    /// Takes bytes that came at `now_secs`. Any bytes will do.
+    /// Takes bytes that came at `now_secs` over a connection. Any bytes will do.
     pub fn bytes(&mut self, now_secs: f64, bytes: &[u8]) {
+        self.bytes_from(0, now_secs, bytes);
+    }
+
+    /// The same of a datagram from one of several machines, told apart by their numbers: avatars of two are two, and a machine that
+    /// holds the most places, at least two more than another, gives one to it.
+    pub fn bytes_from(&mut self, machine: u128, now_secs: f64, bytes: &[u8]) {
         let Self {
             decoder,
             followed,
             last_error,
         } = self;
         decoder.push(bytes, &mut |found| match found {
-            Ok(frame) => followed.frame(now_secs, &frame),
+            Ok(frame) => followed.frame(machine, now_secs, &frame),
             Err(error) => {
                 followed.counts.malformed += 1;
                 *last_error = Some(error);
@@ -167,10 +173,29 @@ impl AxisReceiver {
 }
 
 impl Followed {
-    fn frame(&mut self, now_secs: f64, frame: &AxisFrame<'_>) {
+    /// Takes the last place of the machine that holds the most from it, if it holds at least two more than `newcomer`.
+    fn make_room(&mut self, newcomer: u128) {
+        let count = |machine: u128| {
+            let held = self.performers.present();
+            held.filter(|(holder, _)| *holder == machine).count()
+        };
+        let holders = self.performers.present();
+        let largest = holders.copied().max_by_key(|(holder, _)| count(*holder));
+        if let Some(last) = largest.filter(|(holder, _)| count(*holder) >= count(newcomer) + 2) {
+            let items = &mut self.items;
+            let gone = |actor| items.push_back(AxisItem::Gone(actor));
+            self.performers.leave_if(|key| *key == last, gone);
+        }
+    }
+
+    fn frame(&mut self, machine: u128, now_secs: f64, frame: &AxisFrame<'_>) {
         self.counts.packets += 1;
         let begun_secs = *self.begun_secs.get_or_insert(now_secs);
-        let Some((actor, arrival)) = self.performers.arrive(frame.avatar, now_secs) else {
+        let key = (machine, frame.avatar);
+        if self.performers.find(&key).is_none() && self.performers.vacant().is_none() {
+            self.make_room(machine);
+        }
+        let Some((actor, arrival)) = self.performers.arrive(key, now_secs) else {
             self.counts.refused += 1;
             return;
         };

@@ -408,6 +408,35 @@ fn avatars_are_followed_apart_leave_and_come_back() {
     );
 }
 
+/// One machine that sends ever new avatars has no more places than are left by another.
+#[test]
+fn a_machine_leaves_room_for_others_whatever_it_sends() {
+    let mut receiver = AxisReceiver::new(&AxisOptions {
+        actors: 4,
+        ..Default::default()
+    });
+    let values = turned(&[]);
+    let mut own = std::collections::BTreeSet::new();
+    for n in 0..120 {
+        let secs = f64::from(n) / 60.0;
+        for avatar in 0..8 {
+            let number = n * 8 + avatar;
+            receiver.bytes_from(1, secs, &raw(avatar, number, [0, 0], &values));
+        }
+        receiver.tick(secs);
+        drain(&mut receiver);
+        // The other comes after half a second, with an avatar of a number that is there.
+        if n >= 30 {
+            receiver.bytes_from(2, secs, &raw(0, n, [0, 0], &values));
+            let (frames, ..) = drain(&mut receiver);
+            assert_eq!(frames.len(), 1, "frame {n}");
+            own.insert(frames[0].actor.0);
+        }
+    }
+    assert_eq!(own.len(), 1, "it keeps its place: {own:?}");
+    assert!(receiver.counts().refused > 0);
+}
+
 #[test]
 fn sizes_are_the_broadcasts() {
     let sizes =

@@ -55,10 +55,8 @@ impl PoseParams {
     pub fn check(&self) -> Result<(), String> {
         // A push makes every frame since the one before: a rate without bounds would be a push without end.
         match self.rate_hz {
-            rate if rate.is_finite() && rate > 0.0 && rate <= 1000.0 => Ok(()),
-            rate => Err(format!(
-                "rate_hz must be above 0 and at most 1000, found {rate}"
-            )),
+            rate if (10.0..=1000.0).contains(&rate) => Ok(()),
+            rate => Err(format!("rate_hz must be 10 to 1000, found {rate}")),
         }
     }
 }
