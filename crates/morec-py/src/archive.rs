@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use morec::formats::{Limits, mclip};
 use morec::import::Take;
 use morec::index::MotionIndex;
-use morec::live::{Detection, recognize_clip};
+use morec::live::{Detection, RecognizerCache};
 use morec::segment::KernelParams;
 use morec_db::{
     ClipId, Cutter, ImportOutcome, KeptClip, KeptFile, MotionDb, StoredClip, clip_rows,
@@ -204,7 +204,8 @@ pub fn recognize_kept<'py>(
 ) -> PyResult<Vec<Bound<'py, PyAny>>> {
     let index = &index.index;
     let found: Vec<Result<Vec<EventTuple>, String>> = py.detach(|| {
-        let one = |clip: &MotionColumns| recognized(index, clip);
+        let recognizers = RecognizerCache::new(&index.model);
+        let one = |clip: &MotionColumns| recognized(index, &recognizers, clip);
         clips.par_iter().map(one).collect()
     });
     values_or_errors(py, found)
@@ -222,9 +223,13 @@ pub(crate) fn values_or_errors<'py, T: IntoPyObjectExt<'py>>(
     found.into_iter().map(object).collect()
 }
 
-fn recognized(index: &MotionIndex, clip: &MotionColumns) -> Result<Vec<EventTuple>, String> {
+fn recognized(
+    index: &MotionIndex,
+    recognizers: &RecognizerCache,
+    clip: &MotionColumns,
+) -> Result<Vec<EventTuple>, String> {
     let stored = stored_motion(index, clip)?;
-    let found = recognize_clip(&index.model, &stored.clip, &stored.roles, &stored.rest);
+    let found = recognizers.recognize_clip(&stored.clip, &stored.roles, &stored.rest);
     Ok(events(index, found.map_err(|error| error.to_string())?))
 }
 

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use morec::features::{bones_of_clip, rows_of_clip};
 use morec::import::SignedAxis;
 use morec::index::MotionIndex;
-use morec::live::{Detection, Model, StartError, recognize_clip};
+use morec::live::{Detection, Model, RecognizerCache, StartError};
 use morec::roles::Role;
 use morec::templates::{MatchGate, Matcher, Metric, PerformerKind, Stretches};
 use pyo3::prelude::*;
@@ -172,12 +172,13 @@ impl PyIndex {
             .collect();
         let all = job::run(py, progress, |progress| {
             let done = AtomicUsize::new(0);
+            let recognizers = RecognizerCache::new(&index.model);
             let one = |data: &Arc<ClipData>| -> Option<Recognized> {
                 if progress.cancelled() {
                     return None;
                 }
                 let data = completed(&index, data);
-                let found = recognize_clip(&index.model, &data.clip, &data.roles, &data.rest);
+                let found = recognizers.recognize_clip(&data.clip, &data.roles, &data.rest);
                 let done = done.fetch_add(1, Ordering::Relaxed) + 1;
                 progress.report("recognising", done, clips.len());
                 Some((data.clip.name.clone(), lacks(&index, &data), found))

@@ -11,7 +11,7 @@ use morec::import::{ImportOptions, Take};
 use morec::index::MotionIndex;
 use morec::labels::{FOUND_HEADER, FoundLine};
 use morec::live::vmc::Bundling;
-use morec::live::{Detection, Model, PoseExtractor, recognize_clip, recognize_clip_in_session};
+use morec::live::{Detection, Model, PoseExtractor, RecognizerCache, recognize_clip_in_session};
 use morec::roles::Role;
 use morec::templates::PerformerKind;
 
@@ -187,8 +187,9 @@ fn recognize_all(
     let mut stats = Stats::default();
     let mut failed = false;
     let mut progress = SlowProgress::new(paths.len(), "recognising");
+    let recognizers = RecognizerCache::new(&index.model);
     for path in paths {
-        match recognize_file(path, index, options, args, &mut stats) {
+        match recognize_file(path, index, &recognizers, options, args, &mut stats) {
             Ok(found) => found
                 .iter()
                 .try_for_each(|f| write_found(out, args.form, f, index))?,
@@ -217,6 +218,7 @@ struct FoundInClip {
 fn recognize_file(
     path: &Path,
     index: &MotionIndex,
+    recognizers: &RecognizerCache,
     options: &ImportOptions,
     args: &Args,
     stats: &mut Stats,
@@ -233,7 +235,7 @@ fn recognize_file(
             None => {
                 let (clip, roles, rest) = (&imported.clip, &imported.roles, imported.rest());
                 let found = stats.recognising(clip.frames, || match args.layout {
-                    LayoutArg::Inline => Ok(recognize_clip(&index.model, clip, roles, rest)?),
+                    LayoutArg::Inline => Ok(recognizers.recognize_clip(clip, roles, rest)?),
                     layout => {
                         let options = layout.options();
                         recognize_clip_in_session(&index.model, clip, roles, rest, &options)

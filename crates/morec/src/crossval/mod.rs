@@ -10,7 +10,7 @@ use crate::eval::{ClipDetection, GroundTruth, StreamInfo, event_pairs};
 use crate::explain::{Miss, Sought, explain};
 use crate::features::for_each_pose;
 use crate::labels::Sample;
-use crate::live::{Detection, Model, StartError, recognize_clip, recognize_poses};
+use crate::live::{Detection, Model, RecognizerCache, StartError};
 use crate::perturb::{Perturbation, Perturbed, perturb};
 use crate::progress::Progress;
 use crate::train::{
@@ -207,6 +207,7 @@ fn run_fold(
         .collect();
     let test = FoldTest {
         model: &model,
+        recognizers: &RecognizerCache::new(&model),
         fold,
         truths: &truths,
         explains: true,
@@ -242,6 +243,7 @@ fn run_sensitivities(
         };
         let test = FoldTest {
             model: &model,
+            recognizers: &RecognizerCache::new(&model),
             ..*test
         };
         test.run(clips, None, result)?;
@@ -329,6 +331,7 @@ fn tested_clips<'a>(
 #[derive(Clone, Copy)]
 struct FoldTest<'a> {
     model: &'a Model,
+    recognizers: &'a RecognizerCache,
     fold: &'a Fold,
     truths: &'a [&'a Sample],
     /// True if to look for the reasons of misses.
@@ -364,8 +367,8 @@ impl FoldTest<'_> {
         let clip = test.clip;
         let copy = perturbation.map(|perturbation| perturbed(clip, perturbation));
         let found = match &copy {
-            Some(copy) => recognize_poses(self.model, &copy.poses),
-            None => recognize_clip(self.model, &clip.clip, &clip.roles, &clip.rest),
+            Some(copy) => self.recognizers.recognize_poses(&copy.poses),
+            None => (self.recognizers).recognize_clip(&clip.clip, &clip.roles, &clip.rest),
         };
         let found = found.map_err(|source| CrossvalError::Recognize {
             fold: self.fold.name.clone(),

@@ -12,7 +12,7 @@ use crate::thesis::pivots::NoPivots;
 
 use super::{
     Detection, Event, EventReader, Frame, Model, PerformerId, Phase, PoseExtractor, Recognizer,
-    Rig, Session, SessionError, SessionOptions, StartError, wall_now_secs,
+    RecognizerCache, Rig, Session, SessionError, SessionOptions, StartError, wall_now_secs,
 };
 
 /// Everything that the recogniser reports of a clip, pose by pose as it would be live; times from the clip's
@@ -26,9 +26,38 @@ pub fn recognize_clip<M: Clone + Into<Model>>(
     roles: &RoleMap,
     rest: &Span,
 ) -> Result<Vec<Detection>, StartError> {
-    let model = model.clone().into();
-    let recognizer = Recognizer::new(&model, bones_of_clip(clip, roles, rest))?;
-    recognize_with(recognizer, &model, clip, roles, rest)
+    RecognizerCache::new(model).recognize_clip(clip, roles, rest)
+}
+
+impl RecognizerCache {
+    /// [`recognize_clip`] with a recogniser of this cache: for many clips.
+    ///
+    /// # Errors
+    /// As [`recognize_clip`].
+    pub fn recognize_clip(
+        &self,
+        clip: &Clip,
+        roles: &RoleMap,
+        rest: &Span,
+    ) -> Result<Vec<Detection>, StartError> {
+        let recognizer = self.recognizer(bones_of_clip(clip, roles, rest))?;
+        recognize_with(recognizer, self.model(), clip, roles, rest)
+    }
+
+    /// [`recognize_poses`] with a recogniser of this cache.
+    ///
+    /// # Errors
+    /// As [`recognize_poses`].
+    pub fn recognize_poses(&self, poses: &[(f64, KeyPose)]) -> Result<Vec<Detection>, StartError> {
+        let bones = poses
+            .first()
+            .map_or(BoneSet::NONE, |p| BoneSet::of_pose(&p.1));
+        let mut recognizer = self.recognizer(bones)?;
+        let mut found = Vec::new();
+        recognizer.push_all(poses, &mut found);
+        found.extend_from_slice(recognizer.finish());
+        Ok(found)
+    }
 }
 
 /// Detections of `recognizer`, which is a new one for `model`, in a clip.
@@ -60,14 +89,7 @@ pub fn recognize_poses<M: Clone + Into<Model>>(
     model: &M,
     poses: &[(f64, KeyPose)],
 ) -> Result<Vec<Detection>, StartError> {
-    let bones = poses
-        .first()
-        .map_or(BoneSet::NONE, |p| BoneSet::of_pose(&p.1));
-    let mut recognizer = Recognizer::new(model, bones)?;
-    let mut found = Vec::new();
-    recognizer.push_all(poses, &mut found);
-    found.extend_from_slice(recognizer.finish());
-    Ok(found)
+    RecognizerCache::new(model).recognize_poses(poses)
 }
 
 /// A reader of the poses of `clip` for `model`; an error if that asks for rotations and the clip has none.

@@ -9,8 +9,8 @@ use std::time::Duration;
 use super::broadcast::WorkerOptions;
 use super::feed::{FeedSender, Waker, feed};
 use super::status::{SessionCounters, StatusHandle};
-use super::worker::{EventReader, RecognizerCache, StreamWorker, TurnOutcome};
-use super::{Model, SessionError, SessionOptions};
+use super::worker::{EventReader, StreamWorker, TurnOutcome};
+use super::{Model, RecognizerCache, SessionError, SessionOptions};
 
 /// Streams that may wait to be taken up by a thread.
 const OPENING: usize = 64;
@@ -54,7 +54,7 @@ impl Pool {
     /// The model's parts do not fit together, or the system refuses a thread.
     pub fn new<M: Clone + Into<Model>>(model: &M, threads: usize) -> Result<Self, SessionError> {
         let mut pool = Self {
-            cache: Arc::new(RecognizerCache::new(model.clone().into())),
+            cache: Arc::new(RecognizerCache::new(model)),
             workers: Vec::new(),
             stop: Arc::default(),
         };

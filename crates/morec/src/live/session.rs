@@ -10,8 +10,10 @@ use super::feed::{FeedReceiver, FeedSender, feed};
 use super::performer::EventOptions;
 use super::status::{SessionCounters, Status, StatusHandle};
 use super::waker::Waker;
-use super::worker::{EventReader, RecognizerCache, StreamWorker, TurnOutcome};
-use super::{Frame, Model, OverflowPolicy, SessionError, Source, SourceEvent, svrdm};
+use super::worker::{EventReader, StreamWorker, TurnOutcome};
+use super::{
+    Frame, Model, OverflowPolicy, RecognizerCache, SessionError, Source, SourceEvent, svrdm,
+};
 
 /// Distribution of recognition over threads. Events are the same.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -147,7 +149,7 @@ impl Session {
             (Threading::Inline, model) => {
                 let (worker, readers) = StreamWorker::new(
                     feed,
-                    &Arc::new(RecognizerCache::new(model)),
+                    &Arc::new(RecognizerCache::new(&model)),
                     options,
                     &cells,
                     &stop,

@@ -1,47 +1,17 @@
 //! One stream's recognition: what a session's thread, or a thread of a pool, does with one feed.
 
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
-use std::sync::{Arc, Mutex, PoisonError};
-
-use crate::features::BoneSet;
 
 pub use super::broadcast::EventReader;
 use super::broadcast::{EventBroadcast, WorkerOptions};
 use super::feed::{FeedReceiver, QueueItem};
 use super::performer::Performer;
 use super::status::SessionCounters;
-use super::{Frame, MAX_PERFORMERS, Model, PerformerId, Recognizer, Rig, wall_now_secs};
+use super::{Frame, MAX_PERFORMERS, PerformerId, RecognizerCache, Rig, wall_now_secs};
 
 /// Frames of a performer after which its diagnosis is renewed: a quarter of a second at 60 Hz.
 const DIAGNOSE_EVERY: u64 = 16;
-
-/// Recognisers ready to be copied, one for each set of bones that has come up.
-#[derive(Debug)]
-pub(super) struct RecognizerCache {
-    model: Model,
-    made: Mutex<Vec<(BoneSet, Option<Recognizer>)>>,
-}
-
-impl RecognizerCache {
-    pub(super) fn new(model: Model) -> Self {
-        Self {
-            model,
-            made: Mutex::new(Vec::new()),
-        }
-    }
-
-    /// A recogniser for `bones`; its templates are shared with all others of the same bones. `None` if the index and
-    /// the stream have no bone in common. Takes the lock, at a new skeleton only.
-    fn get(&self, bones: BoneSet) -> Option<Recognizer> {
-        let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, known)) = made.iter().find(|(of, _)| *of == bones) {
-            return known.clone();
-        }
-        let new = Recognizer::new(&self.model, bones).ok();
-        made.push((bones, new.clone()));
-        new
-    }
-}
 
 /// Result of a worker's turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -82,7 +52,7 @@ impl StreamWorker {
         stop: &Arc<AtomicBool>,
     ) -> (Self, Vec<EventReader>) {
         let (broadcast, readers) = EventBroadcast::new(options, cells, stop);
-        let performer = |i| Performer::new(&cache.model, PerformerId(i as u16), &options.events);
+        let performer = |i| Performer::new(cache.model(), PerformerId(i as u16), &options.events);
         let worker = Self {
             feed,
             performers: (0..MAX_PERFORMERS).map(performer).collect(),
@@ -137,9 +107,11 @@ impl StreamWorker {
         match self.performers.get_mut(frame.actor.index()) {
             Some(performer) => {
                 let (cache, broadcast) = (&self.cache, &mut self.broadcast);
-                performer.push(frame, &mut |bones| cache.get(bones), &mut |event| {
-                    broadcast.keep(event)
-                });
+                performer.push(
+                    frame,
+                    &mut |bones| cache.recognizer(bones).ok(),
+                    &mut |event| broadcast.keep(event),
+                );
                 let frames = &mut self.frames[frame.actor.index()];
                 *frames += 1;
                 if frames.is_multiple_of(DIAGNOSE_EVERY) {

@@ -32,8 +32,51 @@ pub struct Matcher {
     exponent: f32,
     rest_spread: f32,
     spreads: Arc<[f32]>,
+    norm_bounds: Arc<[NormBound]>,
     /// `m_T` of each template.
     means: Arc<Rows>,
+}
+
+/// A line above a template's divisor of distances, as a function of the spread of the stretch.
+#[derive(Debug, Clone, Copy)]
+struct NormBound {
+    at_zero: f32,
+    slope: f32,
+}
+
+impl NormBound {
+    /// The tangent where both spreads are `spread`: a power of at most 1 is concave, so its tangents lie above it. A margin covers
+    /// rounding.
+    fn new(exponent: f32, spread: f32) -> Self {
+        const MARGIN: f32 = 1.0 + 1e-4;
+        if spread < LEAST_SPREAD * TYPICAL_SPREAD || exponent > 1.0 {
+            return Self {
+                at_zero: f32::INFINITY,
+                slope: 0.0,
+            };
+        }
+        let at_tangent = MARGIN * norm(exponent, spread);
+        Self {
+            at_zero: (at_tangent * (1.0 - exponent / 2.0)).max(MARGIN * norm(exponent, 0.0)),
+            slope: at_tangent * exponent / (2.0 * spread),
+        }
+    }
+
+    fn at(self, spread: f32) -> f32 {
+        self.at_zero + self.slope * spread
+    }
+}
+
+/// Smaller spreads, as shares of [`TYPICAL_SPREAD`], count as this.
+const LEAST_SPREAD: f32 = 1e-3;
+
+/// Divisor of a distance where the mean spread is `spread`.
+fn norm(exponent: f32, spread: f32) -> f32 {
+    if exponent == 0.0 {
+        1.0
+    } else {
+        (spread / TYPICAL_SPREAD).max(LEAST_SPREAD).powf(exponent)
+    }
 }
 
 /// Spread of a usual template under a trained metric, the median over referee signals and Kinect gestures.
@@ -108,6 +151,9 @@ impl Matcher {
             bank: TemplateBank::new(templates, dim),
             exponent: decode.spread_exponent,
             rest_spread: decode.rest_spread,
+            norm_bounds: (spreads.iter())
+                .map(|spread| NormBound::new(decode.spread_exponent, *spread))
+                .collect(),
             spreads: spreads.into(),
             means: Arc::new(means),
         }
@@ -160,6 +206,14 @@ impl Matcher {
         stretches: &mut Stretches,
     ) -> Option<NormalizedMatch> {
         let matched = self.bank.matched(index);
+        if matched.distance >= FAR {
+            return None;
+        }
+        // Most templates end here, before a power is taken.
+        let bound = self.norm_bounds[index].at(stretches.spread(matched.age));
+        if matched.distance * (1.0 - gate.discount) >= distance * bound {
+            return None;
+        }
         let near = self.nearness(index, matched, stretches);
         if near.distance * (1.0 - gate.discount) >= distance {
             return None;
@@ -185,7 +239,8 @@ impl Matcher {
         };
         if distance < FAR {
             found.spread = stretches.spread(age);
-            found.distance = distance / self.norm((self.spreads[index] + found.spread) / 2.0);
+            found.distance =
+                distance / norm(self.exponent, (self.spreads[index] + found.spread) / 2.0);
         }
         found
     }
@@ -210,21 +265,12 @@ impl Matcher {
         }
     }
 
-    /// Divisor of a distance where the mean spread is `spread`.
-    fn norm(&self, spread: f32) -> f32 {
-        if self.exponent == 0.0 {
-            1.0
-        } else {
-            (spread / TYPICAL_SPREAD).max(1e-3).powf(self.exponent)
-        }
-    }
-
     /// Match of the first rows of template `index`, at least `least` of them, as [`TemplateBank::partial`] has it, with the
     /// distance normalised by the template's spread. O(rows).
     pub fn partial(&self, index: usize, least: usize) -> Option<PartialMatch> {
         let found = self.bank.partial(index, least)?;
         Some(PartialMatch {
-            distance: found.distance / self.norm(self.spreads[index]),
+            distance: found.distance / norm(self.exponent, self.spreads[index]),
             ..found
         })
     }
@@ -298,6 +344,31 @@ mod tests {
                 let scale = compared.distance / found.distance.max(f32::MIN_POSITIVE);
                 prop_assert!((nearer.distance - left * scale).abs() < 1e-3 * (1.0 + nearer.distance));
                 prop_assert!((nearer.rest_share * (other - 0.5 * offset) - left).abs() < 1e-2 * (1.0 + nearer.rest_share));
+            }
+        }
+
+        #[test]
+        fn the_line_lies_above_the_divisor(
+            exponent in 0.0f32..=1.0, template in 0.0f32..20.0, stretch in 0.0f32..60.0,
+        ) {
+            let line = NormBound::new(exponent, template).at(stretch);
+            prop_assert!(line >= norm(exponent, (template + stretch) / 2.0));
+        }
+
+        #[test]
+        fn whoever_is_nearer_is_found_and_nobody_else(
+            template in rows(2..9), stream in rows(1..60), within in 0.0f32..12.0, discount in 0.0f32..0.9,
+        ) {
+            let mut matcher = Matcher::new(std::slice::from_ref(&template), 3, &by_half());
+            let mut stretches = Stretches::new(3, matcher.longest_match());
+            let gate = MatchGate { discount, rest_share: 0.7 };
+            for row in stream.iter() {
+                matcher.step(row);
+                stretches.push(row);
+                let found = matcher.compare(0, &mut stretches).discounted(discount);
+                let is_nearer = found.distance < within && found.moves(0.7);
+                let nearer = matcher.nearer(0, within, gate, &mut stretches);
+                prop_assert_eq!(nearer, is_nearer.then_some(found));
             }
         }
 
