@@ -84,7 +84,7 @@ def test_the_hits_are_those_of_all_rows(many: ma.Archive, base: ma.Archive, clip
             assert fast.hits == slow.hits and len(fast.hits) > 0
             assert (fast.sketched, slow.sketched) == (IN_ALL, 0) and fast.read <= IN_ALL
     fast, _ = found(many, clips[0], 2.0, 3.5, HOW[0])
-    assert fast.read < 0.75 * IN_ALL, "some clips are not read"
+    assert fast.read < 0.9 * IN_ALL, "some clips are not read"
 
 
 def test_some_of_many_clips_are_searched_first(
@@ -112,17 +112,17 @@ def test_sketches_are_missing_stale_or_damaged(many: ma.Archive, base: ma.Archiv
     many.store.write(layout.part_name("clips", ["late"]), layout.parquet(late, layout.CLIP_SCHEMA))
     same(IN_ALL)
     ma.create(many.store.uri)
-    same(1230)
+    same(IN_ALL + 30)
     # A part that is written again with less in it: sketches of what was there do not count.
     many.store.write(layout.part_name("clips", ["late"]), layout.parquet(late[:20], layout.CLIP_SCHEMA))
     same(IN_ALL)
     assert many.add_sketches() == 1
-    same(1220)
+    same(IN_ALL + 20)
     for name, _ in many.store.list("sketches"):
         many.store.write(name, b"PAR1 no table")
     same(0)
     assert many.add_sketches() == 4
-    same(1220)
+    same(IN_ALL + 20)
     for name, _ in many.store.list("sketches"):
         many.store.delete(name)
     same(0)
@@ -189,7 +189,7 @@ def test_clips_that_show_nothing_are_no_hits(many: ma.Archive, base: ma.Archive,
     many.add_sketches()
     for wanted in HOW:
         fast, slow = found(many, clips[0], 2.0, 3.5, wanted)
-        assert fast.hits == slow.hits and fast.sketched == 1204
+        assert fast.hits == slow.hits and fast.sketched == IN_ALL + 4
 
 
 def test_mistakes_are_plain_errors(clips: list[morec.Clip]) -> None:
