@@ -10,6 +10,9 @@ const SILENCE: Duration = Duration::from_secs(2);
 /// Between two looks.
 const EVERY: Duration = Duration::from_millis(200);
 
+/// Said once of a performer for whom the wider gate opened.
+const OPENED: &str = "performs unlike the teacher: a wider gate from now on (--performer teacher keeps the narrow one)";
+
 /// Findings about one source.
 struct AdvisedSource {
     name: String,
@@ -17,6 +20,9 @@ struct AdvisedSource {
     seen: [u32; MAX_PERFORMERS],
     said: [u32; MAX_PERFORMERS],
     silence_said: bool,
+    /// Performers for whom the wider gate was closed at some look, and of whom it was said that it opened.
+    closed: [bool; MAX_PERFORMERS],
+    opening_said: [bool; MAX_PERFORMERS],
 }
 
 /// Says findings of sources, each once.
@@ -34,6 +40,8 @@ impl Advice {
             seen: [0; MAX_PERFORMERS],
             said: [0; MAX_PERFORMERS],
             silence_said: false,
+            closed: [false; MAX_PERFORMERS],
+            opening_said: [false; MAX_PERFORMERS],
         };
         let now = Instant::now();
         Self {
@@ -65,10 +73,16 @@ impl Advice {
 impl AdvisedSource {
     fn look(&mut self, status: &Status, lines: &mut Vec<String>) {
         for actor in &status.actors {
+            let at = actor.actor.index();
+            // With --performer anyone it never was closed.
+            self.closed[at] |= !actor.admits_strangers;
+            if actor.admits_strangers && self.closed[at] && !self.opening_said[at] {
+                self.opening_said[at] = true;
+                lines.push(format!("{}: {OPENED}", who(&self.name, at)));
+            }
             let Some(diagnosis) = actor.diagnosis else {
                 continue;
             };
-            let at = actor.actor.index();
             let findings = diagnosis.findings();
             for finding in findings.iter().filter(|finding| matters(finding)) {
                 let bit = finding.bit();
@@ -138,6 +152,41 @@ mod tests {
     use morec::features::KeyPose;
     use morec::live::{PerformerId, PerformerStatus};
 
+    fn performer(admits_strangers: bool) -> PerformerStatus {
+        PerformerStatus {
+            actor: PerformerId(1),
+            frames: 60,
+            time_secs: 2.0,
+            wall_secs: 2.0,
+            wait_secs: 0.0,
+            early: None,
+            last: None,
+            admits_strangers,
+            diagnosis: None,
+        }
+    }
+
+    #[test]
+    fn an_opened_gate_is_said_once_and_not_where_it_was_open_from_the_start() {
+        let said = |looks: &[bool]| {
+            let mut source = Advice::new(["here".to_owned()]).sources.remove(0);
+            let mut lines = Vec::new();
+            for is_open in looks {
+                let status = Status {
+                    frames: 60,
+                    actors: vec![performer(*is_open)],
+                    ..Status::default()
+                };
+                source.look(&status, &mut lines);
+            }
+            lines
+        };
+        let opened = said(&[false, true, true, false, true]);
+        assert_eq!(opened, [format!("here, performer 1: {OPENED}")]);
+        assert_eq!(said(&[true, true]), [""; 0]);
+        assert_eq!(said(&[false, false]), [""; 0]);
+    }
+
     #[test]
     fn a_finding_is_said_once_when_it_has_lasted_for_two_looks() {
         let mut diagnoser = Diagnoser::live();
@@ -146,14 +195,8 @@ mod tests {
             diagnoser.push(secs, secs, &KeyPose::default());
         }
         let actor = PerformerStatus {
-            actor: PerformerId(1),
-            frames: 60,
-            time_secs: 2.0,
-            wall_secs: 2.0,
-            wait_secs: 0.0,
-            early: None,
-            last: None,
             diagnosis: Some(diagnoser.diagnosis()),
+            ..performer(false)
         };
         let status = Status {
             frames: 60,

@@ -174,6 +174,12 @@ impl Performer {
             .map(|diagnoser| diagnoser.diagnosis())
     }
 
+    /// See [`Recognizer::admits_strangers`].
+    pub fn admits_strangers(&self) -> bool {
+        let recognizer = self.recognizer.as_ref();
+        recognizer.is_some_and(Recognizer::admits_strangers)
+    }
+
     /// The motion that seems to be under way.
     pub fn early_detection(&self) -> Option<EarlyDetection> {
         self.early.last_reported()

@@ -37,6 +37,9 @@ pub(super) trait Pipeline: fmt::Debug + Send + Sync {
         false
     }
 
+    /// Forgets what is known of the performer; the next stretch may be another's.
+    fn forget_performer(&mut self) {}
+
     /// Sets the limits of [`early_detection`](Self::early_detection).
     fn set_early(&mut self, _params: EarlyDetectionParams) {}
 

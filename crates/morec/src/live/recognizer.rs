@@ -95,10 +95,12 @@ impl Recognizer {
         }
     }
 
-    /// Ends the stream: returns what its last moments still hold. The next push begins a new stream.
+    /// Ends the stream: returns what its last moments still hold. The next push begins a new stream, of any performer: nothing is
+    /// kept of the one before.
     pub fn finish(&mut self) -> &[Detection] {
         self.found.begin(self.now_secs);
         self.pipeline.end_stretch(&mut self.found);
+        self.pipeline.forget_performer();
         &self.found.detections
     }
 

@@ -60,6 +60,8 @@ pub struct PerformerStatus {
     pub early: Option<(ClassId, f64)>,
     /// The last motion that ended, and its score.
     pub last: Option<(ClassId, f64)>,
+    /// True while a wider gate for performers unlike the teacher is open ([`Recognizer::admits_strangers`](super::Recognizer::admits_strangers)).
+    pub admits_strangers: bool,
     /// Findings about the stream, renewed every 16 frames.
     pub diagnosis: Option<Diagnosis>,
 }
@@ -103,6 +105,7 @@ struct PerformerCounters {
     wait: AtomicU64,
     early: AtomicU64,
     last: AtomicU64,
+    admits_strangers: AtomicBool,
     /// Written with `try_lock` only: recognition never waits for a reader.
     diagnosis: Mutex<Option<Diagnosis>>,
 }
@@ -154,6 +157,13 @@ impl SessionCounters {
             Ok(mut kept) => *kept = diagnosis,
             Err(TryLockError::Poisoned(kept)) => *kept.into_inner() = diagnosis,
             Err(TryLockError::WouldBlock) => {}
+        }
+    }
+
+    /// Whether the wider gate is open for `actor`.
+    pub(super) fn admits_strangers(&self, actor: PerformerId, is_open: bool) {
+        if let Some(cells) = self.actors.get(actor.index()) {
+            cells.admits_strangers.store(is_open, Relaxed);
         }
     }
 
@@ -224,6 +234,7 @@ impl SessionCounters {
             wait_secs: bits(&cells.wait),
             early: unpack(cells.early.load(Relaxed)),
             last: unpack(cells.last.load(Relaxed)),
+            admits_strangers: cells.admits_strangers.load(Relaxed),
             diagnosis: *cells
                 .diagnosis
                 .lock()

@@ -142,6 +142,10 @@ impl Pipeline for TemplatePipeline {
         self.engine.is_open()
     }
 
+    fn forget_performer(&mut self) {
+        self.engine.forget_performer();
+    }
+
     fn set_early(&mut self, params: EarlyDetectionParams) {
         self.early = params;
     }

@@ -112,6 +112,8 @@ impl StreamWorker {
                     &mut |bones| cache.recognizer(bones).ok(),
                     &mut |event| broadcast.keep(event),
                 );
+                self.cells
+                    .admits_strangers(frame.actor, performer.admits_strangers());
                 let frames = &mut self.frames[frame.actor.index()];
                 *frames += 1;
                 if frames.is_multiple_of(DIAGNOSE_EVERY) {
@@ -133,6 +135,8 @@ impl StreamWorker {
         if let Some(performer) = self.performers.get_mut(actor.index()) {
             performer.finish(&mut |event| self.broadcast.keep(event));
             self.cells.diagnosis(actor, performer.diagnosis());
+            self.cells
+                .admits_strangers(actor, performer.admits_strangers());
         }
     }
 

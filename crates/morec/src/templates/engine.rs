@@ -197,6 +197,14 @@ impl TemplateEngine {
         self.recent.pushed = 0;
     }
 
+    /// Forgets how the performer moves: the next row may be another performer's.
+    pub fn forget_performer(&mut self) {
+        if let Some(stranger) = &mut self.stranger {
+            stranger.level = PerformerLevel::new(&stranger.gate);
+        }
+        self.apply_rules();
+    }
+
     /// Takes the next tick's row and returns the detections that are now certain. No allocation.
     pub fn push(&mut self, row: &[f32]) -> &[TickDetection] {
         self.recent.push(row);

@@ -81,3 +81,26 @@ fn for_anyone_no_fewer_motions_are_found_and_the_recogniser_says_so() {
     };
     assert!(count(PerformerKind::Anyone) >= count(PerformerKind::Teacher));
 }
+
+#[test]
+fn the_end_of_a_stream_forgets_the_performer_and_a_pause_does_not() {
+    let mut model = taught_by_one();
+    let gate = model.stranger.as_mut().expect("one person taught");
+    // Whoever performs is far.
+    (gate.open_at, gate.close_at) = (0.0, 0.0);
+    let take = &database(71, &spec(1))[0];
+    let (bones, poses) = made::poses(take);
+    let mut recognizer = Recognizer::new(&model, bones).unwrap();
+    recognizer.push_all(&poses, &mut Vec::new());
+    assert!(recognizer.admits_strangers());
+    let (last_secs, pose) = poses[poses.len() - 1];
+    recognizer.push(last_secs + 60.0, &pose);
+    assert!(recognizer.admits_strangers(), "the same after a pause");
+    recognizer.finish();
+    assert!(!recognizer.admits_strangers());
+
+    let mut again = Vec::new();
+    recognizer.push_all(&poses, &mut again);
+    again.extend_from_slice(recognizer.finish());
+    assert_eq!(again, recognize_poses(&model, &poses).unwrap());
+}
