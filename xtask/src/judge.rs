@@ -1,5 +1,6 @@
 //! `cargo xtask judge`: recognition on every data set in every scenario, beside the last time.
 
+mod draws;
 mod measured;
 mod sets;
 mod trials;
@@ -38,6 +39,9 @@ pub struct Args {
     /// Only rows whose name contains this; may be repeated
     #[arg(long, value_name = "TEXT")]
     only: Vec<String>,
+    /// One teacher's rows with five other draws of the samples that teach, too
+    #[arg(long)]
+    draws: bool,
     /// Folder of the tables
     #[arg(long, value_name = "DIR", default_value = "target/judge")]
     out: PathBuf,
@@ -57,6 +61,9 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     });
     let sets = DataSets::read(&data)?;
     let mut trials = trials(&sets);
+    if args.draws {
+        trials.extend(draws::draws(&sets));
+    }
     let is_wanted = |row: &str| args.only.is_empty() || args.only.iter().any(|o| row.contains(o));
     for trial in &mut trials {
         trial.tests.retain(|t| is_wanted(&t.row));

@@ -10,7 +10,7 @@ use morec::train::TrainClip;
 use super::sets::{DataSets, MotionSet};
 
 /// Signals of the referee clips.
-const SIGNALS: [&str; 7] = [
+pub const SIGNALS: [&str; 7] = [
     "traveling",
     "illegal_dribble",
     "visible_count",
@@ -332,7 +332,7 @@ fn of_folds<'a>(
 }
 
 /// The first `most` samples of each class.
-fn at_most(samples: Vec<Sample>, most: usize) -> Vec<Sample> {
+pub fn at_most(samples: Vec<Sample>, most: usize) -> Vec<Sample> {
     let mut counts = BTreeMap::<String, usize>::new();
     let kept = samples.into_iter().filter(|s| {
         let count = counts.entry(s.class.clone()).or_default();
@@ -342,11 +342,11 @@ fn at_most(samples: Vec<Sample>, most: usize) -> Vec<Sample> {
     kept.collect()
 }
 
-fn people(samples: &[Sample]) -> BTreeSet<String> {
+pub fn people(samples: &[Sample]) -> BTreeSet<String> {
     samples.iter().filter_map(|s| s.person.clone()).collect()
 }
 
-fn of_person(samples: &[Sample], person: &str) -> Vec<Sample> {
+pub fn of_person(samples: &[Sample], person: &str) -> Vec<Sample> {
     let own = samples
         .iter()
         .filter(|s| s.person.as_deref() == Some(person));
@@ -355,7 +355,7 @@ fn of_person(samples: &[Sample], person: &str) -> Vec<Sample> {
 
 impl<'a> Trial<'a> {
     /// Taught by `lessons` in clips of `set`, tested on `tested`.
-    fn new(
+    pub fn new(
         row: &str,
         set: &'a MotionSet,
         lessons: Vec<Sample>,
