@@ -135,7 +135,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         }
         let statuses: Vec<Status> = handles.iter().map(StatusHandle::get).collect();
         if !args.quiet {
-            for text in advice.look(&statuses) {
+            for text in advice.look(&statuses, &index) {
                 line.clear();
                 eprintln!("morec: {text}");
             }

@@ -300,6 +300,9 @@ fn adapt(imported: &mut Take, index: &MotionIndex, path: &Path, complete: bool) 
             )
         }
     };
+    if let Some(doubt) = index.heading_doubt(imported.roles.missing().collect()) {
+        eprintln!("morec: {}: {doubt}", path.display());
+    }
     if !missing.is_empty() {
         eprintln!(
             "morec: {}: the index uses {what} that this clip does not show (missing: {}); recognising without them",

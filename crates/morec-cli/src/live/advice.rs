@@ -2,7 +2,8 @@
 
 use std::time::{Duration, Instant};
 
-use morec::diagnosis::{Finding, Severity};
+use morec::diagnosis::{Diagnosis, Finding, Severity};
+use morec::index::MotionIndex;
 use morec::live::{MAX_PERFORMERS, Status};
 
 /// Nothing has come in so long: say so.
@@ -23,6 +24,7 @@ struct AdvisedSource {
     /// Performers for whom the wider gate was closed at some look, and of whom it was said that it opened.
     closed: [bool; MAX_PERFORMERS],
     opening_said: [bool; MAX_PERFORMERS],
+    heading_said: bool,
 }
 
 /// Says findings of sources, each once.
@@ -42,6 +44,7 @@ impl Advice {
             silence_said: false,
             closed: [false; MAX_PERFORMERS],
             opening_said: [false; MAX_PERFORMERS],
+            heading_said: false,
         };
         let now = Instant::now();
         Self {
@@ -51,8 +54,9 @@ impl Advice {
         }
     }
 
-    /// News in the sources' statuses, in their order. What only one look has shown waits for the next.
-    pub fn look(&mut self, statuses: &[Status]) -> Vec<String> {
+    /// News in the statuses of sources that are compared with `index`, in their order. What only one look has shown waits for
+    /// the next.
+    pub fn look(&mut self, statuses: &[Status], index: &MotionIndex) -> Vec<String> {
         let mut lines = Vec::new();
         if self.looked.elapsed() < EVERY {
             return lines;
@@ -65,6 +69,7 @@ impl Advice {
                 lines.push(format!("{}: {}", source.name, silence(status)));
             }
             source.look(status, &mut lines);
+            source.heading(status, index, &mut lines);
         }
         lines
     }
@@ -94,6 +99,22 @@ impl AdvisedSource {
             self.seen[at] = findings.bits();
         }
     }
+
+    /// Says once that the index was trained with another heading than the stream has.
+    fn heading(&mut self, status: &Status, index: &MotionIndex, lines: &mut Vec<String>) {
+        let known = status.actors.iter().filter_map(|actor| actor.diagnosis);
+        let doubt = known.filter_map(|d| heading(&d, index)).next();
+        if let Some(doubt) = doubt.filter(|_| !self.heading_said) {
+            self.heading_said = true;
+            lines.push(format!("{}: {doubt}", self.name));
+        }
+    }
+}
+
+fn heading(diagnosis: &Diagnosis, index: &MotionIndex) -> Option<&'static str> {
+    let missing = |finding: &Finding| matches!(finding, Finding::JointsMissing { .. });
+    let known = diagnosis.findings().iter().any(missing);
+    index.heading_doubt(diagnosis.missing).filter(|_| known)
 }
 
 fn matters(finding: &Finding) -> bool {
@@ -151,6 +172,8 @@ mod tests {
     use morec::diagnosis::Diagnoser;
     use morec::features::KeyPose;
     use morec::live::{PerformerId, PerformerStatus};
+    use morec::math::Vec3;
+    use morec::roles::Role;
 
     fn performer(admits_strangers: bool) -> PerformerStatus {
         PerformerStatus {
@@ -187,22 +210,50 @@ mod tests {
         assert_eq!(said(&[false, false]), [""; 0]);
     }
 
-    #[test]
-    fn a_finding_is_said_once_when_it_has_lasted_for_two_looks() {
+    const INDEX: &[u8] = include_bytes!("../../../morec/testdata/index/v1.index");
+
+    /// Two seconds of a stream that stays in `pose`.
+    fn status_of(pose: &KeyPose) -> Status {
         let mut diagnoser = Diagnoser::live();
         for frame in 0..60 {
             let secs = f64::from(frame) / 30.0;
-            diagnoser.push(secs, secs, &KeyPose::default());
+            diagnoser.push(secs, secs, pose);
         }
         let actor = PerformerStatus {
             diagnosis: Some(diagnoser.diagnosis()),
             ..performer(false)
         };
-        let status = Status {
+        Status {
             frames: 60,
             actors: vec![actor],
             ..Status::default()
+        }
+    }
+
+    #[test]
+    fn an_index_of_whole_bodies_is_doubted_once_where_no_hips_are_seen() {
+        let mut desk = KeyPose::default();
+        desk.set(Role::LeftArm, Vec3::new(0.2, 1.4, 0.0));
+        desk.set(Role::RightArm, Vec3::new(-0.2, 1.4, 0.0));
+        let mut index = MotionIndex::from_bytes(INDEX).unwrap();
+        let mut source = Advice::new(["json:-".to_owned()]).sources.remove(0);
+        let mut said = Vec::new();
+        let mut look = |index: &MotionIndex| {
+            source.heading(&status_of(&desk), index, &mut said);
+            said.len()
         };
+        assert_eq!(look(&index), 0, "it was learned without legs");
+        for role in [Role::LeftThigh, Role::RightThigh] {
+            index.roles.insert(role, role.name().to_owned());
+        }
+        assert_eq!(look(&index), 1);
+        assert_eq!(look(&index), 1);
+        assert!(said[0].starts_with("json:-: the index takes the heading from the hips"));
+    }
+
+    #[test]
+    fn a_finding_is_said_once_when_it_has_lasted_for_two_looks() {
+        let status = status_of(&KeyPose::default());
         let mut source = Advice::new(["vmc://here".to_owned()]).sources.remove(0);
         let mut said = Vec::new();
         source.look(&status, &mut said);

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use morec::features::BoneSet;
+use morec::features::{BoneSet, HeadingLine};
 use morec::index::{MotionIndex, Provenance};
 use morec::labels::Sample;
 use morec::progress::Progress;
@@ -142,6 +142,7 @@ fn trained(
     }
     let bones = prepared.bones;
     add_mirrored(&mut prepared.set, bones, mirror, &one_sided);
+    let params = prepared.params(&params);
     let done = train(&prepared.set, prepared.bones, &params, progress).map_err(|e| match e {
         TrainError::Cancelled => JobError::Cancelled,
         other => JobError::Failed(format!("Training stopped: {other}")),
@@ -169,9 +170,10 @@ fn trained(
     })
 }
 
-/// Streams to train from. Everyday motion is the same for every index of the same bones: its rows are made once.
+/// Streams to train from. Everyday motion is the same for every index of the same bones and heading: its rows are made once.
 fn prepared(data: &TrainingData, params: &TrainParams, progress: &JobProgress) -> Prepared {
-    static EVERYDAY: Mutex<BTreeMap<BoneSet, Vec<TrainStream>>> = Mutex::new(BTreeMap::new());
+    static EVERYDAY: Mutex<BTreeMap<(BoneSet, HeadingLine), Vec<TrainStream>>> =
+        Mutex::new(BTreeMap::new());
     let labelling = LabelSet {
         samples: &data.samples,
         held_back: &[],
@@ -180,7 +182,7 @@ fn prepared(data: &TrainingData, params: &TrainParams, progress: &JobProgress) -
     };
     let mut prepared = build_train_set(&data.clips, &labelling, BoneSet::ALL, &params.features);
     let mut known = EVERYDAY.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some(streams) = known.get(&prepared.bones) {
+    if let Some(streams) = known.get(&(prepared.bones, prepared.heading)) {
         prepared.set.streams.extend_from_slice(streams);
         return prepared;
     }
@@ -192,7 +194,7 @@ fn prepared(data: &TrainingData, params: &TrainParams, progress: &JobProgress) -
     let made = streams
         .filter(|s| s.source == StreamKind::Everyday)
         .cloned();
-    known.insert(prepared.bones, made.collect());
+    known.insert((prepared.bones, prepared.heading), made.collect());
     prepared
 }
 

@@ -54,7 +54,7 @@ pub struct Diagnosis {
     pub late_share: f64,
     /// Share of the frames that show no body.
     pub empty_share: f64,
-    /// Metres in the stream's unit of length, guessed by the length of legs.
+    /// Metres in the stream's unit of length, guessed by the length of legs, of the trunk or of arms, the first that is seen.
     pub metres_per_unit: f64,
     /// True if the unit is a common one.
     pub unit_known: bool,
@@ -62,6 +62,9 @@ pub struct Diagnosis {
     pub height_m: Option<f64>,
     /// Thigh and shin, metres.
     pub leg_m: Option<f64>,
+    /// Upper arm and forearm, metres.
+    #[serde(default)]
+    pub arm_m: Option<f64>,
     /// Mean direction of a standing body; a unit vector.
     pub up: Option<[f64; 3]>,
     /// True if `up` is that of a body seen standing straight, legs included.
@@ -95,7 +98,10 @@ impl fmt::Display for Diagnosis {
             (Some(height), Some(leg)) => write!(f, "body {height:.2} m, legs {leg:.2} m")?,
             (Some(height), None) => write!(f, "body {height:.2} m")?,
             (None, Some(leg)) => write!(f, "legs {leg:.2} m")?,
-            (None, None) => f.write_str("no body")?,
+            (None, None) => match self.arm_m {
+                Some(arm) => write!(f, "half a body, arms {arm:.2} m")?,
+                None => f.write_str("no body")?,
+            },
         }
         match self.tilt_rad.map(f64::to_degrees) {
             Some(tilt) if tilt <= 12.0 => f.write_str(", upright")?,

@@ -25,7 +25,7 @@ pub use role_set::RoleSet;
 use crate::clip::{Clip, Span};
 use crate::features::{KeyPose, for_each_pose};
 use crate::math::{Axis, Vec3};
-use crate::roles::{Role, RoleMap};
+use crate::roles::{Role, RoleMap, proportions};
 
 use noise::NoiseEstimate;
 use shape::BodyShape;
@@ -184,11 +184,18 @@ impl Diagnoser {
     /// Metres in the stream's unit, and whether it is a common one.
     fn metres_per_unit(&self) -> (f64, bool) {
         let trunk = || self.shape.trunk.get().map(|trunk| trunk / TRUNK_OF_LEG);
+        let arm = || {
+            self.shape
+                .arm
+                .get()
+                .map(|arm| arm / proportions::ARM_TO_LEG)
+        };
         let Some(leg) = self
             .shape
             .leg
             .get()
             .or_else(trunk)
+            .or_else(arm)
             .filter(|leg| *leg > 1e-9)
         else {
             return (1.0, true);
@@ -209,9 +216,12 @@ impl Diagnoser {
         let shares = self.seen.map(|seen| seen / self.looked.max(1e-9));
         let body_up = self.shape.body_up();
         // A trunk that is bent now and then still points up on the mean.
-        let trunk_up = || self.shape.trunk_up().filter(|up| up.norm() > 0.8);
+        let steady = |up: &Vec3| up.norm() > 0.8;
+        let trunk_up = self.shape.trunk_up();
+        // Whose hips are not seen has the head above the shoulders.
+        let upper_up = || trunk_up.or_else(|| self.shape.head_up()).filter(steady);
         let up = body_up
-            .or_else(trunk_up)
+            .or_else(upper_up)
             .and_then(|up| up.try_normalize(0.1));
         let height = self.height();
         let hips_and_hands = self.stillness.hips_and_hands();
@@ -238,6 +248,7 @@ impl Diagnoser {
             unit_known,
             height_m: height.map(|height| height * unit),
             leg_m: self.shape.leg.get().map(|leg| leg * unit),
+            arm_m: self.shape.arm.get().map(|arm| arm * unit),
             up: up.map(Into::into),
             stands: body_up.is_some(),
             tilt_rad: up.map(|up| up.angle(&Vec3::from(*Axis::Y.unit()))),

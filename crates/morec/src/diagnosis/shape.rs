@@ -40,6 +40,7 @@ impl Mean {
 #[derive(Debug, Clone, Default)]
 pub(super) struct BodyShape {
     pub(super) leg: Mean,
+    pub(super) arm: Mean,
     pub(super) trunk: Mean,
     pub(super) neck: Mean,
     knees: Mean,
@@ -47,6 +48,8 @@ pub(super) struct BodyShape {
     hands: Mean,
     trunk_up: Vec3,
     trunk_count: f64,
+    head_up: Vec3,
+    head_count: f64,
     body_up: Vec3,
     body_count: f64,
 }
@@ -85,6 +88,10 @@ impl BodyShape {
         for leg in legs.iter().flatten() {
             self.leg.add(leg.length());
         }
+        for arm in ARMS.iter().filter_map(|roles| Leg::of(pose, *roles)) {
+            self.arm.add(arm.length());
+        }
+        self.head(pose);
         let hips = middle(pose, Role::LeftThigh, Role::RightThigh).or_else(|| pose.get(Role::Hips));
         let top = pose
             .get(Role::Neck)
@@ -100,6 +107,16 @@ impl BodyShape {
         }
         if let (Some(neck), Some(head)) = (pose.get(Role::Neck), pose.get(Role::Head)) {
             self.neck.add((head - neck).norm());
+        }
+    }
+
+    /// The way from the shoulders to the head.
+    fn head(&mut self, pose: &KeyPose) {
+        let shoulders = middle(pose, Role::LeftArm, Role::RightArm);
+        let line = || (pose.get(Role::Head)? - shoulders?).try_normalize(1e-9);
+        if let Some(line) = line() {
+            self.head_up += line;
+            self.head_count += 1.0;
         }
     }
 
@@ -145,6 +162,7 @@ impl BodyShape {
     pub(super) fn fade(&mut self, factor: f64) {
         for mean in [
             &mut self.leg,
+            &mut self.arm,
             &mut self.trunk,
             &mut self.neck,
             &mut self.knees,
@@ -155,6 +173,8 @@ impl BodyShape {
         }
         self.trunk_up *= factor;
         self.trunk_count *= factor;
+        self.head_up *= factor;
+        self.head_count *= factor;
         self.body_up *= factor;
         self.body_count *= factor;
     }
@@ -162,6 +182,11 @@ impl BodyShape {
     /// The mean way up of the trunk, a vector whose length says how much it stays so.
     pub(super) fn trunk_up(&self) -> Option<Vec3> {
         (self.trunk_count > 4.0).then(|| self.trunk_up / self.trunk_count)
+    }
+
+    /// The same of the head over the shoulders.
+    pub(super) fn head_up(&self) -> Option<Vec3> {
+        (self.head_count > 4.0).then(|| self.head_up / self.head_count)
     }
 
     /// The same of a body that stands straight.

@@ -4,7 +4,10 @@ use std::fmt;
 
 use crate::math::Axis;
 
+use crate::roles::{LEGS, Role};
+
 use super::finding::Finding;
+use super::role_set::RoleSet;
 
 fn percent(share: f64) -> String {
     if share < 0.1 {
@@ -49,10 +52,7 @@ impl fmt::Display for Finding {
                 f,
                 "nothing has moved for {secs:.1} s: the tracker has stopped or sends a fixed pose; start it or calibrate it again"
             ),
-            JointsMissing { roles } => write!(
-                f,
-                "never seen: {roles}; what an index knows of them is left out, so send them if the tracker has them"
-            ),
+            JointsMissing { roles } => joints_missing(f, roles),
             JointsFlicker { roles } => write!(
                 f,
                 "seen only at times: {roles}; keep them in view of the tracker, and away from what hides them"
@@ -124,6 +124,26 @@ fn time_unit(f: &mut fmt::Formatter<'_>, interval_secs: f64) -> fmt::Result {
         None => f.write_str(
             ": times must be in seconds (are these numbers of frames?), and frames more than 0.5 s apart are no stream",
         ),
+    }
+}
+
+fn joints_missing(f: &mut fmt::Formatter<'_>, roles: RoleSet) -> fmt::Result {
+    const ADVICE: &str =
+        "what an index knows of them is left out, so send them if the tracker has them";
+    let is_lower = |role: Role| role == Role::Hips || LEGS.as_flattened().contains(&role);
+    let mut lower = Role::ALL.into_iter().filter(|role| is_lower(*role));
+    let heading = !roles.contains(Role::LeftArm) && !roles.contains(Role::RightArm);
+    if !heading || !lower.all(|role| roles.contains(role)) {
+        return write!(f, "never seen: {roles}; {ADVICE}");
+    }
+    f.write_str(
+        "neither hips nor legs are seen: the shoulders tell which way the body faces, and motions of arms and head are \
+         recognised",
+    )?;
+    let others: RoleSet = roles.iter().filter(|role| !is_lower(*role)).collect();
+    match others.is_empty() {
+        true => Ok(()),
+        false => write!(f, "; never seen either: {others}; {ADVICE}"),
     }
 }
 

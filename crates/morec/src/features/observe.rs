@@ -1,21 +1,22 @@
 //! From joint positions to bone directions as the performer sees them.
 
 use crate::math::{Vec3, slerp_direction};
-use crate::roles::Role;
+use crate::roles::{ARMS, Role};
 
-use super::KeyPose;
 use super::bones::{ALL_BONES, BONES, BoneSet};
+use super::{HeadingLine, KeyPose};
 
 /// One frame's bone directions in the heading frame and where the root stands.
 ///
 /// The heading frame turns about the vertical with the hips: lateral axis from the right to the left hip joint
-/// without its vertical part, up is +Y, forward is lateral × up. Coordinates are (lateral, up, forward). A stream that
-/// shows no hip joints, as of a performer behind a table, has the shoulders in their place.
+/// without its vertical part, up is +Y, forward is lateral × up. Coordinates are (lateral, up, forward). The shoulders have
+/// the hips' place in a stream that shows no hip joints, as of a performer behind a table, and for an index that was trained
+/// without hips ([`HeadingLine`]).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Observation {
     /// Unit vectors, `heading_from_world` applied; zero for bones outside the set.
     pub directions: [Vec3; BONES],
-    /// World position of the hips, in the source's length unit.
+    /// World position of the hips or the middle of the shoulders, in the source's length unit.
     pub root: Vec3,
     /// Heading about +Y from +Z, continuous over time (it does not jump at ±π).
     pub yaw_rad: f64,
@@ -49,18 +50,20 @@ impl Observation {
 #[derive(Debug, Clone)]
 pub struct Observer {
     bones: BoneSet,
+    heading: HeadingLine,
     last: Option<Observation>,
     leg_sum: f64,
     leg_count: f64,
-    /// True if the hip joints have been seen: the heading then stays theirs.
+    /// True if the hip joints have been seen and count: the heading then stays theirs.
     hips_seen: bool,
 }
 
 impl Observer {
-    /// For the bones an index uses.
-    pub fn new(bones: BoneSet) -> Self {
+    /// For the bones an index uses, and what it takes the heading from.
+    pub fn new(bones: BoneSet, heading: HeadingLine) -> Self {
         Self {
             bones,
+            heading,
             last: None,
             leg_sum: 0.0,
             leg_count: 0.0,
@@ -70,7 +73,7 @@ impl Observer {
 
     /// Forgets the stream so far.
     pub fn reset(&mut self) {
-        *self = Self::new(self.bones);
+        *self = Self::new(self.bones, self.heading);
     }
 
     /// Length of a leg in the source's unit, the mean over the stream so far.
@@ -81,7 +84,8 @@ impl Observer {
     /// The observation of one pose. A bone or heading that `pose` does not show keeps its last direction;
     /// `None` until the hip joints or the shoulders have been seen once.
     pub fn observe(&mut self, pose: &KeyPose) -> Option<Observation> {
-        self.hips_seen |= pair(pose, Role::LeftThigh, Role::RightThigh).is_some();
+        self.hips_seen |= self.heading == HeadingLine::Hips
+            && pair(pose, Role::LeftThigh, Role::RightThigh).is_some();
         let yaw_rad = self.yaw(pose)?;
         let (sin, cos) = yaw_rad.sin_cos();
         let mut directions = self
@@ -146,10 +150,10 @@ impl Observer {
             .or_else(|| pair(pose, Role::LeftThigh, Role::RightThigh).map(middle));
         // Without hips the root is where the shoulders are: only its velocity counts.
         let shoulders = || pair(pose, Role::LeftArm, Role::RightArm).map(middle);
-        let seen = if self.hips_seen {
-            hips
-        } else {
-            hips.or_else(shoulders)
+        let seen = match self.heading {
+            HeadingLine::Shoulders => shoulders(),
+            HeadingLine::Hips if self.hips_seen => hips,
+            HeadingLine::Hips => hips.or_else(shoulders),
         };
         seen.or(self.last.map(|o| o.root))
     }
@@ -158,7 +162,7 @@ impl Observer {
         let leg = if self.hips_seen {
             limb(pose, [Role::LeftThigh, Role::LeftShin, Role::LeftFoot])
         } else {
-            let arm = limb(pose, [Role::LeftArm, Role::LeftForearm, Role::LeftHand]);
+            let arm = ARMS.into_iter().find_map(|arm| limb(pose, arm));
             arm.map(|length| length * LEG_OF_ARM)
         };
         if let Some(length) = leg.filter(|length| *length > 1e-9) {
@@ -215,11 +219,13 @@ mod tests {
     #[test]
     fn heading_and_size_do_not_change_directions() {
         let bones = BoneSet::of_pose(&standing(0.0, 1.0));
-        let reference = Observer::new(bones).observe(&standing(0.0, 1.0)).unwrap();
+        let reference = Observer::new(bones, HeadingLine::Hips)
+            .observe(&standing(0.0, 1.0))
+            .unwrap();
         // The left arm points forward: +Z in the heading frame.
         assert!((reference.directions[6] - Vec3::z()).norm() < 1e-12);
         for step in 0..12 {
-            let turned = Observer::new(bones)
+            let turned = Observer::new(bones, HeadingLine::Hips)
                 .observe(&standing(f64::from(step), 3.0))
                 .unwrap();
             for b in bones.indices() {
@@ -230,7 +236,7 @@ mod tests {
 
     #[test]
     fn yaw_is_continuous_over_many_turns() {
-        let mut observer = Observer::new(BoneSet::ALL);
+        let mut observer = Observer::new(BoneSet::ALL, HeadingLine::Hips);
         let mut last = 0.0;
         for step in 0..200 {
             let yaw = observer
@@ -264,17 +270,42 @@ mod tests {
             }
             pose
         };
-        let seen = Observer::new(BoneSet::ALL).observe(&upper(0.0)).unwrap();
+        let seen = Observer::new(BoneSet::ALL, HeadingLine::Hips)
+            .observe(&upper(0.0))
+            .unwrap();
         assert!((seen.directions[6] - Vec3::z()).norm() < 1e-12);
-        let turned = Observer::new(BoneSet::ALL).observe(&upper(2.0)).unwrap();
+        let turned = Observer::new(BoneSet::ALL, HeadingLine::Hips)
+            .observe(&upper(2.0))
+            .unwrap();
         assert!((turned.directions[6] - seen.directions[6]).norm() < 1e-9);
         // The upper arm is 0.3 long, and so counts the forearm, which ends nowhere.
         assert!((seen.leg_length - 0.6 * LEG_OF_ARM).abs() < 1e-9);
     }
 
     #[test]
+    fn an_index_of_shoulders_sees_the_same_with_hips_and_without() {
+        let mut whole = standing(0.3, 1.0);
+        whole.set(Role::RightArm, Vec3::new(-0.2, 1.4, 0.1));
+        let mut half = KeyPose::default();
+        for role in Role::ALL {
+            let upper = role.index() >= Role::Neck.index();
+            if let Some(place) = whole.get(role).filter(|_| upper) {
+                half.set(role, place);
+            }
+        }
+        let observe = |pose, heading| {
+            let bones = BoneSet::ARMS;
+            Observer::new(bones, heading).observe(pose).unwrap()
+        };
+        let seen = observe(&half, HeadingLine::Shoulders);
+        assert_eq!(observe(&whole, HeadingLine::Shoulders), seen);
+        assert_eq!(observe(&half, HeadingLine::Hips), seen);
+        assert_ne!(observe(&whole, HeadingLine::Hips), seen);
+    }
+
+    #[test]
     fn hips_that_were_seen_once_keep_the_heading() {
-        let mut observer = Observer::new(BoneSet::ALL);
+        let mut observer = Observer::new(BoneSet::ALL, HeadingLine::Hips);
         let seen = observer.observe(&standing(1.0, 1.0)).unwrap();
         let mut hidden = standing(2.0, 1.0);
         hidden.set(Role::LeftThigh, Vec3::from_element(f64::NAN));
@@ -283,7 +314,7 @@ mod tests {
 
     #[test]
     fn a_lost_joint_keeps_its_last_direction() {
-        let mut observer = Observer::new(BoneSet::ALL);
+        let mut observer = Observer::new(BoneSet::ALL, HeadingLine::Hips);
         let seen = observer.observe(&standing(0.0, 1.0)).unwrap();
         let mut hidden = standing(0.0, 1.0);
         hidden.set(Role::LeftForearm, Vec3::new(f64::NAN, 0.0, 0.0));

@@ -2,7 +2,7 @@
 
 use crate::clip::{Clip, Span};
 use crate::kinematics::{WorldPose, for_each_world_pose};
-use crate::roles::RoleMap;
+use crate::roles::{Role, RoleMap};
 
 use super::{BoneSet, FeatureParams, FeatureStream, KeyPose, Rows};
 
@@ -25,6 +25,17 @@ pub fn bones_of_clip(clip: &Clip, roles: &RoleMap, rest: &Span) -> BoneSet {
     }
     let world = WorldPose::of(clip, rest.end.min(clip.frames - 1));
     BoneSet::of_roles(roles).and(BoneSet::of_pose(&KeyPose::of(&world, roles)))
+}
+
+/// True if `clip` shows both hip joints in some frame behind `rest`. O(1) where the first of them does.
+pub fn shows_hips(clip: &Clip, roles: &RoleMap, rest: &Span) -> bool {
+    const HIPS: [Role; 2] = [Role::LeftThigh, Role::RightThigh];
+    let in_frame = |frame: usize| {
+        let pose = KeyPose::of(&WorldPose::of(clip, frame), roles);
+        HIPS.iter().all(|role| pose.get(*role).is_some())
+    };
+    let mapped = HIPS.iter().all(|role| roles.joint(*role).is_some());
+    mapped && (rest.end..clip.frames).any(in_frame)
 }
 
 /// The feature rows of a clip over `bones`; row `i` ends at `(i + 1) / tick_hz` seconds.

@@ -1,5 +1,27 @@
 //! The parameters that turn observations into feature rows.
 
+/// The line of the body whose turning about the vertical gives its heading, and where its root is.
+#[derive(
+    Debug,
+    Clone,
+    Copy,
+    PartialEq,
+    Eq,
+    PartialOrd,
+    Ord,
+    Default,
+    serde::Serialize,
+    serde::Deserialize,
+)]
+#[serde(rename_all = "snake_case")]
+pub enum HeadingLine {
+    /// The hips; the shoulders until hips are seen.
+    #[default]
+    Hips,
+    /// The shoulders, whether or not hips are seen.
+    Shoulders,
+}
+
 /// Parameters of resampling, smoothing and weighting. An index keeps the values it was trained with.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct FeatureParams {
@@ -24,6 +46,10 @@ pub struct FeatureParams {
     /// True if the filters follow the noise of the stream: as given while it is clean, longer as they must be.
     #[serde(default = "follows_noise")]
     pub follow_noise: bool,
+    /// Line of the body that gives the heading and the root: `hips` (shoulders until hips are seen) or `shoulders`, which training
+    /// takes by itself where a clip with samples shows no hips.
+    #[serde(default)]
+    pub heading: HeadingLine,
 }
 
 /// Indexes that say nothing of it gain by it: on clean streams nothing changes.
@@ -60,6 +86,7 @@ impl FeatureParams {
             velocity_weight: 0.5,
             root_weight: Self::ROOT_WEIGHT,
             follow_noise: false,
+            heading: HeadingLine::Hips,
         }
     }
 

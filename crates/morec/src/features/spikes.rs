@@ -5,7 +5,7 @@ use crate::roles::Role;
 
 use super::KeyPose;
 
-/// Faster than this, in metres a second relative to the hips for a leg of 0.85 m, no joint moves: thrown balls leave the
+/// Faster than this, in metres a second relative to the hips (or the shoulders, before hips are seen) for a leg of 0.85 m, no joint moves: thrown balls leave the
 /// hand at up to 45, but their hands, seen at 120 Hz, stay below 25.
 const FASTEST: f64 = 28.0;
 /// A joint that stays where it jumped to for longer than this is there.
@@ -17,30 +17,33 @@ const LEG_METRES: f64 = 0.85;
 /// A joint that is taken out counts as unseen: its bones keep their last directions. No delay, no allocation.
 #[derive(Debug, Clone)]
 pub(super) struct SpikeFilter {
-    /// Last position of each joint, relative to the hips, and its time.
+    /// Last position of each joint, relative to the hips or the shoulders, and its time.
     last: [Option<(f64, Vec3)>; Role::COUNT],
+    /// True if the hips have been seen: positions then stay relative to them.
+    hips_seen: bool,
 }
 
 impl SpikeFilter {
     pub fn new() -> Self {
         Self {
             last: [None; Role::COUNT],
+            hips_seen: false,
         }
     }
 
     pub fn reset(&mut self) {
-        self.last.fill(None);
+        *self = Self::new();
     }
 
     /// `pose` without the joints that jumped. `leg_length` gives the scale of the source's unit.
     pub fn clean(&mut self, time_secs: f64, pose: &KeyPose, leg_length: Option<f64>) -> KeyPose {
         let mut out = *pose;
-        let (Some(leg), Some(hips)) = (leg_length, pose.get(Role::Hips)) else {
+        let (Some(leg), Some(origin)) = (leg_length, self.origin(pose)) else {
             return out;
         };
         let fastest = FASTEST * leg / LEG_METRES;
         for role in Role::ALL {
-            let Some(place) = pose.get(role).map(|p| p - hips) else {
+            let Some(place) = pose.get(role).map(|p| p - origin) else {
                 continue;
             };
             let slot = &mut self.last[role.index()];
@@ -55,6 +58,19 @@ impl SpikeFilter {
             *slot = Some((time_secs, place));
         }
         out
+    }
+
+    /// The place that others are relative to.
+    fn origin(&mut self, pose: &KeyPose) -> Option<Vec3> {
+        let hips = pose.get(Role::Hips);
+        if hips.is_some() && !self.hips_seen {
+            *self = Self::new();
+            self.hips_seen = true;
+        }
+        if self.hips_seen {
+            return hips;
+        }
+        Some((pose.get(Role::LeftArm)? + pose.get(Role::RightArm)?) / 2.0)
     }
 }
 
@@ -83,6 +99,27 @@ mod tests {
         assert!(!seen(4, 5.0));
         let back: Vec<bool> = (5..12).map(|f| seen(f, 5.0)).collect();
         assert!(back[6], "it stays there: {back:?}");
+    }
+
+    #[test]
+    fn without_hips_jumps_are_seen_from_the_shoulders() {
+        let mut filter = SpikeFilter::new();
+        let mut seen = |frame: usize, x: f64, hips: bool| {
+            let mut pose = hand(x);
+            pose.set(Role::LeftArm, Vec3::new(0.2, 1.4, 0.0));
+            pose.set(Role::RightArm, Vec3::new(-0.2, 1.4, 0.0));
+            if !hips {
+                pose.set(Role::Hips, Vec3::repeat(f64::NAN));
+            }
+            let cleaned = filter.clean(frame as f64 / 30.0, &pose, Some(0.85));
+            cleaned.get(Role::LeftHand).is_some()
+        };
+        assert!(seen(0, 0.3, false));
+        assert!(!seen(1, 1.5, false), "36 m/s");
+        assert!(seen(2, 0.35, false));
+        // Hips that come into view later are no jump of all joints.
+        assert!(seen(3, 0.35, true));
+        assert!(!seen(4, 2.0, true));
     }
 
     #[test]

@@ -18,7 +18,7 @@ pub enum Pushed {
     Restarted,
     /// It was not later than the pose before it (a duplicate or a late packet) or its time is not finite.
     Ignored,
-    /// The hip joints have not been seen yet: there is no heading.
+    /// Neither the hip joints nor the shoulders have been seen yet: there is no heading.
     NoHips,
 }
 
@@ -40,7 +40,7 @@ impl FeatureStream {
     pub fn new(bones: BoneSet, params: &FeatureParams) -> Self {
         Self {
             spikes: SpikeFilter::new(),
-            observer: Observer::new(bones),
+            observer: Observer::new(bones, params.heading),
             smoother: Smoother::new(bones, params),
             grid: Grid::new(params.rate_hz),
             dim: RowLayout::of(bones).dim(),

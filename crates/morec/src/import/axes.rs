@@ -31,6 +31,9 @@ pub(super) fn choose(
 /// The axis along which the head is above the feet, over the whole clip.
 fn infer_up(clip: &Clip, body: &BodyMeasures, notes: &mut Vec<String>) -> SignedAxis {
     if body.upwards.iter().all(|v| v.norm() == 0.0) {
+        if let Some(up) = along(&body.head_over_shoulders) {
+            return up;
+        }
         if let Some(up) = floor(clip) {
             notes.push(format!(
                 "no head above feet to tell which way is up; along {up} alone everything lies above 0, so it is taken"
@@ -66,11 +69,16 @@ fn infer_up(clip: &Clip, body: &BodyMeasures, notes: &mut Vec<String>) -> Signed
 
 /// The axis along which the body stands through most of the clip; `None` where it lies, turns over or is not known.
 fn standing(body: &BodyMeasures) -> Option<SignedAxis> {
+    along(&body.upwards)
+}
+
+/// The axis that lines of a body point along through most of the clip, if one clearly is.
+fn along(lines: &[Vec3]) -> Option<SignedAxis> {
     /// A mean shorter than this share of the body, or not longer than its next axis by this factor, says little.
     const SHORT: f64 = 0.5;
     const CLEAR: f64 = 1.5;
-    let sum: Vec3 = body.upwards.iter().sum();
-    let lengths: f64 = body.upwards.iter().map(|v| v.norm()).sum();
+    let sum: Vec3 = lines.iter().sum();
+    let lengths: f64 = lines.iter().map(|v| v.norm()).sum();
     let biggest = sum.iamax();
     let next = (0..3)
         .filter(|&axis| axis != biggest)

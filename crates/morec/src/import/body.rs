@@ -15,12 +15,16 @@ pub(super) struct BodyMeasures {
     pub(super) feet_to_head: Vec<Vec3>,
     /// The same, with the highest part that is known where head and neck are not: it says which way is up.
     pub(super) upwards: Vec<Vec3>,
+    /// From the middle of the shoulders to the head, in the same frames: the way up of a body whose legs are not seen.
+    pub(super) head_over_shoulders: Vec<Vec3>,
     /// Positions of the joints that play roles, in the same frames.
     pub(super) poses: Vec<Vec<Vec3>>,
     /// Thigh and shin together.
     pub(super) leg: Option<f64>,
     /// Upper arm and forearm together.
     pub(super) arm: Option<f64>,
+    /// From the left shoulder to the right.
+    pub(super) shoulders: Option<f64>,
     /// From the middle of the hip joints to that of the shoulders.
     pub(super) trunk: Option<f64>,
     /// Leg, hips to neck, neck to head: the height of someone who stands straight, up to the head's joint.
@@ -36,6 +40,7 @@ impl BodyMeasures {
         let (mut feet_to_head, mut upwards) = (Vec::new(), Vec::new());
         let (mut legs, mut chains) = (Vec::new(), Vec::new());
         let (mut arms, mut trunks) = (Vec::new(), Vec::new());
+        let (mut shoulders, mut head_over_shoulders) = (Vec::new(), Vec::new());
         let mut poses = Vec::new();
         for frame in frames() {
             pose.set(clip, frame);
@@ -46,6 +51,8 @@ impl BodyMeasures {
             upwards.extend(head.or_else(|| extent(clip, map, &pose, &[Role::Torso, Role::Hips])));
             let leg = mean(LEGS.map(|limb| limb_length(map, &pose, limb)));
             arms.extend(mean(ARMS.map(|limb| limb_length(map, &pose, limb))));
+            shoulders.extend(distance(map, &pose, Role::LeftArm, Role::RightArm));
+            head_over_shoulders.extend(shoulders_to_head(map, &pose));
             trunks.extend(hips_to_shoulders(map, &pose));
             legs.extend(leg);
             chains.extend(leg.and_then(|leg| Some(leg + trunk_length(map, &pose)?)));
@@ -53,9 +60,11 @@ impl BodyMeasures {
         Self {
             feet_to_head,
             upwards,
+            head_over_shoulders,
             poses,
             leg: median(legs),
             arm: median(arms),
+            shoulders: median(shoulders),
             trunk: median(trunks),
             chain: median(chains),
         }
@@ -106,12 +115,18 @@ fn limb_length(map: &RoleMap, pose: &WorldPose, [upper, lower, end]: [Role; 3]) 
     Some(distance(map, pose, upper, lower)? + distance(map, pose, lower, end)?)
 }
 
+fn middle(map: &RoleMap, pose: &WorldPose, a: Role, b: Role) -> Option<Vec3> {
+    Some((pose.positions[map.joint(a)?] + pose.positions[map.joint(b)?]) / 2.0)
+}
+
 fn hips_to_shoulders(map: &RoleMap, pose: &WorldPose) -> Option<f64> {
-    let middle = |a: Role, b: Role| {
-        Some((pose.positions[map.joint(a)?] + pose.positions[map.joint(b)?]) / 2.0)
-    };
-    let hips = middle(Role::LeftThigh, Role::RightThigh)?;
-    Some((middle(Role::LeftArm, Role::RightArm)? - hips).norm())
+    let hips = middle(map, pose, Role::LeftThigh, Role::RightThigh)?;
+    Some((middle(map, pose, Role::LeftArm, Role::RightArm)? - hips).norm())
+}
+
+fn shoulders_to_head(map: &RoleMap, pose: &WorldPose) -> Option<Vec3> {
+    let shoulders = middle(map, pose, Role::LeftArm, Role::RightArm)?;
+    Some(pose.positions[map.joint(Role::Head)?] - shoulders)
 }
 
 fn trunk_length(map: &RoleMap, pose: &WorldPose) -> Option<f64> {

@@ -45,7 +45,15 @@ pub(super) fn apply(
 ) -> Result<RoleMap, ParseError> {
     let names: Vec<&str> = clip.skeleton.names().collect();
     let places = mapping.places(&names)?;
-    Ok(play(clip, map, places))
+    let states_hips = places.iter().any(|(role, _)| *role == Role::Hips);
+    let mut map = play(clip, map, places);
+    // A root that is stated to be the neck or the head is not the hips that it was taken for.
+    let hips = map.joint(Role::Hips);
+    let is_hips = |role| hips.is_some() && map.joint(role) == hips;
+    if !states_hips && (is_hips(Role::Neck) || is_hips(Role::Head)) {
+        map.set(Role::Hips, None);
+    }
+    Ok(map)
 }
 
 /// Gives each role to the joint in its place; `clip` gets new joints for places between joints.

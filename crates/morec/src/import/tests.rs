@@ -70,6 +70,71 @@ fn ready(clip: Clip) -> Take {
     normalize(clip, &ImportOptions::default()).unwrap()
 }
 
+/// The upper half of a person, as a tracker at a desk sends it: the root is the neck, and lengths are millimetres.
+fn at_a_desk(neck: &str) -> Clip {
+    let joints: [(&str, Option<usize>, [f64; 3]); 8] = [
+        (neck, None, [0.0, 1250.0, 600.0]),
+        ("Head", Some(0), [0.0, 180.0, 20.0]),
+        ("LeftShoulder", Some(0), [170.0, -40.0, 0.0]),
+        ("LeftElbow", Some(2), [30.0, -250.0, 20.0]),
+        ("LeftHand", Some(3), [-20.0, 20.0, 240.0]),
+        ("RightShoulder", Some(0), [-170.0, -40.0, 0.0]),
+        ("RightElbow", Some(5), [-30.0, -250.0, 20.0]),
+        ("RightHand", Some(6), [20.0, 20.0, 240.0]),
+    ];
+    let joint = |&(name, parent, [x, y, z]): &(&str, Option<usize>, [f64; 3])| Joint {
+        name: name.to_owned(),
+        parent,
+        offset: Vec3::new(x, y, z),
+        tip: None,
+    };
+    let skeleton = Skeleton::new(joints.iter().map(joint).collect()).unwrap();
+    let frames = 90;
+    let rotations = (0..frames).flat_map(|frame| {
+        let mut pose = vec![Quat::identity(); 8];
+        pose[5] = Axis::X.rotation(-0.6 * (0.1 * frame as f64).sin().abs());
+        pose
+    });
+    Clip {
+        name: "desk".to_owned(),
+        rate_hz: 30.0,
+        rotations: rotations.collect(),
+        tracks: Vec::new(),
+        skeleton,
+        frames,
+        repaired: Vec::new(),
+        points: None,
+    }
+}
+
+#[test]
+fn half_a_body_is_a_body() {
+    let stated = Mapping::read(b"neck\tTop\n").unwrap();
+    for (neck, mapping) in [("Neck", None), ("Top", Some(stated))] {
+        let options = ImportOptions {
+            mapping,
+            ..ImportOptions::default()
+        };
+        let take = normalize(at_a_desk(neck), &options).unwrap();
+        assert_eq!(take.roles.joint(Role::Hips), None, "{neck}");
+        assert_eq!(take.roles.joint(Role::Neck), Some(0), "{neck}");
+        assert_eq!(take.roles.joint(Role::RightHand), Some(7), "{neck}");
+        assert_eq!(take.report.unit, Some("mm"), "{neck}");
+        assert_eq!(take.report.doubts, [""; 0], "{neck}");
+        assert_eq!(take.report.notes, [""; 0], "{neck}");
+        assert_eq!(take.bones().len(), 6, "shoulders, arms and head");
+        let found = crate::diagnosis::diagnose_clip(&take.clip, &take.roles, take.rest());
+        let worst = found.findings().worst().map(|finding| finding.severity());
+        assert_eq!(worst, Some(crate::diagnosis::Severity::Info), "{neck}");
+    }
+    // Z up: the head says so.
+    let mut lying = at_a_desk("Neck");
+    let turn = |v: Vec3| Vec3::new(v.x, -v.z, v.y);
+    lying.skeleton.map_offsets(|_, offset| turn(offset));
+    lying.rotations.fill(Quat::identity());
+    assert_eq!(ready(lying).report.up.to_string(), "z");
+}
+
 /// Puts a T-pose (all rotations zero) before the motion.
 fn with_t_pose(mut clip: Clip) -> Clip {
     let zero = vec![Quat::identity(); clip.skeleton.len()];

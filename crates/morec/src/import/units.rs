@@ -94,8 +94,24 @@ fn size(body: &BodyMeasures, up: SignedAxis) -> Option<f64> {
         [_, middle, _] => Some(*middle),
         [a, b] => Some((a * b).sqrt()),
         [one] if body.leg.is_some() => Some(*one),
-        _ => height(body, up).map(|height| height / HEIGHT),
+        _ => height(body, up)
+            .map(|height| height / HEIGHT)
+            .or_else(|| size_of_arms(body)),
     }
+}
+
+/// The same of a body without legs.
+fn size_of_arms(body: &BodyMeasures) -> Option<f64> {
+    const ARM: f64 = human::LEG * human::ARM_TO_LEG;
+    let arm = body.arm.map(|arm| arm / ARM);
+    let shoulders = body
+        .shoulders
+        .map(|breadth| breadth / (ARM * human::BETWEEN_SHOULDERS));
+    let size = match (arm, shoulders) {
+        (Some(a), Some(b)) => Some((a * b).sqrt()),
+        (a, b) => a.or(b),
+    };
+    size.filter(|&size| size > 0.0)
 }
 
 /// How tall a person with limbs and trunk of this size is, metres; what lies outside is doubted.

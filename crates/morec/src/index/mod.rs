@@ -31,6 +31,8 @@ use std::collections::BTreeMap;
 #[cfg(feature = "files")]
 use std::path::Path;
 
+use crate::diagnosis::RoleSet;
+use crate::features::HeadingLine;
 use crate::roles::{Role, RoleMap};
 
 pub use error::{INDEX_VERSION, IndexError};
@@ -84,6 +86,25 @@ impl MotionIndex {
         let path = path.as_ref();
         let written = crate::files::write_whole(path, &self.to_bytes()?);
         Ok(written.map_err(|error| crate::files::FileErrorKind::Io(error).at(path))?)
+    }
+
+    /// A sentence about a stream that never shows the parts in `missing`, if the index takes the heading from the hips, saw them in
+    /// training, and the stream has shoulders alone.
+    pub fn heading_doubt(&self, missing: RoleSet) -> Option<&'static str> {
+        let Model::Templates(model) = &self.model else {
+            return None;
+        };
+        const HIPS: [Role; 2] = [Role::LeftThigh, Role::RightThigh];
+        let taught = HIPS.iter().all(|role| self.roles.contains_key(role));
+        let lacks = |left, right| missing.contains(left) || missing.contains(right);
+        let differs = model.features.heading == HeadingLine::Hips
+            && taught
+            && lacks(HIPS[0], HIPS[1])
+            && !lacks(Role::LeftArm, Role::RightArm);
+        differs.then_some(
+            "the index takes the heading from the hips, which are not seen here: the shoulders stand in for them, and motions may \
+             be missed; an index trained on recordings without hips, or with --param features.heading=shoulders, fits better",
+        )
     }
 
     /// Fills roles that `map` left empty with the joints that played them in training, where `skeleton` has

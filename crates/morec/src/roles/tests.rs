@@ -390,7 +390,9 @@ proptest! {
         };
         let skeleton = Skeleton::new(joints.iter().enumerate().map(joint).collect()).unwrap();
         let map = RoleMap::find(&skeleton);
-        prop_assert!(map.joint(Role::Hips).is_some());
+        // A root that is the neck or the head is not the hips.
+        let is_above = [Role::Neck, Role::Head].map(|role| map.joint(role)).contains(&Some(0));
+        prop_assert!(map.joint(Role::Hips).is_some() || is_above);
         let positions: Vec<Vec3> = skeleton.joints().iter().map(|joint| joint.offset).collect();
         let _doubts = check(&skeleton, &map, &[positions]);
         for role in Role::ALL {

@@ -11,9 +11,13 @@ const NECK_RISE: f64 = 0.12;
 /// Finds the joints of the trunk.
 pub(super) fn find(tree: &JointTree, pairs: &LimbPairs, found: &mut RolesFound) {
     let trunk = Trunk { tree, pairs };
-    let hips = trunk.hips();
-    found.map.set(Role::Hips, Some(hips));
+    let seen = trunk.hips();
+    // Without legs or a name for it, the root is the lowest joint of the trunk: the hips, unless it is known as something above.
+    let hips = seen.unwrap_or(0);
     let (neck, head) = trunk.neck_and_head(hips, &mut found.notes);
+    let is_above = neck == Some(hips) || head == Some(hips);
+    let root = (!is_above).then_some(hips);
+    found.map.set(Role::Hips, seen.or(root));
     found.map.set(Role::Neck, neck);
     found.map.set(Role::Head, head);
     found.map.set(Role::Torso, trunk.torso(hips, neck));
@@ -53,7 +57,7 @@ impl Trunk<'_> {
     }
 
     /// The joint at which legs and arms meet, or what is called hips next to it.
-    fn hips(&self) -> usize {
+    fn hips(&self) -> Option<usize> {
         let is_hips = |j: &usize| self.tree.kind(*j) == NameMeaning::Hips;
         let met = || {
             let meeting = self.meeting()?;
@@ -62,9 +66,7 @@ impl Trunk<'_> {
             let called = called.or_else(|| self.tree.upwards(legs).find(is_hips));
             Some(called.unwrap_or(meeting))
         };
-        met()
-            .or_else(|| self.by_name(NameMeaning::Hips))
-            .unwrap_or(0)
+        met().or_else(|| self.by_name(NameMeaning::Hips))
     }
 
     /// The first joint of the spine that is not in the hips' place.

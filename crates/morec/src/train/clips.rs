@@ -41,8 +41,9 @@ pub fn train_clips(
     }
     let (mirror, bones) = (options.mirror, prepared.bones);
     add_mirrored(&mut prepared.set, bones, mirror, &options.one_sided);
-    let trained = train(&prepared.set, prepared.bones, &options.params, progress)?;
-    let report = TrainingReport::of(&prepared, &trained, options.params.features.tick_hz());
+    let params = prepared.params(&options.params);
+    let trained = train(&prepared.set, prepared.bones, &params, progress)?;
+    let report = TrainingReport::of(&prepared, &trained, params.features.tick_hz());
     Ok((trained.model, report))
 }
 
@@ -75,8 +76,105 @@ pub fn everyday_clips(seed: u64) -> Vec<TrainClip> {
 mod tests {
     use super::*;
     use crate::clip::{Clip, Points};
+    use crate::diagnosis::RoleSet;
+    use crate::features::HeadingLine;
+    use crate::index::{MotionIndex, Provenance};
     use crate::labels::Sample;
+    use crate::live::{Model, recognize_clip};
     use crate::math::Vec3;
+    use crate::roles::{LEGS, Role};
+    use crate::synth::{Person, Script, SyntheticLabel};
+
+    /// Somebody who waves; without hips and legs if `half`.
+    fn performance(number: usize, half: bool) -> (TrainClip, Vec<Sample>) {
+        let script = Script::new(70 + number as u64, Person::draw(5, number));
+        let script = (0..3).fold(script, |s, _| s.rest(1.0).play("wave"));
+        let name = format!("clip{number}");
+        let take = script.rest(1.0).film(&name, 30.0).unwrap();
+        let mut roles = RoleMap::find(&take.clip.skeleton);
+        for role in Role::ALL {
+            if half && (LEGS.as_flattened().contains(&role) || role == Role::Hips) {
+                roles.set(role, None);
+            }
+        }
+        let sample = |label: &SyntheticLabel| Sample {
+            clip: name.clone(),
+            class: label.class.to_owned(),
+            start_secs: label.start_secs,
+            stop_secs: label.stop_secs,
+            whole_clip: false,
+            person: None,
+            line: 2,
+        };
+        let samples = take.labels.iter().map(sample).collect();
+        let clip = TrainClip {
+            name: name.clone(),
+            roles,
+            rest: 0..0,
+            source: StreamKind::Labelled,
+            person: None,
+            clip: take.clip,
+        };
+        (clip, samples)
+    }
+
+    fn trained(halves: [bool; 2]) -> (MotionIndex, TrainingReport) {
+        let both = [0, 1].map(|number| performance(number, halves[number]));
+        let clips = both.each_ref().map(|(clip, _)| clip.clone());
+        let samples: Vec<Sample> = both.into_iter().flat_map(|(_, samples)| samples).collect();
+        let labelling = LabelSet {
+            samples: &samples,
+            classes: &["wave".to_owned()],
+            ..LabelSet::default()
+        };
+        let options = TrainOptions {
+            everyday: Everyday::Never,
+            ..TrainOptions::default()
+        };
+        let (model, report) = train_clips(&clips, &labelling, &options, &()).unwrap();
+        let joints = clips[0].clip.skeleton.joints();
+        let name = |role: Role| Some((role, joints[clips[0].roles.joint(role)?].name.clone()));
+        let index = MotionIndex {
+            roles: Role::ALL.into_iter().filter_map(name).collect(),
+            provenance: Provenance::default(),
+            model: model.into(),
+        };
+        (index, report)
+    }
+
+    fn heading(index: &MotionIndex) -> HeadingLine {
+        match &index.model {
+            Model::Templates(model) => model.features.heading,
+            Model::Svrdm(_) => unreachable!(),
+        }
+    }
+
+    #[test]
+    fn an_index_learned_without_hips_keeps_to_the_shoulders() {
+        let (whole, half) = (performance(2, false).0, performance(2, true).0);
+        let missing: RoleSet = half.roles.missing().collect();
+        let found = |index: &MotionIndex, clip: &TrainClip| {
+            recognize_clip(&index.model, &clip.clip, &clip.roles, &clip.rest).unwrap()
+        };
+        for (halves, of) in [([true, true], "2 of 2"), ([false, true], "1 of 2")] {
+            let (index, report) = trained(halves);
+            let bytes = index.to_bytes().unwrap();
+            let index = MotionIndex::from_bytes(&bytes).unwrap();
+            assert_eq!(heading(&index), HeadingLine::Shoulders);
+            let said = format!("{of} clips that teach show no hips");
+            let note = report.notes.iter().find(|note| note.starts_with(&said));
+            assert!(note.unwrap().ends_with("right_forearm, head"), "{note:?}");
+            assert_eq!(index.heading_doubt(missing), None);
+            // The same is found whether or not hips are seen.
+            assert!(!found(&index, &half).is_empty());
+            assert_eq!(found(&index, &whole), found(&index, &half));
+        }
+        let (index, report) = trained([false, false]);
+        assert_eq!(heading(&index), HeadingLine::Hips);
+        assert!(!report.notes.iter().any(|note| note.contains("no hips")));
+        assert!(index.heading_doubt(missing).is_some());
+        assert_eq!(index.heading_doubt(RoleSet::default()), None);
+    }
 
     /// A hand by its joints, as trackers of hands give it.
     #[test]

@@ -6,11 +6,14 @@ use rayon::prelude::*;
 
 use crate::classes::ClassId;
 use crate::clip::{Clip, Span};
-use crate::features::{BoneSet, FeatureParams, bones_of_clip, rows_of_clip};
+use crate::features::{
+    BoneSet, FeatureParams, HeadingLine, bones_of_clip, rows_of_clip, shows_hips,
+};
 use crate::import::Take;
 use crate::labels::Sample;
 use crate::roles::RoleMap;
 
+use super::params::TrainParams;
 use super::set::{LabelledSpan, StreamKind, TrainSet, TrainStream};
 use super::templates::TrainError;
 use super::trim::motion_span;
@@ -66,8 +69,12 @@ pub struct Prepared {
     pub set: TrainSet,
     /// Bones that every labelled clip shows.
     pub bones: BoneSet,
+    /// What rows take the heading from: the shoulders if a clip that teaches shows no hips.
+    pub heading: HeadingLine,
     /// Number of clips that hold samples.
     pub teaching: usize,
+    /// Number of those among them that show no hips.
+    pub hipless: usize,
     /// Those among them that show no bone at all.
     pub bodiless: Vec<String>,
     /// Background clips left out because they lack bones that the labelled ones have.
@@ -75,6 +82,13 @@ pub struct Prepared {
 }
 
 impl Prepared {
+    /// `params` with the heading that rows were made with.
+    pub fn params(&self, params: &TrainParams) -> TrainParams {
+        let mut params = params.clone();
+        params.features.heading = self.heading;
+        params
+    }
+
     /// Why there is no bone to learn from, where [`bones`](Self::bones) is empty.
     pub fn no_bone(&self) -> TrainError {
         const NAMED: usize = 3;
@@ -111,6 +125,17 @@ pub fn build_train_set(
         .iter()
         .zip(&shown)
         .filter(|(c, _)| by_clip.contains_key(c.name.as_str()));
+    let hipless = taught
+        .clone()
+        .filter(|(c, _)| !shows_hips(&c.clip, &c.roles, &c.rest))
+        .count();
+    let params = &FeatureParams {
+        heading: match hipless {
+            0 => params.heading,
+            _ => HeadingLine::Shoulders,
+        },
+        ..params.clone()
+    };
     let bodiless = taught
         .clone()
         .filter(|(_, shown)| shown.is_empty())
@@ -137,6 +162,8 @@ pub fn build_train_set(
             streams,
         },
         bones,
+        heading: params.heading,
+        hipless,
         teaching: taught.clone().count(),
         bodiless,
         lacking: left_out.into_iter().map(|(c, _)| c.name.clone()).collect(),

@@ -68,6 +68,15 @@ impl TrainingReport {
         if copies > 0 {
             notes.push(format!("mirrored copies of {copies} samples teach too"));
         }
+        if prepared.hipless > 0 {
+            notes.push(format!(
+                "{} of {} clips that teach show no hips: the shoulders tell which way the body faces, for this index in every \
+                 stream; it looks at {}",
+                prepared.hipless,
+                prepared.teaching,
+                Vec::<String>::from(prepared.bones).join(", ")
+            ));
+        }
         if !prepared.lacking.is_empty() {
             notes.push(format!(
                 "left out because they lack bones that the labelled clips have: {}",

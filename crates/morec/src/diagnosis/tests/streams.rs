@@ -98,6 +98,36 @@ fn joints_that_are_missing_or_flicker_are_reported() {
         found(&without(&|_, role| legs(role) || arms(role))),
         ["no hip joints or shoulders", "joints missing"]
     );
+    // At a desk: a note, in words that fit, and the size by the arms in whatever unit.
+    for unit in [1.0, 1000.0] {
+        let lower = |role: Role| {
+            ["thigh", "shin", "foot", "hips", "torso"]
+                .iter()
+                .any(|part| role.name().contains(part))
+        };
+        let desk = moved(&without(&|_, role| lower(role)), |_, place| place * unit);
+        let mut diagnoser = Diagnoser::whole();
+        desk.iter()
+            .for_each(|(secs, pose)| diagnoser.push(*secs, *secs, pose));
+        let diagnosis = diagnoser.diagnosis();
+        let said: Vec<String> = diagnosis.findings().iter().map(|f| f.to_string()).collect();
+        assert_eq!(said.len(), 1, "{said:?}");
+        assert!(said[0].starts_with("neither hips nor legs"), "{said:?}");
+        assert!(!said[0].contains("never seen"), "{said:?}");
+        assert_eq!(diagnosis.metres_per_unit * unit, 1.0);
+        assert!(
+            (0.35..0.8).contains(&diagnosis.arm_m.unwrap()),
+            "{diagnosis}"
+        );
+        assert!(diagnosis.to_string().starts_with("half a body, arms"));
+        // And its vertical by the head.
+        let lying = moved(&desk, |_, p| Vec3::new(p.x, -p.z, p.y));
+        assert!(
+            found(&lying).contains(&"Y is not up"),
+            "{:?}",
+            found(&lying)
+        );
+    }
     // Skeletons without these are common, and nothing is lost.
     let spare = |role: Role| role.name().contains("shoulder") || role == Role::Torso;
     assert_eq!(found(&without(&|_, role| spare(role))), [""; 0]);
