@@ -12,8 +12,28 @@ use crate::roles::{Role, RoleMap};
 const LOOKED_AT: usize = 8;
 
 /// The doubt about a clip of points that belong to no known set.
-pub(super) const UNKNOWN: &str = "no known set of points, so no body is known: say with --roles which of them are joints, as in \
+const UNKNOWN: &str = "no known set of points, so no body is known: say with --roles which of them are joints, as in \
     `left_knee<TAB>LKNE+LKNM` for the middle of two, or leave the clip out if it shows no person";
+
+/// The doubt about a clip of the joints of a hand.
+const HAND: &str =
+    "these points are a hand's: morec recognises bodies and no hands yet, so leave the clip out";
+
+/// The doubt about a clip of points in which no body was found.
+pub(super) fn doubt(clip: &Clip) -> &'static str {
+    const WORDS: [&str; 8] = [
+        "thumb", "index", "middle", "ring", "little", "pinky", "finger", "hand",
+    ];
+    let is_of_hand = |name: &&str| {
+        let lower = name.to_ascii_lowercase();
+        WORDS.iter().any(|word| lower.contains(word))
+    };
+    let of_hand = clip.skeleton.names().filter(is_of_hand).count();
+    match of_hand * 4 >= clip.skeleton.len() * 3 {
+        true if of_hand > 0 => HAND,
+        _ => UNKNOWN,
+    }
+}
 
 /// The roles of a clip of points by tables of known sets, and the set's name.
 pub(super) fn find_roles(clip: &mut Clip) -> (RoleMap, Option<&'static str>) {

@@ -135,6 +135,50 @@ fn half_a_body_is_a_body() {
     assert_eq!(ready(lying).report.up.to_string(), "z");
 }
 
+#[test]
+fn the_points_of_a_hand_are_named_as_such() {
+    let clip = |names: &[&str]| {
+        let joint = |(at, name): (usize, &&str)| {
+            let place = |frame: usize| Vec3::new(0.02 * at as f64, 1.0, 0.001 * frame as f64);
+            ((*name).to_owned(), (0..30).map(place).collect())
+        };
+        let joints = names.iter().enumerate().map(joint);
+        Clip::of_points("points".into(), 30.0, joints, Default::default())
+    };
+    let leap = [
+        "palm",
+        "thumb_1",
+        "thumb_2",
+        "thumb_tip",
+        "index_1",
+        "index_tip",
+        "ring_1",
+        "ring_tip",
+        "little_1",
+        "little_tip",
+    ];
+    let media_pipe = [
+        "WRIST",
+        "THUMB_CMC",
+        "THUMB_TIP",
+        "INDEX_FINGER_MCP",
+        "PINKY_TIP",
+    ];
+    let numbered = ["hand_0", "hand_1", "hand_2", "hand_3"];
+    for names in [&leap[..], &media_pipe, &numbered] {
+        let doubts = ready(clip(names)).report.doubts;
+        assert!(
+            doubts[0].starts_with("these points are a hand's"),
+            "{doubts:?}"
+        );
+    }
+    let doubts = ready(clip(&["p1", "p2", "p3"])).report.doubts;
+    assert!(
+        doubts[0].starts_with("no known set of points"),
+        "{doubts:?}"
+    );
+}
+
 /// Puts a T-pose (all rotations zero) before the motion.
 fn with_t_pose(mut clip: Clip) -> Clip {
     let zero = vec![Quat::identity(); clip.skeleton.len()];
