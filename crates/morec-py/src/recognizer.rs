@@ -6,7 +6,7 @@ use morec::features::{BoneSet, KeyPose};
 use morec::import::SignedAxis;
 use morec::live::{Detection, Model, Recognizer};
 use morec::math::{Quat, Vec3};
-use morec::roles::points::{PointJoint, recognise};
+use morec::roles::points::{PointJoint, places_of};
 use morec::roles::{Role, RoleMap};
 use pyo3::intern;
 use pyo3::prelude::*;
@@ -60,10 +60,7 @@ impl PointLayout {
     /// `roles` overrides what is found.
     pub fn of_names(joints: Vec<String>, roles: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
         let names: Vec<&str> = joints.iter().map(String::as_str).collect();
-        let mut places = match by_role(&names) {
-            Some(places) => places,
-            None => recognise(&names).map_or_else(Vec::new, |found| found.roles),
-        };
+        let mut places = places_of(&names);
         if let Some(roles) = roles {
             let said = mapping(roles)?.places(&names);
             for (role, place) in said.map_err(|e| value_error(format!("roles: {e}")))? {
@@ -79,15 +76,6 @@ impl PointLayout {
         }
         Ok(Self { joints, places })
     }
-}
-
-/// Names that are those of roles, if most of them are.
-fn by_role(names: &[&str]) -> Option<Vec<(Role, PointJoint)>> {
-    let named = names.iter().enumerate();
-    let places: Vec<(Role, PointJoint)> = named
-        .filter_map(|(at, name)| Some((Role::from_name(name)?, PointJoint::Point(at))))
-        .collect();
-    (places.len() >= 5 && 2 * places.len() > names.len()).then_some(places)
 }
 
 impl PyRecognizer {

@@ -48,6 +48,19 @@ pub fn recognise(names: &[&str]) -> Option<Recognised> {
     recognise_posed(names, &[])
 }
 
+/// Who plays what among points of these names: names of roles if most are, else those of the set that they belong to.
+/// Empty if no part of a body is known. O(sets × points).
+pub fn places_of(names: &[&str]) -> Vec<(Role, PointJoint)> {
+    let named = names.iter().enumerate();
+    let by_role: Vec<(Role, PointJoint)> = named
+        .filter_map(|(at, name)| Some((Role::from_name(name)?, PointJoint::Point(at))))
+        .collect();
+    if by_role.len() >= 5 && 2 * by_role.len() > names.len() {
+        return by_role;
+    }
+    recognise(names).map_or_else(Vec::new, |found| found.roles)
+}
+
 /// [`recognise`] with the points in some frames, which settle what numbers alone do not: 17 points may be COCO's or
 /// those of Human3.6M. The set in which left and right limbs are equally long is taken.
 pub fn recognise_posed(names: &[&str], poses: &[Vec<Vec3>]) -> Option<Recognised> {

@@ -1,0 +1,182 @@
+//! The native half of `tests/conformance.mjs`: writes clips and labels of a few cases into a folder, what native morec
+//! learns and finds in them, and how long it takes.
+//!
+//!     cargo run --release -p morec-wasm --example conformance -- target/wasm/cases
+
+use std::error::Error;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use morec::files::FileReader;
+use morec::formats::bvh;
+use morec::roles::Role;
+use morec::synth::{DatabaseSpec, database};
+use morec::{ImportOptions, KeyPose, Labels, MotionIndex, Take, Trainer};
+use morec_wasm::{DetectionRow, PointOptions, PointStream};
+use serde::Serialize;
+
+type Outcome<T> = Result<T, Box<dyn Error>>;
+
+/// What both sides do: learn from some files, recognise others.
+#[derive(Serialize)]
+struct Case {
+    name: &'static str,
+    /// Table of labels.
+    labels: String,
+    learn: Vec<PathBuf>,
+    recognise: Vec<PathBuf>,
+    /// For each file in `recognise`.
+    detections: Vec<serde_json::Value>,
+    /// Microseconds a push of their frames.
+    push_us: f64,
+    frames: usize,
+}
+
+fn main() -> Outcome<()> {
+    let folder = std::env::args_os().nth(1).ok_or("expected a folder")?;
+    let folder = fs::create_dir_all(&folder).and_then(|()| fs::canonicalize(&folder))?;
+    let mut cases = vec![synthetic(&folder)?];
+    let data = std::env::var_os("MOREC_DATA").map_or_else(
+        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"),
+        PathBuf::from,
+    );
+    if data.join("sessions").is_dir() {
+        cases.push(real(&data)?);
+    }
+    for case in &mut cases {
+        finish(case, &folder)?;
+    }
+    fs::write(folder.join("cases.json"), serde_json::to_vec(&cases)?)?;
+    Ok(())
+}
+
+/// Synthetic people: three teach, one performs.
+fn synthetic(folder: &Path) -> Outcome<Case> {
+    let spec = DatabaseSpec {
+        people: 4,
+        repetitions: 2,
+        ..DatabaseSpec::default()
+    };
+    let mut labels = "clip\tclass\tstart_secs\tstop_secs\n".to_owned();
+    let mut files = Vec::new();
+    for person in database(7, &spec) {
+        let path = folder.join(format!("{}.bvh", person.clip.name));
+        let mut bytes = Vec::new();
+        bvh::write(&person.clip, &mut bytes)?;
+        fs::write(&path, bytes)?;
+        for l in &person.labels {
+            let (name, class) = (&person.clip.name, l.class);
+            labels += &format!("{name}\t{class}\t{}\t{}\n", l.start_secs, l.stop_secs);
+        }
+        files.push(path);
+    }
+    let recognise = files.split_off(3);
+    // Training refuses labels of clips that it is not given.
+    let known = |line: &&str| !line.starts_with(&*stem(&recognise[0]));
+    let labels = labels
+        .lines()
+        .filter(known)
+        .map(|line| format!("{line}\n"))
+        .collect();
+    Ok(Case::new("synthetic", labels, files, recognise))
+}
+
+/// One real person teaches every gesture twice; all people's sessions are recognised.
+fn real(data: &Path) -> Outcome<Case> {
+    let teach = fs::read_to_string(data.join("sessions/teach.tsv"))?;
+    let mut lines = teach.lines();
+    let mut labels = format!("{}\n", lines.next().unwrap_or_default());
+    let person = |line: &str| line.rsplit('\t').next().unwrap_or_default().to_owned();
+    let mut learn = Vec::new();
+    let mut first = None;
+    for line in lines {
+        if *first.get_or_insert_with(|| person(line)) == person(line) {
+            let clip = line.split('\t').next().unwrap_or_default();
+            learn.push(data.join(format!("gestures/clips/{clip}.bvh")));
+            labels += &format!("{line}\n");
+        }
+    }
+    let mut recognise: Vec<PathBuf> = fs::read_dir(data.join("sessions/clips"))?
+        .filter_map(|entry| Some(entry.ok()?.path()))
+        .filter(|path| path.extension().is_some_and(|e| e == "bvh"))
+        .collect();
+    recognise.sort();
+    Ok(Case::new("sessions", labels, learn, recognise))
+}
+
+impl Case {
+    fn new(
+        name: &'static str,
+        labels: String,
+        learn: Vec<PathBuf>,
+        recognise: Vec<PathBuf>,
+    ) -> Self {
+        Self {
+            name,
+            labels,
+            learn,
+            recognise,
+            detections: Vec::new(),
+            push_us: 0.0,
+            frames: 0,
+        }
+    }
+}
+
+fn finish(case: &mut Case, folder: &Path) -> Outcome<()> {
+    let labels = Labels::read(case.labels.as_bytes())?;
+    let index = Trainer::new().labels(&labels).train(&takes(&case.learn)?)?;
+    fs::write(
+        folder.join(format!("{}.index", case.name)),
+        index.to_bytes()?,
+    )?;
+    let mut secs = 0.0;
+    for path in &case.recognise {
+        for take in takes(std::slice::from_ref(path))? {
+            let found = index.recognize(&take)?;
+            let rows: Vec<DetectionRow<'_>> = found.iter().map(DetectionRow::from).collect();
+            case.detections.push(serde_json::to_value(rows)?);
+            secs += push_secs(&index, &take)?;
+            case.frames += take.clip.frames;
+        }
+    }
+    case.push_us = 1e6 * secs / case.frames as f64;
+    Ok(())
+}
+
+/// Seconds that pushing every pose of `take` takes, as the package pushes it.
+fn push_secs(index: &MotionIndex, take: &Take) -> Outcome<f64> {
+    let points = Role::ALL.map(Role::name);
+    let mut stream = PointStream::new(index, &points, &PointOptions::default())?;
+    let poses = take.poses();
+    let begun = Instant::now();
+    for (time_secs, pose) in &poses {
+        fill(stream.values(), pose);
+        stream.push(*time_secs, *time_secs);
+    }
+    Ok(begun.elapsed().as_secs_f64())
+}
+
+fn fill(values: &mut [f64], pose: &KeyPose) {
+    for (at, role) in values.chunks_exact_mut(3).zip(Role::ALL) {
+        let known = pose.get(role).map(|p| [p.x, p.y, p.z]);
+        at.copy_from_slice(&known.unwrap_or([f64::NAN; 3]));
+    }
+}
+
+fn takes(files: &[PathBuf]) -> Outcome<Vec<Take>> {
+    let mut takes = Vec::new();
+    for path in files {
+        let parsed = FileReader::default().parse(path, &fs::read(path)?)?;
+        takes.extend(parsed.into_takes(&ImportOptions::default())?);
+    }
+    Ok(takes)
+}
+
+fn stem(path: &Path) -> String {
+    path.file_stem()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned()
+}

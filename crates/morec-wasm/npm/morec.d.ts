@@ -1,0 +1,121 @@
+/** A label: in the clip of that name, the class happens. */
+export interface LabelRow {
+  /** Name of the clip. */
+  clip: string;
+  class: string;
+  /** Both or neither: without them the whole clip is one sample. */
+  start_secs?: number;
+  stop_secs?: number;
+  person?: string;
+}
+
+export interface LearnOptions {
+  /** Only these classes, in this order. */
+  classes?: string[];
+  /** Mirrored copies of samples. */
+  mirror?: "auto" | "yes" | "no";
+  /** Made everyday motion as background. */
+  everyday?: "auto" | "always" | "never";
+  /** What unlabelled parts of labelled clips are. */
+  unlabelled?: "background" | "ignore";
+}
+
+/** Takes a stage, steps done, steps in all; `false` cancels. */
+export type ProgressListener = (stage: string, done: number, total: number) => boolean | void;
+
+export interface TrainOptions extends LearnOptions {
+  /** Clips that hold none of the classes. */
+  background?: Clip[];
+  progress?: ProgressListener;
+}
+
+export interface RecognizerOptions {
+  /** The axis that points up; `-y` for landmarks of pictures. Y unless given. */
+  up?: "x" | "y" | "z" | "-x" | "-y" | "-z";
+  /** Report what seems to be under way, too. True unless given. */
+  early?: boolean;
+  /** A motion of the same class that ends less than this after the one before it is not reported, seconds. */
+  refractory_secs?: number;
+}
+
+/** Times are seconds. */
+export interface Detection {
+  class: string;
+  start_secs: number;
+  stop_secs: number;
+  /** 0 just accepted … 1 identical to a sample. */
+  score: number;
+  reported_secs: number;
+}
+
+export interface MotionEvent extends Detection {
+  /** `end` is final; the others say what seems to be under way. */
+  phase: "start" | "update" | "cancel" | "end";
+  /** A motion's start, updates and end share its number. */
+  motion: number;
+  /** Share of the motion that has been seen. */
+  progress: number;
+}
+
+/** x, y, z of each point; not a number where it is not seen. */
+export type Positions = Float32Array | Float64Array | number[];
+
+/** A clip in metres, Y up. */
+export class Clip {
+  private constructor();
+  /** A clip of named points, frame by frame. */
+  static fromPositions(name: string, points: string[], rate_hz: number, positions: Positions, frames: number, up?: string): Clip;
+  readonly name: string;
+  readonly frames: number;
+  readonly rate_hz: number;
+  readonly duration_secs: number;
+  /** Repairs and oddities, a sentence each. */
+  readonly warnings: string[];
+  /** Time of every frame, seconds. */
+  times(): Float64Array;
+  /** x, y, z of each of `roles()`, frame by frame. */
+  positions(): Float64Array;
+  free(): void;
+}
+
+/** A trained index. */
+export class Index {
+  private constructor();
+  static fromBytes(bytes: Uint8Array): Index;
+  /** The bytes of its file, the same as the command's. */
+  toBytes(): Uint8Array;
+  readonly classes: string[];
+  /** What training said about its material, a sentence each. */
+  readonly notes: string[];
+  /** The index with thresholds for this many false alarms a minute. */
+  withSensitivity(alarms_per_minute: number): Index;
+  /** The detections in a clip, as of a live stream. */
+  recognize(clip: Clip): Detection[];
+  /** A recogniser of a stream of points: a published set's names, usual joint names, or `roles()`. */
+  recognizer(points: string[], options?: RecognizerOptions): Recognizer;
+  free(): void;
+}
+
+/** One performer's stream. */
+export class Recognizer {
+  private constructor();
+  /** Takes a frame; the events that it settled, mostly none. */
+  push(time_secs: number, positions: Positions): readonly MotionEvent[];
+  /** Ends the stream; the next frame begins a new one. */
+  finish(): readonly MotionEvent[];
+  /** What is wrong with the stream of the last seconds, in sentences that say what to do. */
+  diagnosis(): string[];
+  /** Seconds from the end of a motion to its report at the earliest. */
+  readonly latency_secs: number;
+  free(): void;
+}
+
+/** The one clip in the bytes of a file; its name says the format where the bytes do not. */
+export function read(bytes: Uint8Array, name: string): Clip;
+/** All clips in the bytes of a file. */
+export function readAll(bytes: Uint8Array, name: string): Clip[];
+/** Trains an index; `labels` is the text of a table or rows. */
+export function train(clips: Clip[], labels: string | LabelRow[], options?: TrainOptions): Index;
+/** Names of the parts of the body. */
+export function roles(): string[];
+export function version(): string;
