@@ -1,0 +1,196 @@
+// The page: buttons, pictures and lists around `teaching.js`.
+import * as morec from "./vendor/morec/morec.js";
+import { trainInWorker } from "./vendor/morec/worker.js";
+import { LINES, camera, film, recorded } from "./sources.js";
+import { Teaching } from "./teaching.js";
+
+const MEDIAPIPE = "./vendor/mediapipe";
+const COUNTDOWN_SECS = 2;
+
+const at = (id) => document.getElementById(id);
+const teaching = new Teaching(morec, trainInWorker);
+const drawing = at("drawing").getContext("2d");
+let running = null;
+let busy = false;
+
+const say = (text) => (at("state").textContent = text);
+const wait = (secs) => new Promise((done) => setTimeout(done, 1000 * secs));
+
+/** Runs `job`; what goes wrong is said. */
+const handled = (job) => async (...given) => {
+  try {
+    await job(...given);
+  } catch (error) {
+    say(String(error?.message ?? error));
+  } finally {
+    show();
+  }
+};
+const on = (id, type, job) => at(id).addEventListener(type, handled(job));
+
+async function run(source) {
+  running?.abort();
+  const own = (running = new AbortController());
+  show();
+  try {
+    await source((secs, positions, landmarks) => {
+      teaching.pose(secs, positions);
+      draw(positions, landmarks);
+    }, own.signal);
+  } finally {
+    if (running === own) {
+      running = null;
+      teaching.finish();
+    }
+  }
+}
+
+/** The skeleton, over the picture or, without one, seen from the front. */
+function draw(positions, landmarks) {
+  const canvas = drawing.canvas;
+  [canvas.width, canvas.height] = [canvas.clientWidth, canvas.clientHeight];
+  drawing.fillStyle = drawing.strokeStyle = getComputedStyle(canvas).getPropertyValue("--accent");
+  drawing.lineWidth = 4;
+  if (landmarks) {
+    const video = at("video");
+    const scale = Math.min(canvas.width / video.videoWidth, canvas.height / video.videoHeight);
+    const [width, height] = [video.videoWidth * scale, video.videoHeight * scale];
+    const place = ({ x, y }) => [(canvas.width - width) / 2 + x * width, (canvas.height - height) / 2 + y * height];
+    drawing.beginPath();
+    for (const [from, to] of LINES) {
+      drawing.moveTo(...place(landmarks[from]));
+      drawing.lineTo(...place(landmarks[to]));
+    }
+    drawing.stroke();
+    return;
+  }
+  const scale = canvas.height / 2.4;
+  const middle = positions.hips ?? positions.neck ?? [0, 0, 0];
+  for (const place of Object.values(positions)) {
+    if (!place) continue;
+    drawing.beginPath();
+    drawing.arc(canvas.width / 2 + (place[0] - middle[0]) * scale, canvas.height / 2 - (place[1] - middle[1]) * scale, 5, 0, 7);
+    drawing.fill();
+  }
+}
+
+/** What can be done, and what there is. */
+function show() {
+  at("stop").disabled = !running;
+  at("record").disabled = at("cut").disabled = !running || busy;
+  at("train").disabled = busy || teaching.samples.length === 0;
+  at("save-samples").disabled = teaching.samples.length === 0;
+  at("undo").disabled = !teaching.canUndo;
+  at("save-index").disabled = !teaching.index;
+  at("known").textContent = teaching.index
+    ? `Recognises ${teaching.index.classes.join(", ")}.`
+    : "Train, or open an index of the studio or the command.";
+}
+
+function listClasses() {
+  const rows = [...teaching.classes()].map(([name, samples]) => {
+    const row = document.createElement("li");
+    row.append(`${name}: `);
+    samples.forEach((sample, number) => row.append(button(`Delete sample ${number + 1} of ${name}`, `✕ ${number + 1}`, () => teaching.remove(sample)), " "));
+    row.append(button(`Rename ${name}`, "Rename", () => {
+      const to = prompt(`New name of ${name}`, name);
+      if (to !== null) teaching.rename(name, to);
+    }));
+    return row;
+  });
+  at("classes").replaceChildren(...rows);
+}
+
+function button(label, text, job) {
+  const made = document.createElement("button");
+  made.setAttribute("aria-label", label);
+  made.textContent = text;
+  made.addEventListener("click", handled(job));
+  return made;
+}
+
+/** The performer's samples: a countdown, then the motion. */
+async function record() {
+  const [name, secs] = [at("name").value, Number(at("secs").value)];
+  busy = true;
+  show();
+  try {
+    for (let left = COUNTDOWN_SECS; left > 0; left--) {
+      say(`${name} in ${left} …`);
+      await wait(1);
+    }
+    say(`Perform ${name} now.`);
+    teaching.record();
+    await wait(secs);
+    teaching.keep(name);
+    say(`Kept: ${teaching.classes().get(name.trim()).length} of ${name}. Two of each are enough.`);
+  } finally {
+    busy = false;
+  }
+}
+
+async function train() {
+  busy = true;
+  show();
+  try {
+    const begun = performance.now();
+    const progress = (stage, done, total) => say(`Training: ${stage} ${done}/${total}`);
+    const notes = await teaching.train({ progress });
+    say([`Trained in ${((performance.now() - begun) / 1000).toFixed(1)} s.`, ...notes].join(" "));
+  } finally {
+    busy = false;
+  }
+}
+
+function download(bytes, name) {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(new Blob([bytes]));
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+}
+
+/** Opens the file that is chosen in `id`, and again if the same one is chosen again. */
+const onFile = (id, job) => on(id, "change", async () => {
+  const [file] = at(id).files;
+  at(id).value = "";
+  if (file) await job(file);
+});
+
+on("camera", "click", () => run(camera(at("video"), MEDIAPIPE)));
+on("stop", "click", () => running?.abort());
+onFile("source-file", async (file) => run(file.type.startsWith("video/") ? film(at("video"), MEDIAPIPE, file) : recorded(await file.text())));
+on("sample", "submit", record);
+at("sample").addEventListener("submit", (event) => event.preventDefault());
+on("cut", "click", () => {
+  teaching.cut(at("name").value, Number(at("secs").value));
+  say(`Kept the last ${at("secs").value} seconds.`);
+});
+on("train", "click", train);
+on("undo", "click", () => teaching.undo());
+on("save-samples", "click", () => download(teaching.saved(), "samples.json"));
+onFile("samples-file", async (file) => teaching.restore(await file.text()));
+on("save-index", "click", () => download(teaching.index.toBytes(), "motions.index"));
+onFile("index-file", async (file) => teaching.load(new Uint8Array(await file.arrayBuffer())));
+
+teaching.addEventListener("change", () => {
+  listClasses();
+  show();
+});
+teaching.addEventListener("diagnosis", ({ detail }) => {
+  const text = detail.join("\n");
+  if (text === at("diagnosis").dataset.said) return;
+  at("diagnosis").dataset.said = text;
+  at("diagnosis").replaceChildren(...detail.map((sentence) => Object.assign(document.createElement("li"), { textContent: sentence })));
+});
+teaching.addEventListener("motion", ({ detail }) => {
+  // For other scripts of this page.
+  document.dispatchEvent(new CustomEvent("morec", { detail }));
+  if (detail.phase !== "end") return;
+  const row = document.createElement("li");
+  row.className = "now";
+  row.textContent = `${detail.class}, score ${detail.score.toFixed(2)}, ${detail.start_secs.toFixed(1)} to ${detail.stop_secs.toFixed(1)} s`;
+  at("events").firstElementChild?.classList.remove("now");
+  at("events").prepend(row);
+});
+show();

@@ -1,0 +1,120 @@
+// The page in Chromium: recorded landmarks drive teach → train → recognise → save → load. Needs what `web/test` gets.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { createServer } from "node:http";
+import { createRequire } from "node:module";
+import { basename, extname, join } from "node:path";
+import { after, before, test } from "node:test";
+import { setTimeout as wait } from "node:timers/promises";
+import { fileURLToPath, pathToFileURL } from "node:url";
+
+const { MOREC_PACKAGE, MOREC_CASES, MOREC_TOOLS, MOREC_CHROMIUM } = process.env;
+const skip = MOREC_CHROMIUM ? false : "there is no Chromium here";
+const morec = await import(pathToFileURL(join(MOREC_PACKAGE, "morec.js")));
+const { learn, labels } = JSON.parse(readFileSync(join(MOREC_CASES, "cases.json"), "utf8"))[0];
+const folder = fileURLToPath(new URL("..", import.meta.url));
+const TYPES = { ".js": "text/javascript", ".html": "text/html", ".css": "text/css", ".wasm": "application/wasm" };
+
+let server, browser, page;
+const errors = [];
+
+before(async () => {
+  if (skip) return;
+  server = createServer(({ url }, response) => {
+    try {
+      const path = join(folder, url === "/" ? "index.html" : new URL(url, "http://a").pathname);
+      const bytes = readFileSync(path);
+      response.writeHead(200, { "content-type": TYPES[extname(path)] ?? "application/octet-stream" }).end(bytes);
+    } catch {
+      response.writeHead(404).end();
+    }
+  }).listen(0, "127.0.0.1");
+  await new Promise((done) => server.once("listening", done));
+  const { chromium } = createRequire(join(MOREC_TOOLS, "tools.js"))("playwright-core");
+  browser = await chromium.launch({ executablePath: MOREC_CHROMIUM, args: ["--no-sandbox"] });
+  page = await browser.newPage({ viewport: { width: 390, height: 844 } });
+  page.on("pageerror", (error) => errors.push(String(error)));
+  await page.goto(`http://127.0.0.1:${server.address().port}/`);
+  await page.getByText("Train, or open an index").waitFor();
+});
+
+after(async () => {
+  await browser?.close();
+  server?.close();
+});
+
+/** Lines of JSON with two performances of each of two motions, and when each has ended. */
+function performance() {
+  const name = basename(learn[0], ".bvh");
+  const clip = morec.read(readFileSync(learn[0]), `${name}.bvh`);
+  const [times, positions, roles] = [clip.times(), clip.positions(), morec.roles()];
+  const [lines, ended] = [[], []];
+  let now = 0;
+  const rows = labels.trim().split("\n").map((line) => line.split("\t"));
+  for (const [of, motion, start, stop] of rows) {
+    if (of !== name || !["wave", "bow"].includes(motion)) continue;
+    const from = Math.max(0, start - 0.8);
+    const until = Number(stop) + 0.8;
+    times.forEach((t, frame) => {
+      if (t < from || t > until) return;
+      const places = roles.map((role, at) => [role, Array.from(positions.subarray(3 * (frame * roles.length + at), 3 * (frame * roles.length + at + 1)))]);
+      lines.push(JSON.stringify({ t: now + t - from, positions: Object.fromEntries(places.filter(([, place]) => place.every(Number.isFinite))) }));
+    });
+    now += until - from;
+    ended.push({ motion, secs: until - from - 0.2, at: now - 0.1 });
+  }
+  return { lines: Buffer.from(lines.join("\n")), ended, secs: now };
+}
+
+test("the page teaches, trains, recognises, saves and loads", { skip, timeout: 180_000 }, async () => {
+  const { lines, ended, secs } = performance();
+  const play = () => page.locator("#source-file").setInputFiles({ name: "performance.jsonl", mimeType: "application/json", buffer: lines });
+  await play();
+  const begun = Date.now();
+  for (const { motion, secs, at } of ended) {
+    await wait(Math.max(0, begun + 1000 * at - Date.now()));
+    await page.locator("#name").fill(motion);
+    await page.locator("#secs").fill(String(Math.round(2 * secs) / 2));
+    await page.locator("#cut").click();
+  }
+  assert.equal(await page.locator("#classes li").count(), 2);
+  await page.locator("#stop:disabled").waitFor();
+  await page.locator("#train").click();
+  await page.getByText("Trained in").waitFor();
+  await page.getByText(/Recognises (wave, bow|bow, wave)/).waitFor();
+
+  await play();
+  await wait(1000 * secs);
+  await page.locator("#stop:disabled").waitFor();
+  const events = await page.locator("#events li").allTextContents();
+  for (const motion of ["wave", "bow"]) assert.ok(events.some((text) => text.startsWith(motion)), events.join("; "));
+
+  const [download] = await Promise.all([page.waitForEvent("download"), page.locator("#save-index").click()]);
+  const bytes = readFileSync(await download.path());
+  assert.deepEqual(morec.Index.fromBytes(bytes).classes.toSorted(), ["bow", "wave"]);
+  await page.reload();
+  await page.locator("#index-file").setInputFiles({ name: "motions.index", mimeType: "application/octet-stream", buffer: bytes });
+  await page.getByText(/Recognises/).waitFor();
+  assert.deepEqual(errors, []);
+});
+
+test("the page is used by keyboard and fits a phone in both themes", { skip }, async () => {
+  await page.reload();
+  await page.keyboard.press("Tab");
+  assert.equal(await page.evaluate(() => document.activeElement.id), "camera");
+  for (const colorScheme of ["light", "dark"]) {
+    await page.emulateMedia({ colorScheme });
+    const { wide, colour } = await page.evaluate(() => ({
+      wide: document.documentElement.scrollWidth > innerWidth, colour: getComputedStyle(document.body).backgroundColor,
+    }));
+    assert.equal(wide, false);
+    assert.equal(colour, colorScheme === "light" ? "rgb(255, 255, 255)" : "rgb(24, 24, 24)");
+  }
+});
+
+test("without a body, and with a file that is none, the page says what is wrong", { skip }, async () => {
+  await page.locator("#source-file").setInputFiles({ name: "no.jsonl", mimeType: "application/json", buffer: Buffer.from("no poses") });
+  await page.waitForFunction(() => document.getElementById("state").textContent.length > 0);
+  await page.locator("#index-file").setInputFiles({ name: "no.index", mimeType: "application/octet-stream", buffer: Buffer.from("no index") });
+  await page.waitForFunction(() => /index/.test(document.getElementById("state").textContent));
+});
