@@ -77,7 +77,8 @@ function draw(positions, landmarks) {
 /** What can be done, and what there is. */
 function show() {
   at("stop").disabled = !running;
-  at("record").disabled = at("cut").disabled = !running || busy;
+  at("record").disabled = !running || busy;
+  at("cut").disabled = busy || !teaching.hasPoses;
   at("train").disabled = busy || teaching.samples.length === 0;
   at("save-samples").disabled = teaching.samples.length === 0;
   at("undo").disabled = !teaching.canUndo;

@@ -85,6 +85,11 @@ export class Teaching extends EventTarget {
     this.dispatchEvent(new CustomEvent(type, { detail }));
   }
 
+  /** True if there are last seconds to `cut` from. */
+  get hasPoses() {
+    return this.#recent.length > 0;
+  }
+
   /** Begins a sample. */
   record() {
     this.#recording = [];
