@@ -107,7 +107,7 @@ impl AxisReceiver {
         self.bytes_from(0, now_secs, bytes);
     }
 
-    /// The same of a datagram from one of several machines, told apart by their numbers: avatars of two are two, and a machine that
+    /// The same of a datagram from one of several machines, distinguished by their numbers: avatars of two are two, and a machine that
     /// holds the most places, at least two more than another, gives one to it.
     pub fn bytes_from(&mut self, machine: u128, now_secs: f64, bytes: &[u8]) {
         let Self {
