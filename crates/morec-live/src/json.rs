@@ -8,13 +8,12 @@ use std::time::Duration;
 
 use morec::live::{
     Arrival, Frame, MAX_PERFORMERS, PerformerId, PerformerTable, Rig, Source, SourceCounts,
-    SourceEvent, wall_now_secs,
+    SourceEvent, largest_holder, wall_now_secs,
 };
 use morec::roles::{Role, RoleMap};
 
 use crate::address::openness;
 use crate::lines::{Came, Lines};
-use crate::places::largest_holder;
 use crate::{Address, LiveError, Notices, PoseLine};
 
 /// Performers of one connection over TCP; others shall find places, too.

@@ -4,6 +4,8 @@ use std::net::{IpAddr, Ipv6Addr, Shutdown, TcpStream};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
+use morec::live::largest_holder;
+
 /// Connections at once.
 pub const CONNECTIONS: usize = 16;
 /// A connection that has shown no body so long after it was opened makes room for another, if all places are taken.
@@ -46,14 +48,6 @@ pub fn machine_number(address: IpAddr) -> u128 {
         IpAddr::V4(v4) => v4.to_ipv6_mapped().to_bits(),
         IpAddr::V6(v6) => v6.to_bits(),
     }
-}
-
-/// The machine that holds the most places (`held` has the machine of each place), if it holds at least two more than
-/// `newcomer`.
-pub fn largest_holder(held: &[IpAddr], newcomer: IpAddr) -> Option<IpAddr> {
-    let count = |machine: IpAddr| held.iter().filter(|other| **other == machine).count();
-    let largest = held.iter().copied().max_by_key(|machine| count(*machine))?;
-    (count(largest) >= count(newcomer) + 2).then_some(largest)
 }
 
 /// The connections that are open; copies share them.

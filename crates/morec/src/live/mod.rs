@@ -57,7 +57,7 @@ pub use feed::{FeedSender, OverflowPolicy};
 pub use frame::{Frame, PerformerId, Rig};
 pub use of_clip::{recognize_clip, recognize_clip_in_session, recognize_poses};
 pub use performer::{EventOptions, Performer};
-pub use performer_table::{Arrival, PerformerTable};
+pub use performer_table::{Arrival, PerformerTable, largest_holder};
 pub use pool::{Pool, PoolStream};
 pub use pose::{PoseExtractor, RecognizerInput};
 pub use recognizer::Recognizer;

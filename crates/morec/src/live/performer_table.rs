@@ -135,6 +135,14 @@ impl<K: PartialEq> PerformerTable<K> {
     }
 }
 
+/// The machine that holds the most places (`held` has the machine of each place), if it holds at least two more than `newcomer`:
+/// the rule by which machines share places. O(places²).
+pub fn largest_holder<M: Copy + PartialEq>(held: &[M], newcomer: M) -> Option<M> {
+    let count = |machine: M| held.iter().filter(|other| **other == machine).count();
+    let largest = held.iter().copied().max_by_key(|machine| count(*machine))?;
+    (count(largest) >= count(newcomer) + 2).then_some(largest)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

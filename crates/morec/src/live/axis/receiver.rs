@@ -6,7 +6,9 @@ use std::sync::Arc;
 use super::clock::FrameClock;
 use super::decoder::{AxisDecoder, AxisError, AxisFrame};
 use super::{AXIS_BONE_COUNT, AxisSkeleton};
-use crate::live::{Arrival, Frame, PerformerId, PerformerTable, Rig, SourceCounts, SourceEvent};
+use crate::live::{
+    Arrival, Frame, PerformerId, PerformerTable, Rig, SourceCounts, SourceEvent, largest_holder,
+};
 use crate::math::{Axis, Quat, Vec3};
 
 /// An avatar that has been silent for so long has stopped, for now.
@@ -173,15 +175,16 @@ impl AxisReceiver {
 }
 
 impl Followed {
-    /// Takes the last place of the machine that holds the most from it, if it holds at least two more than `newcomer`.
+    /// Takes the last place of the machine that holds too many beside `newcomer`, if one does.
     fn make_room(&mut self, newcomer: u128) {
-        let count = |machine: u128| {
-            let held = self.performers.present();
-            held.filter(|(holder, _)| *holder == machine).count()
+        let held: Vec<u128> = (self.performers.present())
+            .map(|(machine, _)| *machine)
+            .collect();
+        let Some(largest) = largest_holder(&held, newcomer) else {
+            return;
         };
-        let holders = self.performers.present();
-        let largest = holders.copied().max_by_key(|(holder, _)| count(*holder));
-        if let Some(last) = largest.filter(|(holder, _)| count(*holder) >= count(newcomer) + 2) {
+        let present = self.performers.present().copied();
+        if let Some(last) = present.filter(|(machine, _)| *machine == largest).last() {
             let items = &mut self.items;
             let gone = |actor| items.push_back(AxisItem::Gone(actor));
             self.performers.leave_if(|key| *key == last, gone);
