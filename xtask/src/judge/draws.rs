@@ -41,16 +41,16 @@ fn drawn<'a>(
     lessons: &[Sample],
     tested: &'a MotionSet,
 ) -> Vec<Trial<'a>> {
+    let truths: Vec<Sample> = (tested.samples.iter())
+        .filter(|s| lessons.iter().any(|l| l.class == s.class))
+        .cloned()
+        .collect();
     let mut all = Vec::new();
     for draw in 1..=DRAWS {
         for person in people(lessons) {
             let mut own = of_person(lessons, &person);
             Rng::new(draw).shuffle(&mut own);
             let taught = at_most(own, 2);
-            let truths: Vec<Sample> = (tested.samples.iter())
-                .filter(|s| lessons.iter().any(|l| l.class == s.class))
-                .cloned()
-                .collect();
             let is_other = |c: &&TrainClip| {
                 c.person.as_ref().is_some_and(|p| *p != person)
                     && truths.iter().any(|s| s.clip == c.name)

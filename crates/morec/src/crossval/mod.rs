@@ -206,7 +206,6 @@ fn run_fold(
         .filter(|s| fold.tested.contains(&s.clip))
         .collect();
     let test = FoldTest {
-        model: &model,
         recognizers: &RecognizerCache::new(&model),
         fold,
         truths: &truths,
@@ -237,12 +236,11 @@ fn run_sensitivities(
 ) -> Result<(), CrossvalError> {
     for i in 0..results.len() {
         let (rate, result) = &mut results[i];
-        let Ok(model) = test.model.with_sensitivity(*rate) else {
+        let Ok(model) = test.recognizers.model().with_sensitivity(*rate) else {
             results.clear();
             break;
         };
         let test = FoldTest {
-            model: &model,
             recognizers: &RecognizerCache::new(&model),
             ..*test
         };
@@ -327,10 +325,10 @@ fn tested_clips<'a>(
     known.chain(unknown).collect()
 }
 
-/// A fold's model and the samples of its tested clips.
+/// A fold's recognisers and the samples of its tested clips.
 #[derive(Clone, Copy)]
 struct FoldTest<'a> {
-    model: &'a Model,
+    /// Of the fold's model.
     recognizers: &'a RecognizerCache,
     fold: &'a Fold,
     truths: &'a [&'a Sample],
@@ -387,7 +385,7 @@ impl FoldTest<'_> {
             .collect();
         let named = |d: &Detection| ClipDetection {
             clip: test.name.clone(),
-            class: self.model.class_name(d.class).to_owned(),
+            class: self.recognizers.model().class_name(d.class).to_owned(),
             start_secs: d.start_secs,
             stop_secs: d.stop_secs,
             score: Some(d.score),
@@ -396,7 +394,12 @@ impl FoldTest<'_> {
         let founds: Vec<ClipDetection> = found.iter().map(named).collect();
         let misses = if self.explains {
             let played = (&clip.clip, &clip.roles, &clip.rest);
-            explain(self.model, played, &missed(&truths, &founds), &found)
+            explain(
+                self.recognizers.model(),
+                played,
+                &missed(&truths, &founds),
+                &found,
+            )
         } else {
             Vec::new()
         };

@@ -23,7 +23,8 @@ impl RecognizerCache {
         }
     }
 
-    pub(super) fn model(&self) -> &Model {
+    /// The model.
+    pub fn model(&self) -> &Model {
         &self.model
     }
 
