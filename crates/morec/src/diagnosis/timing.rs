@@ -144,7 +144,7 @@ impl Timing {
     pub(super) fn copy(&mut self) {
         self.frames += 1;
         self.taken += 1.0;
-        self.repeated += 1.0;
+        self.repeat();
     }
 
     /// The frame just taken shows the same as the one before.

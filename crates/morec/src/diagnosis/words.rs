@@ -3,7 +3,6 @@
 use std::fmt;
 
 use crate::math::Axis;
-
 use crate::roles::{LEGS, Role};
 
 use super::finding::Finding;

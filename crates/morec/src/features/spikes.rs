@@ -5,8 +5,8 @@ use crate::roles::Role;
 
 use super::KeyPose;
 
-/// Faster than this, in metres a second relative to the hips (or the shoulders, before hips are seen) for a leg of 0.85 m, no joint moves: thrown balls leave the
-/// hand at up to 45, but their hands, seen at 120 Hz, stay below 25.
+/// Faster than this, in metres a second for a leg of 0.85 m, no joint moves relative to the hips, or to the shoulders before hips are
+/// seen: thrown balls leave the hand at up to 45, but their hands, seen at 120 Hz, stay below 25.
 const FASTEST: f64 = 28.0;
 /// A joint that stays where it jumped to for longer than this is there.
 const LONGEST_SECS: f64 = 0.12;
