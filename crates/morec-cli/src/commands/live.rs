@@ -48,8 +48,8 @@ use morec_live::summary;
 #[derive(clap::Args)]
 #[command(
     verbatim_doc_comment,
-    after_help = "Exit codes: 0 ended by Ctrl-C, --for or the end of every source; 1 something cannot be opened; 2 wrong \
-    command line.\n\n\
+    after_help = "Exit codes: 0 ended by Ctrl-C, --for or the end of every source; 1 something cannot be opened, or \
+    json:FILE lacks events; 2 wrong command line.\n\n\
     Without a tracker, in two terminals:\n  \
     morec live demo.index --listen vmc://127.0.0.1:39539\n  \
     morec send new/person_06.bvh --to vmc://127.0.0.1:39539"
@@ -111,6 +111,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let handles: Vec<StatusHandle> = listening.iter().map(|l| l.session.handle()).collect();
     let begun = Instant::now();
     let mut line = StatusLine::new(args.quiet);
+    let mut dropped = 0;
     let mut advice = Advice::new(listening.iter().map(|l| l.name.clone()));
     let over = |secs: f64| begun.elapsed().as_secs_f64() >= secs;
     // One source can wait for its events; several are looked at in turn.
@@ -159,6 +160,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             )?;
         }
         complain(&source.name, &source.notices, &mut line);
+        dropped += status.dropped_events;
         eprintln!("morec: {}", summary(&source.name, &status));
         advice::of_status(&status)
             .iter()
@@ -168,7 +170,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         .iter()
         .filter_map(CountedSink::farewell)
         .for_each(|text| eprintln!("morec: {text}"));
-    Ok(match outlets.iter().any(CountedSink::is_incomplete) {
+    Ok(match outlets.iter().any(|o| o.is_incomplete(dropped)) {
         true => ExitCode::FAILURE,
         false => ExitCode::SUCCESS,
     })

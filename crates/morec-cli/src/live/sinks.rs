@@ -88,9 +88,9 @@ impl CountedSink {
         Ok((self.failures == 1).then(|| format!("{}: {error}", self.address)))
     }
 
-    /// True if a record of the events lacks some: whoever reads it later cannot know.
-    pub fn is_incomplete(&self) -> bool {
-        self.failures > 0 && self.address.kind == "json"
+    /// True if a record of the events lacks some, `dropped` of them before they came here: whoever reads it later cannot know.
+    pub fn is_incomplete(&self, dropped: u64) -> bool {
+        self.failures + dropped > 0 && self.address.kind == "json"
     }
 
     /// Closing line about it, if there is one.

@@ -176,6 +176,27 @@ fn a_clip_ends_by_itself_and_what_cannot_be_opened_says_why() {
     );
 }
 
+/// Whoever reads the record later cannot know what it lacks.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_record_that_lacks_events_ends_with_a_code() {
+    let (folder, takes) = crate::db::studio(3);
+    let train = ["train", "--clips", "clips", "--labels", "labels.tsv", "-o"];
+    folder.morec(&[&train[..], &["i.index"]].concat()).ok();
+    let listen = format!("clip://clips/{}.bvh?speed=0", takes[0].clip.name);
+    let live = |emit| folder.morec(&["live", "i.index", "--listen", &listen, "--emit", emit]);
+    let whole = live("json:events.jsonl");
+    assert_eq!(whole.code, Some(0), "{whole:?}");
+    let events = std::fs::read_to_string(folder.path().join("events.jsonl")).unwrap();
+    let events = events.lines().count();
+    assert!(events > 0, "{whole:?}");
+    let lost = live("json:/dev/full");
+    assert_eq!(lost.code, Some(1), "{lost:?}");
+    let said = format!("json:/dev/full: {events} events could not be delivered");
+    assert!(lost.err.contains("No space left"), "{}", lost.err);
+    assert!(lost.err.contains(&said), "{}", lost.err);
+}
+
 /// `morec send` as a broadcast, waiting for somebody to listen; and where it is.
 fn broadcast(folder: &Folder, at: &str) -> (Child, String) {
     let mut child = Command::new(env!("CARGO_BIN_EXE_morec"))
