@@ -45,10 +45,15 @@ pub fn mark_database(path: &Path) {
 /// its beginning.
 ///
 /// # Errors
-/// It is a folder, a file that this run reads, a file that may not be written, or a database.
+/// It is a folder, a file that this run reads, or a database; it, its folder or its disk may not be written.
 pub fn check(path: &Path) -> Result<()> {
     if path.is_dir() {
         bail!("expected a file to write, found a folder; name a file in it");
+    }
+    // A folder that is not there may be made before the file.
+    let folder = folder_of(path);
+    if !path.exists() && folder.is_dir() {
+        tempfile::tempfile_in(folder).map_err(named)?;
     }
     if !path.is_file() {
         return Ok(());
@@ -65,7 +70,7 @@ pub fn check(path: &Path) -> Result<()> {
         );
     }
     // Renaming would replace a write-protected file all the same.
-    OpenOptions::new().write(true).open(path)?;
+    OpenOptions::new().write(true).open(path).map_err(named)?;
     if kind::of(&head(path)?) == Some(kind::DATABASE) {
         bail!(
             "this is a database, which no output replaces; give another name, or delete it first"
@@ -130,7 +135,7 @@ pub fn write_whole(
 pub fn growing(path: &Path) -> Result<File> {
     check(path)?;
     keep_other_kind(path, b"{")?;
-    Ok(File::create(path)?)
+    Ok(File::create(path).map_err(named)?)
 }
 
 /// An output in the making. Dropped before [`Output::finish`], it leaves nothing behind.
@@ -170,7 +175,7 @@ impl Output {
             use std::os::unix::fs::PermissionsExt;
             builder.permissions(fs::Permissions::from_mode(0o666))
         };
-        let beside = builder.tempfile_in(folder_of(&target))?;
+        let beside = builder.tempfile_in(folder_of(&target)).map_err(named)?;
         if let Ok(there) = fs::metadata(&target) {
             // Best effort: on some file systems files have no permissions.
             let _ = beside.as_file().set_permissions(there.permissions());
@@ -215,6 +220,18 @@ impl Write for Output {
             Target::Through(out) => out.flush(),
         }
     }
+}
+
+/// The error of a file that cannot be written, without the name that it has until it is whole.
+fn named(error: io::Error) -> io::Error {
+    let kind = error.kind();
+    let said = match kind {
+        io::ErrorKind::ReadOnlyFilesystem => "its disk is read-only",
+        io::ErrorKind::PermissionDenied => "the file or its folder is read-only",
+        io::ErrorKind::NotFound => "its folder is not there",
+        _ => return error,
+    };
+    io::Error::new(kind, said)
 }
 
 fn folder_of(path: &Path) -> &Path {

@@ -123,3 +123,28 @@ fn kinds_are_seen() {
     }
     assert_eq!(super::kind::of(b""), None);
 }
+
+#[test]
+fn where_nothing_can_be_written_is_named() {
+    // Nothing binds root: the system's own errors stand for a disk and a folder.
+    for (kind, said) in [
+        (
+            io::ErrorKind::ReadOnlyFilesystem,
+            "x.index: its disk is read-only",
+        ),
+        (
+            io::ErrorKind::PermissionDenied,
+            "x.index: the file or its folder is read-only",
+        ),
+    ] {
+        let error = Err::<(), _>(named(kind.into())).context("x.index");
+        assert_eq!(format!("{:#}", error.unwrap_err()), said);
+    }
+    let folder = TempDir::new().unwrap();
+    let absent = folder.path().join("absent/x.index");
+    let refused = write_whole(&absent, |_| Ok(())).unwrap_err();
+    assert_eq!(refused.to_string(), "its folder is not there");
+    // Before there is anything to write, and without a trace.
+    check(&folder.path().join("x.index")).unwrap();
+    assert!(names(folder.path()).is_empty());
+}
