@@ -97,6 +97,12 @@ impl eframe::App for Studio {
         eframe::set_value(storage, LAYOUT, &self.state.layout());
     }
 
+    /// The colour of panels, which need not be painted again: where the processor draws, that takes longest.
+    fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {
+        let panel = theme::Colours::of(visuals.dark_mode).panel;
+        panel.to_normalized_gamma_f32()
+    }
+
     fn update(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
         self.frame(ctx);
     }

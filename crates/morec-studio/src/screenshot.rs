@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use egui::{Color32, ColorImage, Pos2, RawInput, Rect, Vec2};
+use egui::{ColorImage, Pos2, RawInput, Rect, Vec2};
 
 use crate::app::Studio;
 use crate::jobs::load::ClipMotion;
@@ -14,6 +14,7 @@ use crate::state::{
     SimilarCommand, State, TimelineCommand, TrainCommand,
 };
 use crate::store::Store;
+use crate::theme::Colours;
 
 /// A picture of a panel.
 #[derive(Debug, Clone)]
@@ -169,12 +170,13 @@ impl Headless {
         let output = self.frame(0.0);
         let primitives = self.ctx.tessellate(output.shapes, output.pixels_per_point);
         let size = [self.size.x as usize * TIMES, self.size.y as usize * TIMES];
+        let dark = self.ctx.style().visuals.dark_mode;
         let image = raster::draw(
             &primitives,
             &self.textures,
             size,
             output.pixels_per_point,
-            Color32::BLACK,
+            Colours::of(dark).panel,
         );
         raster::smaller(&image, TIMES)
     }

@@ -132,8 +132,6 @@ fn window(args: &Args) -> Result<(), String> {
             .with_inner_size([1400.0, 860.0])
             .with_min_inner_size([1000.0, 600.0])
             .with_drag_and_drop(true),
-        // Limbs are triangles: their edges are smoothed by the card.
-        multisampling: 4,
         ..Default::default()
     };
     let (paths, light, panel) = (args.paths.clone(), args.light, args.panel);

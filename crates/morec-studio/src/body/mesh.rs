@@ -1,4 +1,5 @@
-//! Limbs as lit triangles, the farthest first, so that every backend that draws triangles draws them.
+//! Limbs as lit triangles, the farthest first, so that every backend that draws triangles draws them; a fringe around each
+//! smooths its edge, so that none needs several samples a pixel, which cost a processor that draws most of its time.
 
 use egui::epaint::{Mesh, Vertex, WHITE_UV};
 use egui::{Color32, Shape};
@@ -34,6 +35,9 @@ impl BodyColours {
 const AROUND: usize = 14;
 /// Rings of the rounding at each end.
 const CAP: usize = 3;
+
+/// Width of the fringe, points.
+const FRINGE: f32 = 0.8;
 
 /// A triangle of the picture.
 struct Triangle {
@@ -144,6 +148,14 @@ impl Painter {
                 .collect()
         };
         let corners: Vec<Vec<Option<Corner>>> = rings.iter().map(ring).collect();
+        let seen = corners.iter().flatten().flatten();
+        let edge = outline(seen.map(|corner| (corner.at, corner.colour)).collect());
+        self.triangles.extend(fringe(&edge).map(|corners| Triangle {
+            // Behind the limb itself.
+            depth: (self.limb, f64::INFINITY),
+            at: corners.map(|(at, _)| at),
+            colours: corners.map(|(_, colour)| colour),
+        }));
         for pair in corners.windows(2) {
             for k in 0..AROUND {
                 let next = (k + 1) % AROUND;
@@ -216,6 +228,10 @@ impl Painter {
             let first = mesh.vertices.len() as u32;
             mesh.vertices
                 .extend(corners.iter().map(|(at, _)| vertex(*at, colour)));
+            let edge = outline(corners.iter().map(|(at, _)| (*at, colour)).collect());
+            for corners in fringe(&edge) {
+                push(&mut mesh, corners);
+            }
             (1..corners.len() as u32 - 1)
                 .for_each(|k| mesh.indices.extend([first, first + k, first + k + 1]));
         }
@@ -237,11 +253,9 @@ impl Painter {
         mesh.vertices.reserve(3 * self.triangles.len());
         mesh.indices.reserve(3 * self.triangles.len());
         for triangle in &self.triangles {
-            let first = mesh.vertices.len() as u32;
-            let corners = triangle.at.iter().zip(triangle.colours);
-            mesh.vertices
-                .extend(corners.map(|(at, colour)| vertex(*at, colour)));
-            mesh.indices.extend([first, first + 1, first + 2]);
+            let [p, q, r] = triangle.at;
+            let [a, b, c] = triangle.colours;
+            push(&mut mesh, [(p, a), (q, b), (r, c)]);
         }
         Shape::mesh(mesh)
     }
@@ -254,6 +268,70 @@ struct Corner {
     colour: Color32,
     /// Cosine of the angle between the surface and the direction to the camera.
     faces: f64,
+}
+
+/// A corner in the picture.
+type Coloured = (egui::Pos2, Color32);
+
+/// The convex hull of corners, in order around it.
+fn outline(mut corners: Vec<Coloured>) -> Vec<Coloured> {
+    let order = |a: &Coloured, b: &Coloured| {
+        let (a, b) = (a.0, b.0);
+        a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y))
+    };
+    corners.sort_unstable_by(order);
+    corners.dedup_by_key(|corner| corner.0);
+    if corners.len() < 3 {
+        return Vec::new();
+    }
+    let mut hull: Vec<Coloured> = Vec::new();
+    let half = |hull: &mut Vec<Coloured>, corner: Coloured, kept: usize| {
+        while let [.., a, b] = hull[kept..] {
+            let ((a, b), c) = ((a.0, b.0), corner.0);
+            if (b - a).rot90().dot(c - b) < 0.0 {
+                break;
+            }
+            hull.pop();
+        }
+        hull.push(corner);
+    };
+    corners
+        .iter()
+        .for_each(|&corner| half(&mut hull, corner, 0));
+    // The last corner begins the way back, and the first ends it.
+    let there = hull.len() - 1;
+    let back = corners.iter().rev().skip(1);
+    back.for_each(|&corner| half(&mut hull, corner, there));
+    hull.pop();
+    hull
+}
+
+/// Triangles around a convex outline that fade outwards.
+fn fringe(outline: &[Coloured]) -> impl Iterator<Item = [Coloured; 3]> {
+    let count = outline.len();
+    let along = move |k: usize| {
+        let (from, to) = (outline[k % count].0, outline[(k + 1) % count].0);
+        (to - from).normalized()
+    };
+    // Outward on either side of a corner, at equal distance from both edges but where these fold back on themselves.
+    let faded = move |k: usize| {
+        let (before, after) = (along(k + count - 1).rot90(), along(k).rot90());
+        let middle = (before + after).normalized();
+        let width = FRINGE / middle.dot(after).max(0.5);
+        (outline[k % count].0 + middle * width, Color32::TRANSPARENT)
+    };
+    (0..count).flat_map(move |k| {
+        let (p, q) = (outline[k], outline[(k + 1) % count]);
+        let (far_p, far_q) = (faded(k), faded(k + 1));
+        [[p, q, far_q], [p, far_q, far_p]]
+    })
+}
+
+fn push(mesh: &mut Mesh, corners: [Coloured; 3]) {
+    let first = mesh.vertices.len() as u32;
+    mesh.vertices
+        .extend(corners.map(|(at, colour)| vertex(at, colour)));
+    mesh.indices.extend([first, first + 1, first + 2]);
 }
 
 /// Props, worlds and points that are not seen are no limbs.
@@ -272,4 +350,38 @@ fn vertex(at: egui::Pos2, colour: Color32) -> Vertex {
 fn shade(colour: Color32, level: f32, shine: f32) -> Color32 {
     let part = |v: u8| (f32::from(v) * level + 255.0 * shine).clamp(0.0, 255.0) as u8;
     Color32::from_rgb(part(colour.r()), part(colour.g()), part(colour.b()))
+}
+
+#[cfg(test)]
+mod tests {
+    use egui::{Vec2, pos2};
+
+    use super::*;
+
+    #[test]
+    fn a_fringe_goes_once_around_the_outline_and_fades_outwards() {
+        let colour = Color32::from_rgb(10, 20, 30);
+        let square = [(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0)];
+        let within = [(2.0, 0.0), (1.0, 3.0), (4.0, 2.0), (0.0, 0.0)];
+        let corners = square.iter().chain(&within);
+        let edge = outline(corners.map(|&(x, y)| (pos2(x, y), colour)).collect());
+        let mut places: Vec<(f32, f32)> = edge.iter().map(|(at, _)| (at.x, at.y)).collect();
+        places.sort_by(|a, b| a.partial_cmp(b).unwrap());
+        assert_eq!(places, [(0.0, 0.0), (0.0, 4.0), (4.0, 0.0), (4.0, 4.0)]);
+        let triangles: Vec<_> = fringe(&edge).collect();
+        assert_eq!(triangles.len(), 8);
+        for (at, colour) in triangles.iter().flatten() {
+            let off = (*at - pos2(2.0, 2.0)).abs() - Vec2::splat(2.0);
+            let expected = if *colour == Color32::TRANSPARENT {
+                FRINGE
+            } else {
+                0.0
+            };
+            assert!(
+                (off - Vec2::splat(expected)).length() < 1e-5,
+                "{at} {colour:?}"
+            );
+        }
+        assert!(outline(vec![(pos2(1.0, 1.0), colour); 5]).is_empty());
+    }
 }

@@ -17,9 +17,8 @@ const EDGE: f32 = 44.0;
 const EDGE_SPEED: f32 = 1100.0;
 
 pub fn show(ctx: &Context, state: &State, out: Out) {
-    let c = Colours::of(state.dark);
     SidePanel::right("shown")
-        .frame(padded(&c))
+        .frame(padded())
         .default_width(330.0)
         .width_range(260.0..=620.0)
         .show(ctx, |ui| {
@@ -27,7 +26,7 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
             view::clip_over_transport(ui, state, height, out);
             chosen(ui, state, out);
         });
-    CentralPanel::default().frame(padded(&c)).show(ctx, |ui| {
+    CentralPanel::default().frame(padded()).show(ctx, |ui| {
         tools(ui, state, out);
         ui.add_space(4.0);
         match (&state.classes.similar, &state.classes.groups) {

@@ -14,21 +14,20 @@ use crate::state::{
 use crate::theme::Colours;
 
 pub fn show(ctx: &Context, state: &State, out: Out) {
-    let c = Colours::of(state.dark);
     let height = ctx.content_rect().height();
     TopBottomPanel::bottom("timeline")
-        .frame(padded(&c))
+        .frame(padded())
         .resizable(true)
         .default_height((height * 0.40).clamp(240.0, 420.0))
         .height_range(160.0..=height * 0.65)
         .show(ctx, |ui| timeline::show(ui, state, out));
     SidePanel::left("clips")
-        .frame(padded(&c))
+        .frame(padded())
         .default_width(190.0)
         .width_range(140.0..=320.0)
         .show(ctx, |ui| clips(ui, state, out));
     SidePanel::right("classes")
-        .frame(padded(&c))
+        .frame(padded())
         .default_width(250.0)
         .width_range(220.0..=340.0)
         .show(ctx, |ui| {
@@ -36,7 +35,7 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
                 .auto_shrink(false)
                 .show(ui, |ui| classes(ui, state, out));
         });
-    CentralPanel::default().frame(padded(&c)).show(ctx, |ui| {
+    CentralPanel::default().frame(padded()).show(ctx, |ui| {
         let room = Vec2::new(0.0, player::HEIGHT + 6.0);
         let rect = Rect::from_min_size(ui.cursor().min, ui.available_size() - room);
         ui.scope_builder(egui::UiBuilder::new().max_rect(rect), |ui| {

@@ -15,10 +15,9 @@ const ROW: f32 = 26.0;
 const STRIP: f32 = 68.0;
 
 pub fn show(ctx: &Context, state: &State, out: Out) {
-    let c = Colours::of(state.dark);
     let width = (ctx.content_rect().width() * 0.42).clamp(430.0, 760.0);
     SidePanel::right("clip")
-        .frame(padded(&c))
+        .frame(padded())
         .exact_width(width)
         .show(ctx, |ui| {
             let height = (ui.available_height() * 0.44).max(200.0);
@@ -28,7 +27,7 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
                 .auto_shrink(false)
                 .show(ui, |ui| details::show(ui, state, out));
         });
-    CentralPanel::default().frame(padded(&c)).show(ctx, |ui| {
+    CentralPanel::default().frame(padded()).show(ctx, |ui| {
         tools(ui, state, out);
         import_report::show(ui, state, out);
         table(ui, state, out);

@@ -18,15 +18,14 @@ use crate::theme::Colours;
 const LISTED: usize = 500;
 
 pub fn show(ctx: &Context, state: &State, out: Out) {
-    let c = Colours::of(state.dark);
     TopBottomPanel::bottom("minutes")
-        .frame(padded(&c))
+        .frame(padded())
         .resizable(true)
         .default_height(178.0)
         .height_range(120.0..=360.0)
         .show(ctx, |ui| live_line::show(ui, state, out));
     SidePanel::left("source")
-        .frame(padded(&c))
+        .frame(padded())
         .default_width(250.0)
         .width_range(220.0..=340.0)
         .show(ctx, |ui| {
@@ -38,7 +37,7 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
             });
         });
     SidePanel::right("recognised")
-        .frame(padded(&c))
+        .frame(padded())
         .default_width(270.0)
         .width_range(230.0..=380.0)
         .show(ctx, |ui| {
@@ -46,7 +45,7 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
             teach::recognised(ui, state, out);
         });
     CentralPanel::default()
-        .frame(padded(&c))
+        .frame(padded())
         .show(ctx, |ui| performer(ui, state, out));
 }
 

@@ -10,9 +10,8 @@ use crate::state::{Command, CrossvalView, FileCommand, State, TrainCommand};
 use crate::theme::Colours;
 
 pub fn show(ctx: &Context, state: &State, out: Out) {
-    let c = Colours::of(state.dark);
     SidePanel::left("what to learn")
-        .frame(padded(&c))
+        .frame(padded())
         .default_width(220.0)
         .width_range(180.0..=320.0)
         .show(ctx, |ui| {
@@ -24,7 +23,7 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
             });
         });
     SidePanel::right("the moment")
-        .frame(padded(&c))
+        .frame(padded())
         .default_width(340.0)
         .width_range(280.0..=620.0)
         .show(ctx, |ui| {
@@ -32,7 +31,7 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
             view::clip_over_transport(ui, state, height, out);
             moments::show(ui, state, out);
         });
-    CentralPanel::default().frame(padded(&c)).show(ctx, |ui| {
+    CentralPanel::default().frame(padded()).show(ctx, |ui| {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             let nothing = state.train.index.is_none() && state.train.judged.is_none();
             if nothing && state.train.thesis.is_none() {

@@ -11,9 +11,9 @@ use crate::theme::Colours;
 /// Commands that a panel emits.
 pub type Out<'a> = &'a mut Vec<Command>;
 
-/// The frame of panels' contents.
-pub fn padded(c: &Colours) -> Frame {
-    Frame::new().fill(c.panel).inner_margin(Margin::same(12))
+/// The frame of panels' contents, on the colour with which every frame begins.
+pub fn padded() -> Frame {
+    Frame::new().inner_margin(Margin::same(12))
 }
 
 /// A heading of a section.
