@@ -174,6 +174,9 @@ pub fn curves(motion: &Arc<ClipMotion>, progress: &JobProgress) -> Result<Curves
         return Ok(curves);
     }
     match ppca(motion) {
+        Ok((_, forward, backward)) if forward.is_empty() && backward.is_empty() => {
+            curves.note = Some("no misfit curve: this clip is too short for one".to_owned());
+        }
         Ok((cuts, forward, backward)) => {
             (curves.ppca, curves.forward, curves.backward) = (cuts, forward, backward);
         }

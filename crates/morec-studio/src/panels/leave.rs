@@ -11,6 +11,10 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
     let (Some(then), Some(store)) = (&state.leaving, &state.store) else {
         return;
     };
+    // Where no dialog can be opened, the path is typed first; the question would lie over the field.
+    if state.typed.is_some() {
+        return;
+    }
     let c = Colours::of(state.dark);
     let modal = Modal::new(Id::new("leave")).show(ctx, |ui| {
         ui.set_width(430.0);

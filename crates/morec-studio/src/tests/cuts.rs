@@ -175,3 +175,22 @@ fn playing_stays_inside_the_segment_between_the_cuts() {
     person.key(Key::I);
     assert!(person.state().player.looped.is_none());
 }
+
+#[test]
+fn a_clip_too_short_for_a_misfit_curve_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let clips = super::clips_of(folder.path());
+    let text = std::fs::read_to_string(&clips[0]).unwrap();
+    let (skeleton, motion) = text.split_once("Frames:").unwrap();
+    let lines: Vec<&str> = motion.lines().skip(1).take(61).collect();
+    let path = folder.path().join("short.bvh");
+    std::fs::write(
+        &path,
+        format!("{skeleton}Frames: 60\n{}\n", lines.join("\n")),
+    )
+    .unwrap();
+    let mut person = Person::before(&[path]);
+    person.goes_to(Panel::Label);
+    person.settle();
+    assert!(person.sees_part("Misfit (thesis): no misfit curve: this clip is too short"));
+}

@@ -55,6 +55,27 @@ fn closing_an_unsaved_database_asks_and_cancel_goes_on() {
 }
 
 #[test]
+fn where_no_dialog_opens_the_path_is_typed_before_the_window_goes() {
+    let (folder, mut person) = with_a_label();
+    person.has_no_dialogs();
+    let path = folder.path().join("mine.mdb");
+    assert!(!person.closes());
+    person.click("Save …");
+    person.settle();
+    assert!(person.sees_part("No file dialog can be opened here"));
+    assert!(!person.sees("Save the database?"), "it hides the field");
+    person.key(Key::Escape);
+    person.frames(3);
+    assert!(person.sees("Save the database?"), "it is asked again");
+    person.click("Save …");
+    person.settle();
+    person.types("Path", &path.to_string_lossy());
+    assert!(person.told(&ViewportCommand::Close));
+    let db = morec_db::MotionDb::open_read_only(&path).unwrap();
+    assert_eq!(db.summary().unwrap().accepted, 1);
+}
+
+#[test]
 fn a_database_that_is_saved_or_discarded_lets_the_window_go() {
     let (folder, mut person) = with_a_label();
     let path = folder.path().join("mine.mdb");
