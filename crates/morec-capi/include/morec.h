@@ -39,6 +39,11 @@
 #define MOREC_ROLE_COUNT 18
 
 /**
+ * Number of parts of the body and points of both hands together; they are numbered from 0.
+ */
+#define MOREC_POINT_COUNT 60
+
+/**
  * Result of a call. Numbers stay what they are; later versions may add some.
  */
 enum MorecStatus
@@ -467,7 +472,8 @@ typedef struct MorecSkeleton {
      */
     const int32_t *parents;
     /**
-     * `joint_count` names, UTF-8, by which roles are found if they are not given; or null.
+     * `joint_count` names, UTF-8, by which roles are found if they are not given; or null. Of joints without parents they may
+     * be landmarks, and points of hands.
      */
     const char *const *names;
     /**
@@ -475,7 +481,9 @@ typedef struct MorecSkeleton {
      */
     const double *offsets;
     /**
-     * `joint_count` times a `MorecRole`, `MOREC_ROLE_NONE` for most; or null: found by the tree, then the names.
+     * `joint_count` times a `MorecRole`, `MOREC_ROLE_NONE` for most; or null: found by the tree, then the names. Points of hands
+     * have the numbers from `MOREC_ROLE_COUNT` to below `MOREC_POINT_COUNT`, which `morec_role_from_name` tells:
+     * `left_palm`, `left_thumb_1` … `right_little_tip`.
      */
     const int32_t *roles;
 } MorecSkeleton;
@@ -864,12 +872,12 @@ const char *morec_status_text(int32_t status);
 const char *morec_version(void);
 
 /**
- * The name of a `MorecRole`, as in `left_forearm`; null for a number that is none. The text stays for ever.
+ * The name of a `MorecRole` or a point of a hand, as in `left_forearm` and `right_index_tip`; null for a number that is none. The text stays for ever.
  */
 const char *morec_role_name(int32_t role);
 
 /**
- * The `MorecRole` of this name; `MOREC_ROLE_NONE` if there is none, or `name` is null.
+ * The `MorecRole` of this name, or the number of a point of a hand; `MOREC_ROLE_NONE` if there is none, or `name` is null.
  *
  * # Safety
  * `name` is null or ends with a zero.

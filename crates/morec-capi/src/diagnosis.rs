@@ -2,7 +2,8 @@
 
 use std::ffi::c_char;
 
-use morec::diagnosis::{Diagnosis, Finding, Severity};
+use morec::diagnosis::{Diagnosis, Finding, RoleSet, Severity};
+use morec::roles::Role;
 
 use crate::handles::{self, MorecRecognizer};
 use crate::memory::{self, Versioned};
@@ -52,6 +53,10 @@ pub enum MorecFinding {
     MovingFloor = 1 << 18,
     /// The hips do not move while the hands do.
     HipsFixed = 1 << 19,
+    /// A hand is away again and again.
+    HandLost = 1 << 20,
+    /// Left and right hand change places.
+    HandsSwap = 1 << 21,
 }
 
 /// Severity of the gravest finding.
@@ -114,6 +119,12 @@ unsafe impl Versioned for MorecDiagnosis {
     const FIRST_SIZE: usize = size_of::<Self>();
 }
 
+/// The bits of the parts of a body, which `MorecRole` has; not those of hands.
+fn parts_of_body(roles: RoleSet) -> u32 {
+    let bits = roles.bits() & ((1 << Role::BODY_COUNT) - 1);
+    u32::try_from(bits).unwrap_or_default()
+}
+
 impl From<&Diagnosis> for MorecDiagnosis {
     fn from(d: &Diagnosis) -> Self {
         let findings = d.findings();
@@ -128,8 +139,8 @@ impl From<&Diagnosis> for MorecDiagnosis {
             frames: d.frames,
             findings: findings.bits(),
             severity: severity as i32,
-            missing_roles: d.missing.bits(),
-            flickering_roles: d.flickering.bits(),
+            missing_roles: parts_of_body(d.missing),
+            flickering_roles: parts_of_body(d.flickering),
             secs: d.secs,
             rate_hz: d.rate_hz.unwrap_or(f64::NAN),
             jitter_secs: d.jitter_secs.unwrap_or(f64::NAN),

@@ -105,7 +105,7 @@ pub unsafe extern "C" fn morec_recognizer_create(
         let options = stream_options(&c)?;
         let declared = if c.skeleton.is_null() {
             skeleton::of_roles(if c.roles == 0 {
-                (1 << Role::COUNT) - 1
+                (1 << Role::BODY_COUNT) - 1
             } else {
                 c.roles
             })?

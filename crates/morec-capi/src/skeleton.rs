@@ -8,6 +8,7 @@ use morec::index::MotionIndex;
 use morec::kinematics::WorldPose;
 use morec::live::Rig;
 use morec::math::{Quat, Vec3};
+use morec::roles::points::places_of;
 use morec::roles::{Role, RoleMap};
 
 use crate::axes::Convention;
@@ -25,11 +26,14 @@ pub struct MorecSkeleton {
     pub joint_count: usize,
     /// `joint_count` numbers: the joint's parent, which must come before it, or −1 for a root.
     pub parents: *const i32,
-    /// `joint_count` names, UTF-8, by which roles are found if they are not given; or null.
+    /// `joint_count` names, UTF-8, by which roles are found if they are not given; or null. Of joints without parents they may
+    /// be landmarks, and points of hands.
     pub names: *const *const c_char,
     /// `joint_count` times x, y, z: where the joint is in its parent's frame; or null if every frame says it.
     pub offsets: *const f64,
-    /// `joint_count` times a `MorecRole`, `MOREC_ROLE_NONE` for most; or null: found by the tree, then the names.
+    /// `joint_count` times a `MorecRole`, `MOREC_ROLE_NONE` for most; or null: found by the tree, then the names. Points of hands
+    /// have the numbers from `MOREC_ROLE_COUNT` to below `MOREC_POINT_COUNT`, which `morec_role_from_name` tells:
+    /// `left_palm`, `left_thumb_1` … `right_little_tip`.
     pub roles: *const i32,
 }
 
@@ -50,16 +54,27 @@ pub(crate) struct Declared {
     pub(crate) has_offsets: bool,
 }
 
+/// The rig of a stream that shows all parts of a body: joint `r` plays role `r`.
+pub(crate) fn body() -> Rig {
+    let mut rig = Rig::of_roles();
+    let joints = rig.skeleton.joints().iter().take(Role::BODY_COUNT);
+    rig.skeleton = Skeleton::new(joints.cloned().collect()).unwrap_or_default();
+    for role in Role::ALL.into_iter().filter(|role| role.is_of_hand()) {
+        rig.roles.set(role, None);
+    }
+    rig
+}
+
 /// For a stream that shows roles: joint `r` plays role `r`. `mask` has bit `r` for each that it shows.
 pub(crate) fn of_roles(mask: u32) -> Result<Declared, CallError> {
-    let mut rig = Rig::of_roles();
-    if mask >> Role::COUNT != 0 {
+    let mut rig = body();
+    if mask >> Role::BODY_COUNT != 0 {
         return Err(CallError::invalid(format!(
             "roles is {mask:#x}, which has bits beyond the {} roles",
-            Role::COUNT
+            Role::BODY_COUNT
         )));
     }
-    for role in Role::ALL
+    for role in Role::BODY
         .into_iter()
         .filter(|role| mask >> role.index() & 1 == 0)
     {
@@ -103,6 +118,11 @@ pub(crate) unsafe fn read(
         Some(roles) => given_roles(roles)?,
         None => {
             let mut found = RoleMap::find(&skeleton);
+            if parents.iter().all(|parent| *parent == -1) {
+                let points = of_points(&names);
+                let is_more = points.played().count() > found.played().count();
+                found = if is_more { points } else { found };
+            }
             index.complete_roles(&mut found, &skeleton);
             found
         }
@@ -177,6 +197,16 @@ pub(crate) fn is_place(p: &Vec3) -> bool {
     p.iter().all(|c| c.abs() <= FARTHEST)
 }
 
+/// The roles of joints that hang from nothing, by their names.
+fn of_points(names: &[String]) -> RoleMap {
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let mut map = RoleMap::default();
+    for (role, place) in places_of(&names) {
+        map.set(role, place.single());
+    }
+    map
+}
+
 fn given_roles(roles: &[i32]) -> Result<RoleMap, CallError> {
     let mut map = RoleMap::default();
     for (joint, &number) in roles.iter().enumerate() {
@@ -214,7 +244,7 @@ mod tests {
     #[test]
     fn a_role_has_one_joint_and_a_parent_comes_first() {
         assert!(given_roles(&[0, -1, 0]).is_err());
-        assert!(given_roles(&[18]).is_err());
+        assert!(given_roles(&[60]).is_err());
         let convention = Convention::new(1, 0).unwrap();
         let names = vec![String::new(); 2];
         assert!(joints(&[1, -1], &names, None, &convention).is_err());

@@ -5,12 +5,12 @@ use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
 
 use morec::diagnosis::{Diagnoser, Diagnosis};
 use morec::index::MotionIndex;
-use morec::live::{Event, EventOptions, Frame, Performer, PerformerId, Recognizer, Rig};
+use morec::live::{Event, EventOptions, Frame, Performer, PerformerId, Recognizer};
 
 use crate::MorecStatus;
 use crate::axes::Convention;
 use crate::frame::CheckedFrame;
-use crate::skeleton::Declared;
+use crate::skeleton::{self, Declared};
 use crate::status::CallError;
 
 /// Events that one frame can settle at most, with room to spare; no frame is taken with less.
@@ -103,7 +103,7 @@ impl Stream {
         };
         // Made now and not at the first frame, so that what does not fit is said now, and no bone is given up because
         // the first frame happens not to show it.
-        if index.model.needs_rotations() && declared.rig == Rig::of_roles() {
+        if index.model.needs_rotations() && declared.rig == skeleton::body() {
             let text =
                 "the index looks at how joints are turned: declare a skeleton and give rotations";
             return Err(CallError::new(

@@ -37,8 +37,13 @@ pub enum MorecRole {
 /// Number of parts of the body; they are numbered from 0.
 pub const MOREC_ROLE_COUNT: u32 = 18;
 
+/// Number of parts of the body and points of both hands together; they are numbered from 0.
+pub const MOREC_POINT_COUNT: u32 = 60;
+
+const _: () = assert!(MOREC_POINT_COUNT as usize == Role::COUNT);
 const _: () = assert!(
-    MOREC_ROLE_COUNT as usize == Role::COUNT && MorecRole::RightHand as usize + 1 == Role::COUNT
+    MOREC_ROLE_COUNT as usize == Role::BODY_COUNT
+        && MorecRole::RightHand as usize + 1 == Role::BODY_COUNT
 );
 
 const NAMES: [&CStr; Role::COUNT] = [
@@ -60,6 +65,48 @@ const NAMES: [&CStr; Role::COUNT] = [
     c"right_arm",
     c"right_forearm",
     c"right_hand",
+    c"left_palm",
+    c"left_thumb_1",
+    c"left_thumb_2",
+    c"left_thumb_3",
+    c"left_thumb_tip",
+    c"left_index_1",
+    c"left_index_2",
+    c"left_index_3",
+    c"left_index_tip",
+    c"left_middle_1",
+    c"left_middle_2",
+    c"left_middle_3",
+    c"left_middle_tip",
+    c"left_ring_1",
+    c"left_ring_2",
+    c"left_ring_3",
+    c"left_ring_tip",
+    c"left_little_1",
+    c"left_little_2",
+    c"left_little_3",
+    c"left_little_tip",
+    c"right_palm",
+    c"right_thumb_1",
+    c"right_thumb_2",
+    c"right_thumb_3",
+    c"right_thumb_tip",
+    c"right_index_1",
+    c"right_index_2",
+    c"right_index_3",
+    c"right_index_tip",
+    c"right_middle_1",
+    c"right_middle_2",
+    c"right_middle_3",
+    c"right_middle_tip",
+    c"right_ring_1",
+    c"right_ring_2",
+    c"right_ring_3",
+    c"right_ring_tip",
+    c"right_little_1",
+    c"right_little_2",
+    c"right_little_3",
+    c"right_little_tip",
 ];
 
 /// The role of this number, if it is one.
@@ -76,13 +123,13 @@ pub extern "C" fn morec_version() -> *const c_char {
     VERSION.as_ptr().cast()
 }
 
-/// The name of a `MorecRole`, as in `left_forearm`; null for a number that is none. The text stays for ever.
+/// The name of a `MorecRole` or a point of a hand, as in `left_forearm` and `right_index_tip`; null for a number that is none. The text stays for ever.
 #[unsafe(no_mangle)]
 pub extern "C" fn morec_role_name(role: i32) -> *const c_char {
     self::role(role).map_or(std::ptr::null(), |role| NAMES[role.index()].as_ptr())
 }
 
-/// The `MorecRole` of this name; `MOREC_ROLE_NONE` if there is none, or `name` is null.
+/// The `MorecRole` of this name, or the number of a point of a hand; `MOREC_ROLE_NONE` if there is none, or `name` is null.
 ///
 /// # Safety
 /// `name` is null or ends with a zero.
@@ -108,6 +155,6 @@ mod tests {
             let named = unsafe { morec_role_from_name(NAMES[known.index()].as_ptr()) };
             assert_eq!(named, number);
         }
-        assert_eq!((role(-1), role(18), role(i32::MIN)), (None, None, None));
+        assert_eq!((role(-1), role(60), role(i32::MIN)), (None, None, None));
     }
 }

@@ -6,6 +6,7 @@ use std::net::IpAddr;
 use std::sync::Arc;
 use std::time::Duration;
 
+use morec::features::Hand;
 use morec::live::{
     Arrival, Frame, MAX_PERFORMERS, PerformerId, PerformerTable, Rig, Source, SourceCounts,
     SourceEvent, largest_holder, wall_now_secs,
@@ -14,6 +15,7 @@ use morec::roles::{Role, RoleMap};
 
 use crate::address::openness;
 use crate::lines::{Came, Lines};
+use crate::unnamed::UnnamedPoints;
 use crate::{Address, LiveError, Notices, PoseLine};
 
 /// Performers of one connection over TCP; others shall find places, too.
@@ -23,15 +25,25 @@ const GONE_SECS: f64 = 5.0;
 
 const WAIT: Duration = Duration::from_millis(20);
 
+/// A performer: the connection, the number there, and the hand if lines are about one. Each hand of one number is a performer of its own.
+type PerformerKey = (u64, u16, Option<Hand>);
+
+/// What lines have shown of a performer.
+#[derive(Debug, Clone, Default)]
+struct KnownPoints {
+    /// Bit `r` for role `r`.
+    roles: u64,
+    unnamed: UnnamedPoints,
+}
+
 /// Poses as lines of JSON.
 pub struct JsonSource {
     lines: Lines,
     /// True if the end of the lines is the end of the source.
     ends: bool,
-    /// By their connections, and their numbers in these.
-    performers: PerformerTable<(u64, u16)>,
-    /// For each performer, the roles that were seen.
-    known: Vec<u32>,
+    performers: PerformerTable<PerformerKey>,
+    /// For each performer, what was seen.
+    known: Vec<KnownPoints>,
     /// A pose whose skeleton was announced first.
     waiting: Option<(PerformerId, PoseLine)>,
     /// A connection and its pose for which a place was freed. The end of the performer that had the place is announced first.
@@ -95,10 +107,9 @@ impl JsonSource {
         self.notices.clone()
     }
 
-    /// The performer `number` of `connection`, a new one if there is room.
-    fn performer(&mut self, connection: u64, number: u16) -> Option<PerformerId> {
-        let key = (connection, number);
-        let of_connection = |key: &&(u64, u16)| key.0 == connection;
+    /// The performer of this key, a new one if there is room.
+    fn performer(&mut self, key: PerformerKey) -> Option<PerformerId> {
+        let of_connection = |other: &&PerformerKey| other.0 == key.0;
         let is_full = || self.performers.present().filter(of_connection).count() >= NAMES;
         if !self.ends && self.performers.find(&key).is_none() && is_full() {
             return None;
@@ -106,11 +117,11 @@ impl JsonSource {
         let (actor, arrival) = self.performers.arrive(key, wall_now_secs())?;
         match arrival {
             Arrival::Known => {}
-            Arrival::New => self.known.push(0),
+            Arrival::New => self.known.push(KnownPoints::default()),
             Arrival::Returned | Arrival::Replaced => {
                 self.counts.interruptions += 1;
                 // The skeleton is announced anew.
-                self.known[actor.index()] = 0;
+                self.known[actor.index()] = KnownPoints::default();
             }
         }
         Some(actor)
@@ -122,10 +133,10 @@ impl JsonSource {
         if self.performers.vacant().is_some() {
             return None;
         }
-        let machine_of = |key: &(u64, u16)| self.lines.machine(key.0);
+        let machine_of = |key: &PerformerKey| self.lines.machine(key.0);
         let held: Vec<IpAddr> = self.performers.present().filter_map(machine_of).collect();
         let largest = largest_holder(&held, self.lines.machine(connection)?)?;
-        let its = |key: &&(u64, u16)| machine_of(key) == Some(largest);
+        let its = |key: &&PerformerKey| machine_of(key) == Some(largest);
         let newest = *self.performers.present().filter(its).max()?;
         let mut gone = None;
         self.performers
@@ -167,8 +178,8 @@ impl JsonSource {
         self.pose(connection, pose, frame)
     }
 
-    fn pose(&mut self, connection: u64, pose: PoseLine, frame: &mut Frame) -> SourceEvent {
-        let Some(actor) = self.performer(connection, pose.actor) else {
+    fn pose(&mut self, connection: u64, mut pose: PoseLine, frame: &mut Frame) -> SourceEvent {
+        let Some(actor) = self.performer((connection, pose.actor, pose.hand)) else {
             if pose.shows_body()
                 && let Some(gone) = self.free_place_for(connection)
             {
@@ -179,14 +190,19 @@ impl JsonSource {
             return SourceEvent::Quiet;
         };
         let known = &mut self.known[actor.index()];
+        if let Err(error) = known.unnamed.name(&mut pose) {
+            self.counts.malformed += 1;
+            self.notices.add(|| format!("performer {}", actor.0), error);
+            return SourceEvent::Quiet;
+        }
         let seen = pose.known();
-        if seen & !*known != 0 {
-            *known |= seen;
-            let rig = rig_of(*known);
+        if seen & !known.roles != 0 {
+            known.roles |= seen;
+            let rig = rig_of(known.roles);
             self.waiting = Some((actor, pose));
             return SourceEvent::Rig(actor, Arc::new(rig));
         }
-        self.counts.incomplete += u64::from(seen != *known);
+        self.counts.incomplete += u64::from(seen != known.roles);
         self.fill(actor, &pose, frame)
     }
 
@@ -221,7 +237,7 @@ impl Source for JsonSource {
             } => self.line(connection, number, text.as_deref(), frame),
             Came::Closed(connection) => {
                 let leaving = &mut self.leaving;
-                let leaves = |key: &(u64, u16)| key.0 == connection;
+                let leaves = |key: &PerformerKey| key.0 == connection;
                 self.performers
                     .leave_if(leaves, |actor| leaving.push(actor));
                 SourceEvent::Quiet
@@ -241,7 +257,7 @@ impl Source for JsonSource {
 }
 
 /// A skeleton of the roles in `known`.
-fn rig_of(known: u32) -> Rig {
+fn rig_of(known: u64) -> Rig {
     let mut rig = Rig::of_roles();
     let mut roles = RoleMap::default();
     for role in Role::ALL
@@ -270,13 +286,15 @@ mod tests {
         let address: Address = "json+tcp://127.0.0.1:0".parse().unwrap();
         let mut source = JsonSource::listen(&address).unwrap().0;
         let taken = (0..40)
-            .filter_map(|number| source.performer(1, number))
+            .filter_map(|number| source.performer((1, number, None)))
             .count();
         assert_eq!(taken, NAMES);
-        assert!(source.performer(2, 0).is_some());
+        assert!(source.performer((2, 0, None)).is_some());
         source.forget_silent(wall_now_secs() + 2.0 * GONE_SECS);
         assert_eq!(source.leaving.len(), NAMES + 1);
-        assert!(source.performer(1, 39).is_some() && source.performer(1, 0).is_some());
+        assert!(
+            source.performer((1, 39, None)).is_some() && source.performer((1, 0, None)).is_some()
+        );
     }
 
     /// Two connections of one machine can show sixteen performers; another machine finds a place all the same.
@@ -297,7 +315,7 @@ mod tests {
         }
         source.waiting = None;
         assert_eq!(source.performers.present().count(), MAX_PERFORMERS);
-        let Some(victim) = source.performers.find(&(102, NAMES as u16 - 1)) else {
+        let Some(victim) = source.performers.find(&(102, NAMES as u16 - 1, None)) else {
             panic!("everybody has a place");
         };
         let gone = source.pose(103, body(0), &mut frame);

@@ -14,17 +14,25 @@
 //!   person stands in a T-pose, facing +Z, the left side at +X. Lengths are those of a standard body; `root` is where
 //!   its hips are.
 //!
+//! - `hand`: `left` or `right`, for a line about one hand: names in `positions` then need no side, and `points` are its. Without it, the
+//!   side of points whose names say none follows from the way in which fingers curl.
+//! - `points`: a list of `[x, y, z]` in the order of a model with this many points: hands of 20 (SHREC), 21 (MediaPipe), 25 (WebXR) and 26
+//!   (OpenXR) points, or the landmarks of a body. `{"left": […], "right": […]}` are both hands of one performer.
+//!
 //! Roles are those of mapping files: hips, torso, neck, head, and left_ and right_ thigh, shin, foot, shoulder, arm,
-//! forearm, hand. What a line leaves out, or
+//! forearm, hand, and the points of hands: left_ and right_ palm, thumb_1 to thumb_3, thumb_tip, index_1 and so on. Points of hands are
+//! known by the names of MediaPipe and OpenXR, too. What a line leaves out, or
 //! gives as `null`, is unknown at that time. Other fields are ignored.
 
 use std::collections::BTreeMap;
 use std::io::Write;
 
+use morec::features::Hand;
 use morec::live::Recording;
 use morec::live::vmc::{HUMANOID, HUMANOID_BONES};
 use morec::math::{Quat, Vec3, rotation_of_xyzw};
 use morec::roles::Role;
+use morec::roles::points::{NUMBERED_HANDS, hand_role, numbered_hand};
 use serde_json::{Map, Value, json};
 
 /// A pose as a line gives it.
@@ -33,9 +41,25 @@ use serde_json::{Map, Value, json};
 struct PoseFields {
     t: Option<f64>,
     actor: u16,
+    hand: Option<Hand>,
     root: Option<[f64; 3]>,
     positions: BTreeMap<String, Option<[f64; 3]>>,
+    points: LinePoints,
     rotations: BTreeMap<String, Option<[f64; 4]>>,
+}
+
+/// Points without names: of one performer, or of both hands.
+#[derive(Debug, serde::Deserialize)]
+#[serde(untagged)]
+enum LinePoints {
+    Of(Vec<Option<[f64; 3]>>),
+    Hands(BTreeMap<Hand, Vec<Option<[f64; 3]>>>),
+}
+
+impl Default for LinePoints {
+    fn default() -> Self {
+        Self::Of(Vec::new())
+    }
 }
 
 /// A pose in the order of roles; what is unknown is not a number.
@@ -45,8 +69,14 @@ pub struct PoseLine {
     pub time_secs: Option<f64>,
     /// The performer it shows.
     pub actor: u16,
+    /// The hand that the line says it is about.
+    pub hand: Option<Hand>,
     /// Places of the role joints.
     pub positions: [Vec3; Role::COUNT],
+    /// True if positions of the right hand are those of a hand whose side nothing says.
+    pub is_sideless: bool,
+    /// Points that only other frames tell what they are, in the order of their numbers.
+    pub points: Vec<Vec3>,
     /// Empty if the line gave positions.
     pub rotations: Vec<Quat>,
 }
@@ -63,25 +93,81 @@ impl PoseLine {
         let mut pose = Self {
             time_secs: line.t.filter(|t| t.is_finite()),
             actor: line.actor,
-            positions: [Vec3::repeat(f64::NAN); Role::COUNT],
+            hand: line.hand,
+            positions: [UNKNOWN; Role::COUNT],
+            is_sideless: false,
+            points: Vec::new(),
             rotations: Vec::new(),
         };
         if line.rotations.is_empty() {
             for (name, position) in &line.positions {
-                let role = role("positions", name)?;
+                let role = pose.role_at(name)?;
                 if let Some(position) = position {
                     pose.positions[role.index()] = Vec3::from(*position);
                 }
             }
+            pose.number(&line.points)?;
         } else {
             pose.turn(&line)?;
         }
-        if pose.known() == 0 {
-            let text =
-                "expected `positions` or `rotations` of some part of the body, found neither";
+        if pose.known() == 0 && pose.points.is_empty() {
+            let text = "expected `positions`, `points` or `rotations` of some part of the body, found none";
             return Err(text.to_owned());
         }
         Ok(pose)
+    }
+
+    /// The role of a name in `positions`, by the hand of the line.
+    fn role_at(&mut self, name: &str) -> Result<Role, String> {
+        if let (None, Some(role)) = (self.hand, Role::from_name(name)) {
+            return Ok(role);
+        }
+        match (hand_role(name, self.hand.unwrap_or(Hand::Right)), self.hand) {
+            (Some((Some(of), _)), Some(hand)) if of != hand => {
+                let (name, hand) = (shown(name), side(hand));
+                Err(format!(
+                    "positions.{name}: expected a point of the {hand} hand, as `hand` says, found one of the other"
+                ))
+            }
+            (Some((of, role)), hand) => {
+                self.is_sideless |= of.is_none() && hand.is_none();
+                Ok(role)
+            }
+            (None, Some(_)) => Err(format!(
+                "positions.{0}: no point of a hand is called {0}; there are {1}",
+                shown(name),
+                hand_names()
+            )),
+            (None, None) => role("positions", name),
+        }
+    }
+
+    /// Takes points that have numbers for names.
+    fn number(&mut self, points: &LinePoints) -> Result<(), String> {
+        let place = |point: &Option<[f64; 3]>| point.map_or(UNKNOWN, Vec3::from);
+        let hands: Vec<(Hand, &Vec<_>)> = match (points, self.hand) {
+            (LinePoints::Hands(hands), _) => hands.iter().map(|(hand, of)| (*hand, of)).collect(),
+            (LinePoints::Of(points), Some(hand)) if !points.is_empty() => vec![(hand, points)],
+            (LinePoints::Of(points), _) => {
+                self.points = points.iter().map(place).collect();
+                return Ok(());
+            }
+        };
+        for (hand, points) in hands {
+            let roles = numbered_hand(points.len(), hand).ok_or_else(|| {
+                format!(
+                    "points: expected {} points of a hand, found {}",
+                    one_of(&NUMBERED_HANDS),
+                    points.len()
+                )
+            })?;
+            for (role, point) in roles.into_iter().zip(points) {
+                if let Some(role) = role {
+                    self.positions[role.index()] = place(point);
+                }
+            }
+        }
+        Ok(())
     }
 
     /// A standard body with its joints turned; what is not named is not turned.
@@ -132,14 +218,20 @@ impl PoseLine {
         Ok(())
     }
 
-    /// True if it shows the hips and five other joints at least: a body that can be recognised.
+    /// True if it shows somebody who can be recognised: the hips and five other joints at least, ten points of hands, a head and both
+    /// hands.
     pub fn shows_body(&self) -> bool {
         let known = self.known();
-        known >> Role::Hips.index() & 1 == 1 && known.count_ones() > 5
+        let has = |role: Role| known >> role.index() & 1 == 1;
+        let hands = known >> Role::BODY_COUNT;
+        let tracked = [Role::Head, Role::LeftHand, Role::RightHand];
+        has(Role::Hips) && known.count_ones() > 5
+            || hands.count_ones() >= 10
+            || tracked.into_iter().all(has)
     }
 
     /// The roles whose joints have a place: bit `r` for role `r`.
-    pub fn known(&self) -> u32 {
+    pub fn known(&self) -> u64 {
         let known = |p: &Vec3| p.iter().all(|c| c.is_finite());
         (0..Role::COUNT)
             .filter(|r| known(&self.positions[*r]))
@@ -147,12 +239,40 @@ impl PoseLine {
     }
 }
 
+/// What is not known of a place.
+pub(crate) const UNKNOWN: Vec3 = Vec3::new(f64::NAN, f64::NAN, f64::NAN);
+
+/// The numbers in words, `20, 21 or 25`.
+pub(crate) fn one_of(counts: &[usize]) -> String {
+    let words: Vec<String> = counts.iter().map(usize::to_string).collect();
+    match words.split_last() {
+        Some((last, first)) if !first.is_empty() => format!("{} or {last}", first.join(", ")),
+        _ => words.concat(),
+    }
+}
+
+fn side(hand: Hand) -> &'static str {
+    match hand {
+        Hand::Left => "left",
+        Hand::Right => "right",
+    }
+}
+
+/// Names of the points of a hand, without a side.
+fn hand_names() -> String {
+    let names = Hand::Right.beside_wrist().map(Role::name);
+    let bare = names.map(|name| name.trim_start_matches("right_"));
+    format!("wrist, {}", bare.join(", "))
+}
+
 /// The role of this name under `key`.
 fn role(key: &str, name: &str) -> Result<Role, String> {
     Role::from_name(name).ok_or_else(|| {
-        let names = Role::ALL.map(Role::name).join(", ");
+        let names = Role::BODY.map(Role::name).join(", ");
         let name = shown(name);
-        format!("{key}.{name}: no part of the body is called {name}; there are {names}")
+        format!(
+            "{key}.{name}: no part of the body is called {name}; there are {names}, and points of hands from left_palm to right_little_tip"
+        )
     })
 }
 
@@ -184,6 +304,11 @@ fn explain(text: &str, otherwise: &str) -> String {
                     .is_none()
                     .then_some((String::new(), "a whole number from 0", value))
             }
+            "hand" => {
+                let is_side = matches!(value.as_str(), Some("left" | "right"));
+                (!is_side && !value.is_null()).then_some((String::new(), "left or right", value))
+            }
+            "points" => numbered(value),
             "root" => (!value.is_null() && !is_numbers(value, 3)).then_some((
                 String::new(),
                 "[x, y, z]",
@@ -213,6 +338,31 @@ fn parts<'v>(
         .iter()
         .find(|(_, value)| !value.is_null() && !is_numbers(value, count))
         .map(|(name, value)| (format!(".{}", shown(name)), expected, value))
+}
+
+/// What is wrong with numbered points.
+fn numbered(value: &Value) -> Option<(String, &'static str, &Value)> {
+    fn found<'v>(list: &'v [Value], of: &str) -> Option<(String, &'static str, &'v Value)> {
+        let mut points = list.iter().enumerate();
+        let (number, point) = points.find(|(_, p)| !p.is_null() && !is_numbers(p, 3))?;
+        Some((format!("{of}[{number}]"), "[x, y, z]", point))
+    }
+    match value {
+        Value::Array(list) => found(list, ""),
+        Value::Object(hands) => hands.iter().find_map(|(hand, points)| {
+            let of = format!(".{}", shown(hand));
+            match (hand.as_str(), points) {
+                ("left" | "right", Value::Array(list)) => found(list, &of),
+                ("left" | "right", _) => Some((of, "a list of [x, y, z]", points)),
+                _ => Some((of, "left or right", points)),
+            }
+        }),
+        _ => Some((
+            String::new(),
+            "a list of [x, y, z], or those of left and right",
+            value,
+        )),
+    }
 }
 
 fn is_numbers(value: &Value, count: usize) -> bool {
@@ -308,7 +458,7 @@ mod tests {
         for (line, said) in [
             ("", "no JSON"),
             ("hello", "column 1: no JSON"),
-            ("{}", "expected `positions` or `rotations`"),
+            ("{}", "expected `positions`, `points` or `rotations`"),
             ("[1,2]", "expected an object {…}, found 2 numbers"),
             (
                 r#"{"positions": {"tail": [0,0,0]}}"#,
@@ -320,7 +470,7 @@ mod tests {
             ),
             (
                 r#"{"positions": {"head": null}}"#,
-                "expected `positions` or `rotations`",
+                "expected `positions`, `points` or `rotations`",
             ),
             (
                 r#"{"positions": 5}"#,

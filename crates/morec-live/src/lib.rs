@@ -43,6 +43,7 @@ mod sinks;
 mod sources;
 mod summary;
 mod threads;
+mod unnamed;
 mod vmc;
 mod websocket;
 

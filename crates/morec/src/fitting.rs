@@ -49,7 +49,7 @@ pub enum FitError {
 struct FittedBone(Role, &'static str, &'static [Role], [f64; 3]);
 
 /// The skeleton, parents first. Faces +Z, left at +X.
-const BONES: [FittedBone; Role::COUNT] = {
+const BONES: [FittedBone; Role::BODY_COUNT] = {
     use Role::*;
     [
         FittedBone(Hips, "Hips", &[], [0.0, 0.0, 0.0]),

@@ -1,6 +1,6 @@
 //! Every fault a caller can make is answered with a status, and changes nothing.
 
-use std::ffi::{CStr, c_char};
+use std::ffi::{CStr, CString, c_char};
 use std::ptr::{null, null_mut, without_provenance_mut};
 
 use morec_capi::*;
@@ -335,6 +335,31 @@ fn options_that_cannot_be_are_refused() {
     assert_eq!(skeleton(5000, &[]), MorecStatus::InvalidValue);
     assert_eq!(skeleton(2, &[-1, 1]), MorecStatus::InvalidValue);
     assert_eq!(skeleton(2, &[-1, 0]), MorecStatus::NothingInCommon);
+    // Points of a hand, by their names and by their numbers, are of another kind of performer.
+    let (parents, points) = ([-1; 21], &morec::roles::Role::ALL[39..60]);
+    let names = points.iter().map(|role| CString::new(role.name()).unwrap());
+    let names: Vec<CString> = names.collect();
+    let texts: Vec<_> = names.iter().map(|name| name.as_ptr()).collect();
+    let roles: Vec<i32> = (39..60).collect();
+    for (names, roles) in [(texts.as_ptr(), null()), (null(), roles.as_ptr())] {
+        let skeleton = MorecSkeleton {
+            struct_size: size_of::<MorecSkeleton>(),
+            joint_count: 21,
+            parents: parents.as_ptr(),
+            names,
+            offsets: null(),
+            roles,
+        };
+        assert_eq!(
+            status(&|o| o.skeleton = &skeleton),
+            MorecStatus::NothingInCommon
+        );
+        let said = last_error();
+        assert!(
+            said.contains("this index is of a body; what is shown here is a hand"),
+            "{said}"
+        );
+    }
 }
 
 #[test]

@@ -99,7 +99,7 @@ fn run(
         .collect();
     let offsets = caller.offsets();
     let role = |j| {
-        Role::ALL
+        Role::BODY
             .into_iter()
             .find(|r| roles.is_some_and(|roles| roles.joint(*r) == Some(j)))
     };

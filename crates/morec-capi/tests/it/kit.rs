@@ -123,7 +123,7 @@ pub fn frame(time_secs: f64, positions: &[f64]) -> MorecFrame {
 /// A pose as a stream of roles has it.
 pub fn positions(pose: &KeyPose) -> Vec<f64> {
     let of = |role| pose.get(role).map_or([f64::NAN; 3], |p| [p.x, p.y, p.z]);
-    Role::ALL.into_iter().flat_map(of).collect()
+    Role::BODY.into_iter().flat_map(of).collect()
 }
 
 impl Recognizer {

@@ -54,7 +54,7 @@ impl ProposalData {
         tick_hz: f64,
     ) -> Self {
         let infos: BTreeMap<ClipId, &ClipInfo> = infos.iter().map(|c| (c.id, c)).collect();
-        let mut taught = BoneSet::ALL;
+        let mut taught = BoneSet::BODY;
         let (mut moving, mut places) = (Vec::new(), BTreeMap::new());
         let mut clips = Vec::new();
         for of in rows {

@@ -124,7 +124,7 @@ impl SharedLanes {
         let (mut mask, mut bone_mask) = (SketchLanes::ZERO, [0f32; SIDE]);
         for bone in bones.indices() {
             bone_mask[bone] = 1.0;
-            mask.0[RowLayout::ALL.direction(bone)].fill(1.0);
+            mask.0[RowLayout::BODY.direction(bone)].fill(1.0);
         }
         Self {
             bones,

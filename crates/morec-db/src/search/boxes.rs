@@ -8,7 +8,7 @@
 //! twice as many. The octaves of a bone in a summary add up to its energy over the rows, so that by the triangle
 //! inequality they differ from the example's by no less than their lengths do.
 
-use morec::features::{BONES, RowLayout, Rows};
+use morec::features::{BODY_BONES, RowLayout, Rows};
 
 use super::layout::ROOT_WEIGHT;
 use super::summary::{MEAN, Summary};
@@ -24,7 +24,7 @@ const MOST: f32 = 16.0;
 const ROOT_UNIT: f32 = MOST / (255.0 * 255.0);
 
 /// Bytes of a box: least and greatest directions, least and greatest travel, and for each level least and greatest energies.
-pub const BOX_BYTES: usize = 2 * X + 4 * TRAVEL + 2 * BONES * LEVELS.len();
+pub const BOX_BYTES: usize = 2 * X + 4 * TRAVEL + 2 * BODY_BONES * LEVELS.len();
 
 /// The box of a clip's rows in the layout of all bones; `None` of rows that are beyond what it can hold. O(values).
 pub fn boxed(rows: &Rows) -> Option<Vec<u8>> {
@@ -33,18 +33,18 @@ pub fn boxed(rows: &Rows) -> Option<Vec<u8>> {
     let least = |at: usize| column(at).fold(f32::INFINITY, f32::min);
     let greatest = |at: usize| column(at).fold(f32::NEG_INFINITY, f32::max);
     let byte = |value: f32| (value.abs() <= 127.0).then(|| (value as i8).cast_unsigned());
-    for at in RowLayout::ALL.directions() {
+    for at in RowLayout::BODY.directions() {
         out.push(byte((least(at) / POSE_UNIT).floor())?);
     }
-    for at in RowLayout::ALL.directions() {
+    for at in RowLayout::BODY.directions() {
         out.push(byte((greatest(at) / POSE_UNIT).ceil())?);
     }
     let travel = |value: f32| (f64::from(value) / ROOT_WEIGHT).asinh() as f32 / TRAVEL_UNIT;
     let short = |value: f32| (value.abs() <= 32_000.0).then(|| (value as i16).to_le_bytes());
-    for at in RowLayout::ALL.root() {
+    for at in RowLayout::BODY.root() {
         out.extend(short(travel(least(at)).floor() - 1.0)?);
     }
-    for at in RowLayout::ALL.root() {
+    for at in RowLayout::BODY.root() {
         out.extend(short(travel(greatest(at)).ceil() + 1.0)?);
     }
     let sums = running(rows);
@@ -62,14 +62,14 @@ pub fn boxed(rows: &Rows) -> Option<Vec<u8>> {
 }
 
 /// Sums over rows, and sums of each bone's squares.
-type RowSums = ([f64; X], [f64; BONES]);
+type RowSums = ([f64; X], [f64; BODY_BONES]);
 
 /// Running sums over the rows before each.
 fn running(rows: &Rows) -> Vec<RowSums> {
-    let mut sum = ([0f64; X], [0f64; BONES]);
+    let mut sum = ([0f64; X], [0f64; BODY_BONES]);
     let mut sums = vec![sum];
     for row in rows.iter() {
-        for (lane, value) in row[RowLayout::ALL.directions()].iter().enumerate() {
+        for (lane, value) in row[RowLayout::BODY.directions()].iter().enumerate() {
             let value = f64::from(*value);
             sum.0[lane] += value;
             sum.1[lane / 3] += value * value;
@@ -80,12 +80,12 @@ fn running(rows: &Rows) -> Vec<RowSums> {
 }
 
 /// Least and greatest energy of each bone over windows of `level` rows, or of all if there are less.
-fn energies(sums: &[RowSums], level: usize) -> ([f64; BONES], [f64; BONES]) {
+fn energies(sums: &[RowSums], level: usize) -> ([f64; BODY_BONES], [f64; BODY_BONES]) {
     let level = level.min(sums.len() - 1);
     let per_row = 1.0 / level as f64;
-    let (mut least, mut greatest) = ([f64::INFINITY; BONES], [0f64; BONES]);
+    let (mut least, mut greatest) = ([f64::INFINITY; BODY_BONES], [0f64; BODY_BONES]);
     for (before, after) in sums.iter().zip(&sums[level..]) {
-        for bone in 0..BONES {
+        for bone in 0..BODY_BONES {
             let mut energy = after.1[bone] - before.1[bone];
             for lane in 3 * bone..3 * bone + 3 {
                 let sum = after.0[lane] - before.0[lane];
@@ -101,9 +101,9 @@ fn energies(sums: &[RowSums], level: usize) -> ([f64; BONES], [f64; BONES]) {
 /// Lengths of the octaves of each bone, all of them together, as [`BoxView::octaves`] takes them.
 pub fn roots(summary: &Summary) -> [f32; 16] {
     let mut roots = [0f32; 16];
-    for bone in 0..BONES {
+    for bone in 0..BODY_BONES {
         let octaves = summary[..MEAN].chunks(X);
-        let squares = octaves.flat_map(|o| &o[RowLayout::ALL.direction(bone)]);
+        let squares = octaves.flat_map(|o| &o[RowLayout::BODY.direction(bone)]);
         roots[bone] = squares.map(|v| v * v).sum::<f32>().sqrt();
     }
     roots
@@ -160,15 +160,15 @@ impl<'a> BoxView<'a> {
         let energies = &self.bytes[2 * X + 4 * TRAVEL..];
         let (mut least, mut greatest) = ([0f32; 16], [f32::INFINITY; 16]);
         for (number, level) in LEVELS.iter().enumerate() {
-            let of_level = &energies[2 * BONES * number..][..2 * BONES];
+            let of_level = &energies[2 * BODY_BONES * number..][..2 * BODY_BONES];
             if rows >= *level {
-                for bone in 0..BONES {
+                for bone in 0..BODY_BONES {
                     let code = f32::from(of_level[bone]);
                     least[bone] = code * code * per_row;
                 }
             } else {
-                for bone in 0..BONES {
-                    let code = f32::from(of_level[BONES + bone]);
+                for bone in 0..BODY_BONES {
+                    let code = f32::from(of_level[BODY_BONES + bone]);
                     greatest[bone] = code * code * per_row;
                 }
                 break;

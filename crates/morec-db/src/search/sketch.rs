@@ -190,10 +190,13 @@ fn prefix_sums(rows: &Rows) -> Vec<[f64; LANES]> {
     let mut sums = vec![sum];
     for t in 0..rows.len().next_multiple_of(BLOCK) {
         let row = rows.row(t.min(rows.len() - 1));
-        for (sum, value) in sum.iter_mut().zip(&row[RowLayout::ALL.directions()]) {
+        for (sum, value) in sum.iter_mut().zip(&row[RowLayout::BODY.directions()]) {
             *sum += f64::from(*value);
         }
-        for (sum, value) in sum[ROOT_LANE..].iter_mut().zip(&row[RowLayout::ALL.root()]) {
+        for (sum, value) in sum[ROOT_LANE..]
+            .iter_mut()
+            .zip(&row[RowLayout::BODY.root()])
+        {
             *sum += f64::from(*value);
         }
         sums.push(sum);
@@ -380,8 +383,8 @@ mod tests {
             read.read(&SketchBytes::of(&bytes).unwrap(), &tables);
             prop_assert_eq!(read.rows, length);
             let base = read.block(base.min(length) * PLACES);
-            let lanes: Vec<(usize, usize)> = RowLayout::ALL.directions().enumerate()
-                .chain(RowLayout::ALL.root().enumerate().map(|(i, c)| (ROOT_LANE + i, c))).collect();
+            let lanes: Vec<(usize, usize)> = RowLayout::BODY.directions().enumerate()
+                .chain(RowLayout::BODY.root().enumerate().map(|(i, c)| (ROOT_LANE + i, c))).collect();
             for place in 0..=length * PLACES {
                 let found = read.until(place, base, &tables);
                 let errors = read.errors(place);

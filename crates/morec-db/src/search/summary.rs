@@ -7,7 +7,7 @@
 
 use std::ops::Range;
 
-use morec::features::{BONES, BoneSet, RowLayout, opposite_bone, reflected_direction};
+use morec::features::{BODY_BONES, BoneSet, RowLayout, opposite_bone, reflected_direction};
 
 use super::layout::ROOT_WEIGHT;
 use super::windows::{Sums, TRAVEL, X};
@@ -148,7 +148,7 @@ impl SummaryDistance {
     pub fn over(shared: BoneSet) -> Self {
         Self {
             shared,
-            scale: BONES as f32 / shared.len().max(1) as f32,
+            scale: BODY_BONES as f32 / shared.len().max(1) as f32,
         }
     }
 
@@ -159,7 +159,7 @@ impl SummaryDistance {
 
     /// 0 for the same, around 3 for unlike motion.
     pub fn distance(&self, a: &Summary, b: &Summary) -> f32 {
-        let (motion, pose) = if self.shared == BoneSet::ALL {
+        let (motion, pose) = if self.shared == BoneSet::BODY {
             (
                 squared(&a[..MEAN], &b[..MEAN]),
                 squared(&a[MEAN..ROOT], &b[MEAN..ROOT]),
@@ -197,7 +197,7 @@ impl SummaryDistance {
 
 /// Values of one bone in a block of `X`: an octave, or after these the mean pose.
 fn at(block: usize, bone: usize) -> Range<usize> {
-    let place = RowLayout::ALL.direction(bone);
+    let place = RowLayout::BODY.direction(bone);
     block * X + place.start..block * X + place.end
 }
 
@@ -222,7 +222,7 @@ fn squared(a: &[f32], b: &[f32]) -> f32 {
 /// The summary that the stretch's mirror image has: sides swapped, lateral parts of pose and travel the other way.
 pub fn mirrored_summary(of: &Summary) -> Summary {
     let mut out = *of;
-    for bone in 0..BONES {
+    for bone in 0..BODY_BONES {
         let opposite = opposite_bone(bone);
         for octave in 0..OCTAVES {
             out[at(octave, bone)].copy_from_slice(&of[at(octave, opposite)]);
@@ -300,7 +300,7 @@ mod tests {
 
         #[test]
         fn the_mirror_image_is_summed_up_in_the_mirror(values in prop::collection::vec(-1f32..1.0, 20 * DIM)) {
-            let laid = to_canonical(&Rows::from_values(DIM, values), BoneSet::ALL);
+            let laid = to_canonical(&Rows::from_values(DIM, values), BoneSet::BODY);
             let of = Sums::of(&laid.rows).octaves(&(2..19));
             let image = Sums::of(&mirrored(&laid).rows).octaves(&(2..19));
             for (a, b) in mirrored_summary(&of).iter().zip(&image) {
@@ -315,7 +315,7 @@ mod tests {
             for (held, direct) in moments_in(&sums.octaves(&a)).iter().zip(sums.moments_of(&a)) {
                 prop_assert!((held - direct).abs() < 2e-3);
             }
-            for bones in [BoneSet::ALL, BoneSet::NONE.with(2).with(5)] {
+            for bones in [BoneSet::BODY, BoneSet::NONE.with(2).with(5)] {
                 let over = SummaryDistance::over(bones);
                 let bound = over.by_moments(&sums.moments_of(&a), &sums.moments_of(&b));
                 prop_assert!(bound <= over.distance(&sums.octaves(&a), &sums.octaves(&b)) + 5e-3);
@@ -337,9 +337,9 @@ mod tests {
                 }
             }
             prop_assert_eq!(over.distance(&a, &b), over.distance(&a, &changed));
-            let all = SummaryDistance::over(BoneSet::ALL);
+            let all = SummaryDistance::over(BoneSet::BODY);
             prop_assert!(all.distance(&a, &b) < all.distance(&a, &changed) + all.distance(&b, &changed) + 1e-4);
-            let masked = SummaryDistance { shared: BoneSet::ALL, scale: 1.0 }.masked(&a, &b);
+            let masked = SummaryDistance { shared: BoneSet::BODY, scale: 1.0 }.masked(&a, &b);
             prop_assert!((masked.0 - squared(&a[..MEAN], &b[..MEAN])).abs() < 1e-3);
             prop_assert_eq!(all.distance(&a, &a), 0.0);
         }

@@ -16,7 +16,7 @@ fn a_mirror_of_a_mirror_is_the_thing() {
     let values = (0..3 * DIM).map(|i| i as f32 - 50.0).collect();
     let laid = to_canonical(
         &Rows::from_values(DIM, values),
-        morec::features::BoneSet::ALL,
+        morec::features::BoneSet::BODY,
     );
     assert_eq!(mirrored(&mirrored(&laid)).rows, laid.rows);
     assert_ne!(mirrored(&laid).rows, laid.rows);
@@ -72,7 +72,7 @@ fn an_exact_copy_comes_first() {
     let image = mirrored(&to_canonical(&rows[2].rows, bones)).rows;
     again.push(ClipRows {
         clip: ClipId(1001),
-        bones: morec::features::BoneSet::ALL,
+        bones: morec::features::BoneSet::BODY,
         rows: image,
     });
     let index = SearchIndex::new(&again, 30.0);
@@ -168,7 +168,7 @@ fn a_learned_metric_tells_classes_of_others_apart() {
     };
     let (wave, bow, other) = (place(3, "wave"), place(3, "bow"), place(4, "wave"));
     let plain = |a: &summary::Summary, b: &summary::Summary| {
-        summary::SummaryDistance::over(morec::features::BoneSet::ALL).distance(a, b)
+        summary::SummaryDistance::over(morec::features::BoneSet::BODY).distance(a, b)
     };
     let learned = wave.0.distance(&other.0) / wave.0.distance(&bow.0);
     assert!(

@@ -2,12 +2,12 @@
 
 use std::ops::Range;
 
-use morec::features::{BONES, RowLayout, Rows};
+use morec::features::{BODY_BONES, RowLayout, Rows};
 
 use super::layout::ROOT_WEIGHT;
 
 /// Coordinates of directions.
-pub const X: usize = RowLayout::ALL.directions().end;
+pub const X: usize = RowLayout::BODY.directions().end;
 /// Values of root motion.
 pub const TRAVEL: usize = RowLayout::ROOT;
 /// Values in a summary: means and standard deviations of directions, mean root motion.
@@ -28,8 +28,8 @@ impl Sums {
         let mut sums = sum.to_vec();
         let mut squares = square.to_vec();
         for row in rows.iter() {
-            let directions = &row[RowLayout::ALL.directions()];
-            let root = &row[RowLayout::ALL.root()];
+            let directions = &row[RowLayout::BODY.directions()];
+            let root = &row[RowLayout::BODY.root()];
             for (i, value) in directions.iter().chain(root).enumerate() {
                 sum[i] += f64::from(*value);
             }
@@ -98,7 +98,7 @@ pub fn distance(a: &[f32; SUMMARY], b: &[f32; SUMMARY], shown: &[bool; X], share
 pub fn shown(bones: morec::features::BoneSet) -> ([bool; X], f32) {
     let mut shown = [false; X];
     for bone in bones.indices() {
-        shown[RowLayout::ALL.direction(bone)].fill(true);
+        shown[RowLayout::BODY.direction(bone)].fill(true);
     }
-    (shown, bones.len().max(1) as f32 / BONES as f32)
+    (shown, bones.len().max(1) as f32 / BODY_BONES as f32)
 }

@@ -9,7 +9,7 @@ mod tests;
 use crate::classes::ClassId;
 
 pub use decoder::{Decoder, ScoredCandidate};
-pub use params::{CandidatePolicy, DecodeParams};
+pub use params::{CandidatePolicy, DecodeParams, TYPICAL_SPREAD};
 
 /// Distance of a class that nothing has matched yet.
 pub const FAR: f32 = 1e30;

@@ -1,5 +1,8 @@
 //! The parameters of decoding.
 
+/// Spread of a usual template of a body under a trained metric, the median over referee signals and Kinect gestures.
+pub const TYPICAL_SPREAD: f32 = 1.7;
+
 /// Parameters of decoding: from distances to detections. An index keeps the values it was trained with; fields that older indexes lack
 /// take values that change nothing.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -27,6 +30,9 @@ pub struct DecodeParams {
     /// [`Matcher`](crate::templates::Matcher).
     #[serde(default)]
     pub spread_exponent: f32,
+    /// Spread of a usual template, `V_0` of [`Matcher`](crate::templates::Matcher): a body's, or the median of those of the index.
+    #[serde(default = "of_bodies")]
+    pub typical_spread: f32,
     /// A match counts only if it is nearer than this share of the distance of a body that stands still in the mean
     /// pose of the matched stretch (see [`Matcher`](crate::templates::Matcher)). 0 admits everything.
     #[serde(default)]
@@ -65,6 +71,10 @@ pub struct DecodeParams {
     pub end_fall: f32,
 }
 
+fn of_bodies() -> f32 {
+    TYPICAL_SPREAD
+}
+
 impl Default for DecodeParams {
     /// Chosen on referee signals and on sessions before a Kinect; `docs/parameters.md` has the reasons.
     fn default() -> Self {
@@ -77,6 +87,7 @@ impl Default for DecodeParams {
             overlap_share: 0.5,
             hold_ticks: 2,
             spread_exponent: 0.85,
+            typical_spread: TYPICAL_SPREAD,
             rest_gate: 0.60,
             rest_gate_verified: 0.85,
             rest_spread: 0.5,
@@ -103,6 +114,7 @@ impl DecodeParams {
             overlap_share: 0.0,
             hold_ticks: 0,
             spread_exponent: 0.0,
+            typical_spread: TYPICAL_SPREAD,
             rest_gate: 0.0,
             rest_gate_verified: 0.0,
             rest_spread: 0.0,
@@ -128,6 +140,12 @@ impl DecodeParams {
             return Err(format!(
                 "end_fall must be 0 or more, found {}",
                 self.end_fall
+            ));
+        }
+        if !(1e-6..=1e6).contains(&self.typical_spread) {
+            return Err(format!(
+                "typical_spread must be above 0, found {}",
+                self.typical_spread
             ));
         }
         self.check_shares()?;

@@ -4,6 +4,8 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
+use crate::features::Profile;
+
 use super::role_set::RoleSet;
 
 /// Offsets of joints towards the front of a body, as shares of its trunk's length; the front is where it would be if the
@@ -75,9 +77,24 @@ pub struct Diagnosis {
     pub noise_m: Option<f64>,
     /// Share of the frames in which a joint is thrown aside.
     pub spike_share: f64,
-    /// Body parts that are never seen.
+    /// What is shown: a body, hands, tracked points.
+    #[serde(default)]
+    pub profile: Profile,
+    /// A hand from the wrist to the tip of its middle finger, metres.
+    #[serde(default)]
+    pub hand_m: Option<f64>,
+    /// How often a minute a hand is away for longer than [`MAX_GAP_SECS`](crate::features::MAX_GAP_SECS).
+    #[serde(default)]
+    pub losses_per_minute: f64,
+    /// How often a minute the left and the right hand change places.
+    #[serde(default)]
+    pub swaps_per_minute: f64,
+    /// What is seen at all.
+    #[serde(default)]
+    pub seen: RoleSet,
+    /// Of what such a [`profile`](Self::profile) has, what is never seen.
     pub missing: RoleSet,
-    /// Body parts that are seen in less than four fifths of the frames.
+    /// Of that, what is seen in less than four fifths of the frames; points of a hand: of the frames that show the hand.
     pub flickering: RoleSet,
     /// Evidence on whether the sides are right.
     pub sides: SideEvidence,
@@ -100,7 +117,15 @@ impl fmt::Display for Diagnosis {
             (None, Some(leg)) => write!(f, "legs {leg:.2} m")?,
             (None, None) => match self.arm_m {
                 Some(arm) => write!(f, "half a body, arms {arm:.2} m")?,
-                None => f.write_str("no body")?,
+                None => match self.hand_m.filter(|_| self.profile != Profile::Body) {
+                    Some(hand) => {
+                        write!(f, "{}, {:.0} cm long", self.profile.words(), 100.0 * hand)?
+                    }
+                    None if self.profile == Profile::Points3 => {
+                        f.write_str(self.profile.words())?
+                    }
+                    None => f.write_str("no body")?,
+                },
             },
         }
         match self.tilt_rad.map(f64::to_degrees) {

@@ -129,6 +129,16 @@ pub enum Finding {
     MovingFloor,
     /// The hips do not move while the hands do.
     HipsFixed,
+    /// A hand is away again and again, for longer than recognition bridges.
+    HandLost {
+        /// How often a minute.
+        per_minute: f64,
+    },
+    /// Left and right hand change places.
+    HandsSwap {
+        /// How often a minute.
+        per_minute: f64,
+    },
 }
 
 /// Parts that most gestures are made of.
@@ -161,6 +171,7 @@ impl Finding {
             Noisy { .. } | Spikes { .. } | SlowRate { .. } | FramesLost { .. } | MovingFloor => {
                 Severity::Warning
             }
+            HandLost { .. } | HandsSwap { .. } => Severity::Warning,
             UnevenArrival { .. } | UnknownUnit { .. } | FramesRepeated { .. } | HipsFixed => {
                 Severity::Info
             }
@@ -191,6 +202,8 @@ impl Finding {
             UnevenArrival { .. } => "uneven arrival",
             MovingFloor => "moving floor",
             HipsFixed => "hips do not move",
+            HandLost { .. } => "hand comes and goes",
+            HandsSwap { .. } => "hands change places",
         }
     }
 
@@ -218,6 +231,8 @@ impl Finding {
             UnevenArrival { .. } => 17,
             MovingFloor => 18,
             HipsFixed => 19,
+            HandLost { .. } => 20,
+            HandsSwap { .. } => 21,
         }
     }
 }

@@ -3,12 +3,13 @@
 use serde::ser::SerializeSeq;
 use serde::{Serialize, Serializer};
 
-use crate::features::MAX_GAP_SECS;
+use crate::features::{Hand, MAX_GAP_SECS, Profile};
 use crate::math::{Axis, Vec3};
 use crate::roles::Role;
 
 use super::figures::Diagnosis;
 use super::finding::{Finding, Severity};
+use super::role_set::RoleSet;
 
 /// Findings of one diagnosis, at most one of a kind, the gravest first.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -18,7 +19,7 @@ pub struct Findings {
 }
 
 impl Findings {
-    const MOST: usize = 20;
+    const MOST: usize = 22;
 
     fn add(&mut self, finding: Option<Finding>) {
         if let (Some(finding), true) = (finding, self.count < Self::MOST) {
@@ -97,15 +98,24 @@ impl Diagnosis {
         if !enough {
             return found;
         }
+        // Hands leave the picture all the time.
+        let most_empty = if self.profile == Profile::Body {
+            0.3
+        } else {
+            0.9
+        };
         found.add(some(
-            self.empty_share > 0.3,
+            self.empty_share > most_empty,
             Finding::Nobody {
                 share: self.empty_share,
             },
         ));
         found.add(time);
         if self.empty_share < 0.9 {
-            self.body(&mut found);
+            match self.profile {
+                Profile::Body => self.body(&mut found),
+                _ => self.points(&mut found),
+            }
             if time.is_none() {
                 self.motion(&mut found);
             }
@@ -148,6 +158,24 @@ impl Diagnosis {
         );
         found.add(up);
         found.add(some(exchanged && !turned, Finding::SidesExchanged));
+        self.joints(missing, found);
+        let leg = self.leg_m.map(|leg| leg / self.metres_per_unit);
+        found.add(leg.and_then(|leg| some(!self.unit_known, Finding::UnknownUnit { leg })));
+    }
+
+    /// Of hands and of tracked points.
+    fn points(&self, found: &mut Findings) {
+        // Between a finger's base and its tip no joint is needed.
+        let ends = Hand::BOTH.map(|hand| hand.points().fingers.map(|f| [f[0], f[3]]));
+        let is_needed =
+            |role: &Role| !role.is_of_hand() || ends.as_flattened().as_flattened().contains(role);
+        self.joints(self.missing.iter().filter(is_needed).collect(), found);
+        let (losses, swaps) = (self.losses_per_minute, self.swaps_per_minute);
+        found.add(some(losses > 2.0, Finding::HandLost { per_minute: losses }));
+        found.add(some(swaps > 2.0, Finding::HandsSwap { per_minute: swaps }));
+    }
+
+    fn joints(&self, missing: RoleSet, found: &mut Findings) {
         found.add(some(
             !missing.is_empty(),
             Finding::JointsMissing { roles: missing },
@@ -158,8 +186,6 @@ impl Diagnosis {
                 roles: self.flickering,
             },
         ));
-        let leg = self.leg_m.map(|leg| leg / self.metres_per_unit);
-        found.add(leg.and_then(|leg| some(!self.unit_known, Finding::UnknownUnit { leg })));
     }
 
     fn up_finding(&self, mirrored: bool) -> Option<Finding> {

@@ -8,6 +8,7 @@
 
 mod figures;
 mod finding;
+mod hands;
 mod histogram;
 mod judge;
 mod noise;
@@ -23,10 +24,11 @@ pub use judge::Findings;
 pub use role_set::RoleSet;
 
 use crate::clip::{Clip, Span};
-use crate::features::{KeyPose, for_each_pose};
+use crate::features::{Hand, KeyPose, Profile, for_each_pose};
 use crate::math::{Axis, Vec3};
 use crate::roles::{Role, RoleMap, proportions};
 
+use hands::HandsWatch;
 use noise::NoiseEstimate;
 use shape::BodyShape;
 use stillness::Stillness;
@@ -46,6 +48,11 @@ const MOST_FADE_SECS: f64 = 0.1;
 /// A leg of a grown person; what children and giants have lies within [`LEGS_M`].
 const LEG_M: f64 = 0.85;
 const LEGS_M: std::ops::Range<f64> = 0.35..1.4;
+/// A hand from the wrist to the tip of its middle finger, and what people have.
+const HAND_M: f64 = 0.186;
+const HANDS_M: std::ops::Range<f64> = 0.1..0.3;
+/// Less of the frames is never.
+const SELDOM: f64 = 0.01;
 /// A trunk, from the hips to the neck, over a leg.
 const TRUNK_OF_LEG: f64 = 0.6;
 /// Units of length in use: metres, centimetres, millimetres, inches, feet, decimetres.
@@ -80,6 +87,7 @@ pub struct Diagnoser {
     looked_secs: f64,
     last: KeyPose,
     shape: BodyShape,
+    hands: HandsWatch,
     noise: NoiseEstimate,
     stillness: Stillness,
 }
@@ -107,6 +115,7 @@ impl Diagnoser {
             looked_secs: f64::NEG_INFINITY,
             last: KeyPose::default(),
             shape: BodyShape::default(),
+            hands: HandsWatch::default(),
             noise: NoiseEstimate::new(),
             stillness: Stillness::new(),
         }
@@ -128,7 +137,7 @@ impl Diagnoser {
         let Some(interval) = self.timing.push(time_secs, arrived_secs) else {
             return;
         };
-        if repeated {
+        if repeated && !is_empty(pose) {
             self.timing.repeat();
         } else {
             self.last = *pose;
@@ -154,9 +163,10 @@ impl Diagnoser {
     /// Measurements that need not be taken in every frame of a fast stream.
     fn look(&mut self, time_secs: f64, pose: &KeyPose, repeated: bool) {
         self.looked += 1.0;
-        for role in Role::ALL {
-            self.seen[role.index()] += f64::from(u8::from(pose.get(role).is_some()));
+        for role in pose.roles() {
+            self.seen[role.index()] += 1.0;
         }
+        self.hands.push(time_secs, pose);
         self.has_body = !is_empty(pose);
         if !self.has_body {
             self.empty += 1.0;
@@ -177,6 +187,7 @@ impl Diagnoser {
         self.looked *= factor;
         self.empty *= factor;
         self.shape.fade(factor);
+        self.hands.fade(factor);
         self.noise.fade(factor);
         self.stillness.fade(factor);
     }
@@ -190,22 +201,17 @@ impl Diagnoser {
                 .get()
                 .map(|arm| arm / proportions::ARM_TO_LEG)
         };
-        let Some(leg) = self
-            .shape
-            .leg
-            .get()
-            .or_else(trunk)
-            .or_else(arm)
-            .filter(|leg| *leg > 1e-9)
-        else {
+        let leg = self.shape.leg.get().or_else(trunk).or_else(arm);
+        let hand = self.hands.length.get();
+        let leg = leg.map(|leg| (leg, LEG_M, LEGS_M));
+        let known = leg.or_else(|| hand.map(|hand| (hand, HAND_M, HANDS_M)));
+        let Some((length, usual, range)) = known.filter(|(length, ..)| *length > 1e-9) else {
             return (1.0, true);
         };
-        match UNITS_M
-            .into_iter()
-            .find(|unit| LEGS_M.contains(&(leg * unit)))
-        {
+        let mut units = UNITS_M.into_iter();
+        match units.find(|unit| range.contains(&(length * unit))) {
             Some(unit) => (unit, true),
-            None => (LEG_M / leg, false),
+            None => (usual / length, false),
         }
     }
 
@@ -214,6 +220,8 @@ impl Diagnoser {
         let rhythm = self.timing.rhythm();
         let (unit, unit_known) = self.metres_per_unit();
         let shares = self.seen.map(|seen| seen / self.looked.max(1e-9));
+        let is_seen = |role: Role| shares[role.index()] >= SELDOM;
+        let profile = Profile::of_seen(is_seen);
         let body_up = self.shape.body_up();
         // A trunk that is bent now and then still points up on the mean.
         let steady = |up: &Vec3| up.norm() > 0.8;
@@ -225,8 +233,14 @@ impl Diagnoser {
             .and_then(|up| up.try_normalize(0.1));
         let height = self.height();
         let hips_and_hands = self.stillness.hips_and_hands();
+        // A hand that is out of view is lost as a whole: of its points, the frames count in which it is there.
+        let share = |role: Role| match Hand::of(role).filter(|_| profile != Profile::Body) {
+            Some(hand) => self.seen[role.index()] / self.hands.seen(hand).max(1e-9),
+            None => shares[role.index()],
+        };
         let with = |keep: &dyn Fn(f64) -> bool| {
-            let roles = Role::ALL.into_iter().filter(|r| keep(shares[r.index()]));
+            let expected = profile.expected(is_seen);
+            let roles = expected.filter(|role| keep(share(*role)));
             if self.empty < 0.9 * self.looked {
                 roles.collect()
             } else {
@@ -254,8 +268,16 @@ impl Diagnoser {
             tilt_rad: up.map(|up| up.angle(&Vec3::from(*Axis::Y.unit()))),
             noise_m: self.noise.metres(),
             spike_share: self.noise.spike_share(),
-            missing: with(&|share| share < 0.01),
-            flickering: with(&|share| (0.01..0.8).contains(&share)),
+            profile,
+            hand_m: self.hands.length.get().map(|hand| hand * unit),
+            losses_per_minute: self.hands.losses_per_minute(),
+            swaps_per_minute: self.hands.swaps_per_minute(),
+            seen: Role::ALL
+                .into_iter()
+                .filter(|role| is_seen(*role))
+                .collect(),
+            missing: with(&|share| share < SELDOM),
+            flickering: with(&|share| (SELDOM..0.8).contains(&share)),
             sides: self.shape.evidence(),
             still_secs: if self.fades {
                 self.stillness.still_secs()
@@ -276,7 +298,7 @@ impl Diagnoser {
 
 /// True if a pose shows nothing: no joint, or all of them at one place.
 fn is_empty(pose: &KeyPose) -> bool {
-    let mut places = Role::ALL.into_iter().filter_map(|role| pose.get(role));
+    let mut places = pose.roles().filter_map(|role| pose.get(role));
     let Some(first) = places.next() else {
         return true;
     };

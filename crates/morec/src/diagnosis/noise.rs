@@ -2,7 +2,6 @@
 
 use crate::features::KeyPose;
 use crate::math::Vec3;
-use crate::roles::Role;
 
 use super::histogram::Histogram;
 
@@ -82,7 +81,7 @@ impl NoiseEstimate {
             .max(LEAST_SPIKE_M)
             .max(7.0 * self.lately_m);
         let (mut known, mut spike) = (0, false);
-        for role in Role::ALL {
+        for role in self.row[0].roles() {
             let places = self.row.each_ref().map(|pose| pose.get(role));
             let [Some(a), Some(b), Some(c), Some(d), Some(e)] = places else {
                 continue;

@@ -26,7 +26,13 @@ impl Mean {
         self.count += 1.0;
     }
 
-    fn fade(&mut self, factor: f64) {
+    pub(super) fn add_known(&mut self, value: Option<f64>) {
+        if let Some(value) = value {
+            self.add(value);
+        }
+    }
+
+    pub(super) fn fade(&mut self, factor: f64) {
         self.sum *= factor;
         self.count *= factor;
     }

@@ -181,11 +181,8 @@ impl Stillness {
 }
 
 fn moved(a: &KeyPose, b: &KeyPose, least: f64) -> bool {
-    Role::ALL
-        .into_iter()
-        .any(|role| match (a.get(role), b.get(role)) {
-            (Some(a), Some(b)) => (b - a).norm_squared() > least * least,
-            (None, None) => false,
-            _ => true,
-        })
+    let far = |(a, b): (Vec3, Vec3)| (b - a).norm_squared() > least * least;
+    !a.roles().eq(b.roles())
+        || a.roles()
+            .any(|role| a.get(role).zip(b.get(role)).is_some_and(far))
 }

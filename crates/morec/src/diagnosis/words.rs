@@ -95,6 +95,14 @@ impl fmt::Display for Finding {
             HipsFixed => f.write_str(
                 "the hips never move: gestures of the arms are recognised, motions of the whole body (walking, squats, jumps) may not be; if somebody stands there, send positions in the room and not from the hips",
             ),
+            HandLost { per_minute } => write!(
+                f,
+                "a hand is lost {per_minute:.0} times a minute: keep it in view of the tracker, and away from its edges; a motion in which it is lost for half a second is not recognised",
+            ),
+            HandsSwap { per_minute } => write!(
+                f,
+                "left and right hand change places {per_minute:.0} times a minute: show the tracker the inner side of a hand or its back, not the edge, and keep hands apart; or send every hand with the side that it was first seen with",
+            ),
         }
     }
 }
@@ -130,7 +138,7 @@ fn joints_missing(f: &mut fmt::Formatter<'_>, roles: RoleSet) -> fmt::Result {
     const ADVICE: &str =
         "what an index knows of them is left out, so send them if the tracker has them";
     let is_lower = |role: Role| role == Role::Hips || LEGS.as_flattened().contains(&role);
-    let mut lower = Role::ALL.into_iter().filter(|role| is_lower(*role));
+    let mut lower = Role::BODY.into_iter().filter(|role| is_lower(*role));
     let heading = !roles.contains(Role::LeftArm) && !roles.contains(Role::RightArm);
     if !heading || !lower.all(|role| roles.contains(role)) {
         return write!(f, "never seen: {roles}; {ADVICE}");

@@ -14,7 +14,7 @@ use std::ops::Range;
 use crate::classes::ClassId;
 use crate::clip::{Clip, Span};
 use crate::decode::FAR;
-use crate::features::{Rows, bones_of_clip, rows_of_clip};
+use crate::features::{Rows, all_bones_of_clip, rows_of_clip};
 use crate::live::{Detection, Model};
 use crate::roles::RoleMap;
 use crate::templates::{
@@ -80,7 +80,7 @@ pub fn explain(
         reason,
         sensitivity,
     };
-    let bones = bones_of_clip(clip, roles, rest);
+    let bones = all_bones_of_clip(clip, roles, rest);
     let Ok(model) = model.restricted(bones) else {
         let unseen = |s| miss(s, (Reason::Unseen, None));
         return sought.iter().map(unseen).collect();

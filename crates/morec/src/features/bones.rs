@@ -4,8 +4,26 @@ use crate::math::Vec3;
 use crate::roles::{Role, RoleMap};
 
 use super::KeyPose;
+use super::hand::{Hand, lone_left_as_right};
 
-/// A line between two role joints whose direction is a feature.
+/// What of a bone is a feature.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BoneKind {
+    /// Its direction in the heading frame: a bone's length says nothing.
+    Direction,
+    /// The vector in the heading frame, in the performer's unit of length: tracked points that may come nearer to each other.
+    Offset,
+    /// The vector from the left palm to the right one, in the heading frame and the performer's unit of length.
+    Palms,
+    /// The vector in the frame of the palm, in lengths of a finger: how far a finger is bent.
+    Finger(Hand),
+    /// The direction in which a palm's fingers begin, in the heading frame.
+    PalmForward(Hand),
+    /// The direction that a palm faces away from, in the heading frame.
+    PalmNormal(Hand),
+}
+
+/// A line between two role joints that is a feature.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bone {
     /// Name in reports and index files.
@@ -14,24 +32,78 @@ pub struct Bone {
     pub from: Role,
     /// Joint at its end.
     pub to: Role,
-    /// Weight of its direction in a distance between poses.
+    /// What of it counts.
+    pub kind: BoneKind,
+    /// Weight in a distance between poses.
     pub weight: f64,
 }
 
+impl Bone {
+    /// The hand whose palm's axes it is given in, or is one of.
+    pub const fn hand(&self) -> Option<Hand> {
+        match self.kind {
+            BoneKind::Direction | BoneKind::Offset | BoneKind::Palms => None,
+            BoneKind::Finger(hand) | BoneKind::PalmForward(hand) | BoneKind::PalmNormal(hand) => {
+                Some(hand)
+            }
+        }
+    }
+}
+
 /// Number of bones known.
-pub const BONES: usize = 11;
+pub const BONES: usize = 29;
+/// Number of those of the body, which come first.
+pub const BODY_BONES: usize = 11;
 
 const fn bone(name: &'static str, from: Role, to: Role, weight: f64) -> Bone {
+    let kind = BoneKind::Direction;
     Bone {
         name,
         from,
         to,
+        kind,
         weight,
     }
 }
 
-/// Every bone, in the order of feature columns. The weights were chosen on referee signals: arms tell gestures
-/// apart, legs matter less, the head's direction is noisy.
+const fn offset(name: &'static str, from: Role, to: Role, weight: f64) -> Bone {
+    let kind = BoneKind::Offset;
+    Bone {
+        kind,
+        ..bone(name, from, to, weight)
+    }
+}
+
+/// A finger from its base to its tip.
+const fn finger(name: &'static str, hand: Hand, number: usize) -> Bone {
+    let [base, .., tip] = hand.points().fingers[number];
+    let kind = BoneKind::Finger(hand);
+    Bone {
+        kind,
+        ..bone(name, base, tip, 0.6)
+    }
+}
+
+/// An axis of a palm, along its middle or across it.
+const fn axis(name: &'static str, kind: BoneKind) -> Bone {
+    let (from, to) = match kind {
+        BoneKind::PalmNormal(hand) => {
+            let [_, index, .., little] = hand.points().fingers;
+            (index[0], little[0])
+        }
+        BoneKind::PalmForward(Hand::Left) => (Role::LeftHand, Role::LeftMiddle1),
+        _ => (Role::RightHand, Role::RightMiddle1),
+    };
+    Bone {
+        kind,
+        ..bone(name, from, to, 0.5)
+    }
+}
+
+/// Every bone, in the order of feature columns: the body's, each hand's, lines between tracked points.
+///
+/// The weights of the body were chosen on referee signals: arms tell gestures apart, legs matter less, the head's direction is
+/// noisy. Those of hands and tracked points were chosen on a prototype.
 pub const ALL_BONES: [Bone; BONES] = [
     bone("left_thigh", Role::LeftThigh, Role::LeftShin, 0.8),
     bone("left_shin", Role::LeftShin, Role::LeftFoot, 0.8),
@@ -44,6 +116,27 @@ pub const ALL_BONES: [Bone; BONES] = [
     bone("right_arm", Role::RightArm, Role::RightForearm, 1.0),
     bone("right_forearm", Role::RightForearm, Role::RightHand, 1.0),
     bone("head", Role::Neck, Role::Head, 0.3),
+    finger("left_thumb", Hand::Left, 0),
+    finger("left_index", Hand::Left, 1),
+    finger("left_middle", Hand::Left, 2),
+    finger("left_ring", Hand::Left, 3),
+    finger("left_little", Hand::Left, 4),
+    axis("left_palm_forward", BoneKind::PalmForward(Hand::Left)),
+    axis("left_palm_normal", BoneKind::PalmNormal(Hand::Left)),
+    finger("right_thumb", Hand::Right, 0),
+    finger("right_index", Hand::Right, 1),
+    finger("right_middle", Hand::Right, 2),
+    finger("right_ring", Hand::Right, 3),
+    finger("right_little", Hand::Right, 4),
+    axis("right_palm_forward", BoneKind::PalmForward(Hand::Right)),
+    axis("right_palm_normal", BoneKind::PalmNormal(Hand::Right)),
+    Bone {
+        kind: BoneKind::Palms,
+        ..bone("palm_line", Role::LeftPalm, Role::RightPalm, 0.6)
+    },
+    offset("head_to_left_hand", Role::Head, Role::LeftHand, 1.8),
+    offset("head_to_right_hand", Role::Head, Role::RightHand, 1.8),
+    offset("hand_line", Role::LeftHand, Role::RightHand, 1.0),
 ];
 
 /// A set of bones of [`ALL_BONES`]: what a skeleton offers, or what an index uses.
@@ -51,17 +144,43 @@ pub const ALL_BONES: [Bone; BONES] = [
     Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
 )]
 #[serde(try_from = "Vec<String>", into = "Vec<String>")]
-pub struct BoneSet(u16);
+pub struct BoneSet(u32);
 
 impl BoneSet {
-    /// Every bone.
-    pub const ALL: BoneSet = BoneSet((1 << BONES) - 1);
     /// No bone.
     pub const NONE: BoneSet = BoneSet(0);
+    /// The bones of the body.
+    pub const BODY: BoneSet = BoneSet::range(0, 11);
     /// The trunk, the arms and the head.
-    pub const UPPER: BoneSet = BoneSet(0b111_1111_0000);
+    pub const UPPER: BoneSet = BoneSet::range(4, 11);
     /// The line of the shoulders and the arms.
-    pub const ARMS: BoneSet = BoneSet(0b011_1110_0000);
+    pub const ARMS: BoneSet = BoneSet::range(5, 10);
+    /// The left hand.
+    pub const LEFT_HAND: BoneSet = BoneSet::range(11, 18);
+    /// The right hand, or a hand that is seen alone, a left one as in a mirror.
+    pub const HAND: BoneSet = BoneSet::range(18, 25);
+    /// Both hands and the line between the palms.
+    pub const HANDS: BoneSet = BoneSet::range(11, 26);
+    /// The body and both hands.
+    pub const BODY_AND_HANDS: BoneSet = BoneSet::range(0, 25);
+    /// Lines between the head and the hands.
+    pub const POINTS3: BoneSet = BoneSet::range(26, 29);
+
+    /// The sets that have names.
+    pub const NAMED: [(&'static str, BoneSet); 8] = [
+        ("all", Self::BODY),
+        ("upper", Self::UPPER),
+        ("arms", Self::ARMS),
+        ("hand", Self::HAND),
+        ("left_hand", Self::LEFT_HAND),
+        ("hands", Self::HANDS),
+        ("body_and_hands", Self::BODY_AND_HANDS),
+        ("points3", Self::POINTS3),
+    ];
+
+    const fn range(start: u32, end: u32) -> Self {
+        BoneSet((1 << end) - (1 << start))
+    }
 
     /// True if bone `index` of [`ALL_BONES`] is in the set.
     pub fn contains(self, index: usize) -> bool {
@@ -81,6 +200,12 @@ impl BoneSet {
         BoneSet(self.0 & other.0)
     }
 
+    /// The bones in either set.
+    #[must_use]
+    pub fn or(self, other: BoneSet) -> Self {
+        BoneSet(self.0 | other.0)
+    }
+
     /// Number of bones in the set.
     pub fn len(self) -> usize {
         self.0.count_ones() as usize
@@ -96,22 +221,69 @@ impl BoneSet {
         (0..BONES).filter(move |&b| self.contains(b))
     }
 
-    /// The bones of which both ends are mapped.
+    /// From the first bone of the set to behind its last.
+    pub(super) fn span(self) -> std::ops::Range<usize> {
+        match self.0 {
+            0 => 0..0,
+            bits => {
+                bits.trailing_zeros() as usize..u32::BITS as usize - bits.leading_zeros() as usize
+            }
+        }
+    }
+
+    /// The bones whose points are mapped. A left hand alone counts as a right one, too.
     pub fn of_roles(roles: &RoleMap) -> Self {
-        Self::where_(|bone| roles.joint(bone.from).is_some() && roles.joint(bone.to).is_some())
+        Self::of_seen(|role| roles.joint(role).is_some())
     }
 
-    /// The bones that have a length in `pose`; a bone of no length has no direction.
+    /// The bones whose points are those for which `is_seen` holds. A left hand alone counts as a right one, too.
+    pub fn of_seen(is_seen: impl Fn(Role) -> bool) -> Self {
+        let shown = Self::where_(&is_seen, |_| true);
+        let hands = Hand::BOTH.map(|hand| is_seen(hand.points().fingers[1][0]));
+        match hands {
+            [true, false] => {
+                let image = Self::where_(|role| is_seen(role.opposite()), |_| true);
+                shown.or(image.and(Self::HAND))
+            }
+            _ => shown,
+        }
+    }
+
+    /// The bones that can be measured in `pose`: a bone of no length has no direction. A left hand alone counts as a right one, too.
     pub fn of_pose(pose: &KeyPose) -> Self {
-        Self::where_(|bone| match (pose.get(bone.from), pose.get(bone.to)) {
-            (Some(from), Some(to)) => has_length(&(to - from)),
-            _ => false,
-        })
+        let shown = |pose: &KeyPose| {
+            Self::where_(
+                |role| pose.get(role).is_some(),
+                |bone| match (bone.kind, bone.hand()) {
+                    (_, Some(hand)) => hand.palm_frame(pose).is_some(),
+                    (BoneKind::Palms, _) => true,
+                    _ => match (pose.get(bone.from), pose.get(bone.to)) {
+                        (Some(from), Some(to)) => has_length(&(to - from)),
+                        _ => false,
+                    },
+                },
+            )
+        };
+        match lone_left_as_right(pose) {
+            Some(image) => shown(pose).or(shown(&image).and(Self::HAND)),
+            None => shown(pose),
+        }
     }
 
-    fn where_(holds: impl Fn(&Bone) -> bool) -> Self {
+    fn where_(known: impl Fn(Role) -> bool, holds: impl Fn(&Bone) -> bool) -> Self {
+        let has_palm = |hand: Hand| {
+            let points = hand.points();
+            let [_, index, .., little] = points.fingers;
+            (known(points.palm) || known(points.wrist)) && known(index[0]) && known(little[0])
+        };
+        let is_known = |bone: &Bone| match bone.kind {
+            BoneKind::Direction | BoneKind::Offset => known(bone.from) && known(bone.to),
+            BoneKind::Palms => Hand::BOTH.into_iter().all(has_palm),
+            BoneKind::Finger(hand) => known(bone.from) && known(bone.to) && has_palm(hand),
+            BoneKind::PalmForward(hand) | BoneKind::PalmNormal(hand) => has_palm(hand),
+        };
         (0..BONES)
-            .filter(|&b| holds(&ALL_BONES[b]))
+            .filter(|&b| is_known(&ALL_BONES[b]) && holds(&ALL_BONES[b]))
             .fold(Self::NONE, BoneSet::with)
     }
 }
@@ -119,20 +291,21 @@ impl BoneSet {
 impl std::str::FromStr for BoneSet {
     type Err = String;
 
-    /// `all`, `upper`, `arms`, or names of bones, separated by commas.
+    /// Names of [sets](Self::NAMED) and of bones, separated by commas.
     fn from_str(text: &str) -> Result<Self, String> {
-        match text.trim() {
-            "all" => Ok(Self::ALL),
-            "upper" => Ok(Self::UPPER),
-            "arms" => Ok(Self::ARMS),
-            names => {
-                let names: Vec<String> = names.split(',').map(|n| n.trim().to_owned()).collect();
-                Self::try_from(names).map_err(|error| {
-                    let known = Vec::from(Self::ALL).join(", ");
-                    format!("{error}; there are all, upper, arms, {known}")
-                })
-            }
+        let mut set = Self::NONE;
+        for name in text.split(',').map(str::trim) {
+            let named = Self::NAMED.iter().find(|(known, _)| *known == name);
+            set = set.or(match named {
+                Some((_, bones)) => *bones,
+                None => Self::try_from(vec![name.to_owned()]).map_err(|error| {
+                    let sets = Self::NAMED.map(|(name, _)| name).join(", ");
+                    let bones = ALL_BONES.map(|bone| bone.name).join(", ");
+                    format!("{error}; there are the sets {sets}, and {bones}")
+                })?,
+            });
         }
+        Ok(set)
     }
 }
 

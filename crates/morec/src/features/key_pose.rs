@@ -10,7 +10,7 @@ use crate::roles::{Role, RoleMap};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct KeyPose {
     positions: [Vec3; Role::COUNT],
-    present: u32,
+    present: u64,
 }
 
 impl Default for KeyPose {
@@ -26,10 +26,8 @@ impl KeyPose {
     /// The role joints of a posed skeleton.
     pub fn of(pose: &WorldPose, roles: &RoleMap) -> Self {
         let mut key = Self::default();
-        for role in Role::ALL {
-            if let Some(joint) = roles.joint(role) {
-                key.set(role, pose.positions[joint]);
-            }
+        for (role, joint) in roles.played() {
+            key.set(role, pose.positions[joint]);
         }
         key
     }
@@ -37,6 +35,16 @@ impl KeyPose {
     /// Position of `role`, if the source knows it.
     pub fn get(&self, role: Role) -> Option<Vec3> {
         (self.present >> role.index() & 1 == 1).then(|| self.positions[role.index()])
+    }
+
+    /// The roles whose positions are known, in the order of their numbers.
+    pub fn roles(&self) -> impl Iterator<Item = Role> + use<> {
+        let mut left = self.present;
+        std::iter::from_fn(move || {
+            let role = Role::ALL.get(left.trailing_zeros() as usize)?;
+            left &= left - 1;
+            Some(*role)
+        })
     }
 
     /// Puts `role` at `position`; a position that is not finite counts as unknown.

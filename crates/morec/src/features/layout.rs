@@ -2,17 +2,17 @@
 
 use std::ops::Range;
 
-use super::bones::{ALL_BONES, BONES, BoneSet};
+use super::bones::{ALL_BONES, BODY_BONES, BONES, BoneSet};
 
 /// Layout of a feature row over `b` bones: a direction for each (3 b values), a velocity for each (3 b), then root motion (4).
 ///
 /// Bones stand in the order of [`ALL_BONES`]; the place of a bone among those of the row is its slot. Directions and velocities
-/// are (lateral, up, forward), root motion is that of a velocity and the rate of turning.
+/// are (lateral, up, forward) or (lateral, normal, forward) of a palm, root motion is that of a velocity and the rate of turning.
 ///
 /// ```
 /// use morec::features::{BoneSet, RowLayout};
 ///
-/// let layout = RowLayout::of(BoneSet::ALL);
+/// let layout = RowLayout::of(BoneSet::BODY);
 /// assert_eq!(layout.dim(), 70);
 /// assert_eq!((layout.velocity(0), layout.root()), (33..36, 66..70));
 /// ```
@@ -22,8 +22,8 @@ pub struct RowLayout {
 }
 
 impl RowLayout {
-    /// Of rows over all bones.
-    pub const ALL: RowLayout = RowLayout { bones: BONES };
+    /// Of rows over the bones of the body.
+    pub const BODY: RowLayout = RowLayout { bones: BODY_BONES };
 
     /// Values of root motion.
     pub const ROOT: usize = 4;
@@ -125,14 +125,14 @@ mod tests {
             assert_eq!(layout.velocities().end, layout.root().start);
             assert_eq!(RowLayout::column_names(bones).len(), layout.dim());
         }
-        for dim in [0, 3, 5, 9, 11, RowLayout::ALL.dim() + 6] {
+        for dim in [0, 3, 5, 9, 11, 6 * BONES + 10] {
             assert_eq!(RowLayout::from_dim(dim), None, "{dim}");
         }
     }
 
     #[test]
     fn kept_columns_have_the_names_of_the_kept_bones() {
-        let (all, kept) = (BoneSet::ALL, BoneSet::NONE.with(1).with(4).with(10));
+        let (all, kept) = (BoneSet::BODY, BoneSet::NONE.with(1).with(4).with(10));
         let names = RowLayout::column_names(all);
         let columns = RowLayout::kept_columns(all, kept);
         let picked: Vec<_> = columns.iter().map(|c| names[*c].clone()).collect();

@@ -1,16 +1,17 @@
 //! The mirror image of feature rows.
 
-use super::bones::{ALL_BONES, BoneSet};
+use super::bones::{ALL_BONES, BoneKind, BoneSet};
 use super::layout::RowLayout;
 use super::rows::Rows;
 
 /// The bone of [`ALL_BONES`] on the other side of the body; the same for bones of the middle.
 pub fn opposite_bone(bone: usize) -> usize {
     let name = ALL_BONES[bone].name;
-    let other = match name.split_once('_') {
-        Some(("left", rest)) => format!("right_{rest}"),
-        Some(("right", rest)) => format!("left_{rest}"),
-        _ => return bone,
+    let other = match (name.strip_prefix("left_"), name.strip_prefix("right_")) {
+        (Some(rest), _) => format!("right_{rest}"),
+        (_, Some(rest)) => format!("left_{rest}"),
+        _ if name.contains("left") => name.replace("left", "right"),
+        _ => name.replace("right", "left"),
     };
     let place = ALL_BONES.iter().position(|b| b.name == other);
     place.unwrap_or(bone)
@@ -18,14 +19,16 @@ pub fn opposite_bone(bone: usize) -> usize {
 
 /// The direction of `bone` in a mirror beside the performer, of that of its opposite, both (lateral, up, forward).
 ///
-/// The line of the shoulders goes from left to right: its image runs the other way, so its lateral part stays and the
-/// others turn.
+/// A line that goes from left to right, as that of the shoulders, has an image that runs the other way: its lateral part stays and
+/// the others turn. A hand and its mirror image have the same coordinates in the frames of their palms; the normal of a palm is no
+/// line of points, and its image is that of the other palm.
 pub fn reflected_direction(bone: usize, of_opposite: &[f32]) -> [f32; 3] {
-    let sign = if ALL_BONES[bone].name == "shoulder_line" {
-        -1.0
-    } else {
-        1.0
-    };
+    let bone = &ALL_BONES[bone];
+    if matches!(bone.kind, BoneKind::Finger(_)) {
+        return [of_opposite[0], of_opposite[1], of_opposite[2]];
+    }
+    let crosses = bone.hand().is_none() && bone.from.opposite() == bone.to;
+    let sign = if crosses { -1.0 } else { 1.0 };
     [
         -sign * of_opposite[0],
         sign * of_opposite[1],
@@ -69,7 +72,7 @@ mod tests {
     use crate::synth::{Person, Script};
 
     fn rows(poses: &[(f64, KeyPose)]) -> Rows {
-        let mut stream = FeatureStream::new(BoneSet::ALL, &FeatureParams::default());
+        let mut stream = FeatureStream::new(BoneSet::BODY, &FeatureParams::default());
         let mut rows = Rows::new(stream.dim());
         for (t, pose) in poses {
             stream.push(*t, pose, &mut |row| rows.push(row));
@@ -92,7 +95,7 @@ mod tests {
         });
         let image: Vec<(f64, KeyPose)> = poses.iter().map(|(t, p)| (*t, mirrored(p))).collect();
         let expected = rows(&image);
-        let found = mirrored_rows(&rows(&poses), BoneSet::ALL).unwrap();
+        let found = mirrored_rows(&rows(&poses), BoneSet::BODY).unwrap();
         assert_eq!(found.len(), expected.len());
         for (a, b) in found.values().iter().zip(expected.values()) {
             assert!((a - b).abs() < 2e-3, "{a} and {b}");

@@ -3,29 +3,33 @@
 use crate::math::{Vec3, slerp_direction};
 use crate::roles::{ARMS, Role};
 
-use super::bones::{ALL_BONES, BONES, BoneSet};
+use super::bones::{ALL_BONES, BONES, Bone, BoneKind, BoneSet};
+use super::hand::Hand;
+use super::profile::Profile;
 use super::{HeadingLine, KeyPose};
 
-/// One frame's bone directions in the heading frame and where the root stands.
+/// One frame's bones in the frames they are given in, and where the root is.
 ///
 /// The heading frame turns about the vertical with the hips: lateral axis from the right to the left hip joint
 /// without its vertical part, up is +Y, forward is lateral × up. Coordinates are (lateral, up, forward). The shoulders have
 /// the hips' place in a stream that shows no hip joints, as of a performer behind a table, and for an index that was trained
-/// without hips ([`HeadingLine`]).
+/// without hips ([`HeadingLine`]). Performers without a body have no heading: lateral is the source's X, forward its Z.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Observation {
-    /// Unit vectors, `heading_from_world` applied; zero for bones outside the set.
+    /// Of each bone what its [`BoneKind`] says, mostly unit vectors, `heading_from_world` applied; zero for bones outside the set.
     pub directions: [Vec3; BONES],
-    /// World position of the hips or the middle of the shoulders, in the source's length unit.
+    /// World position of the hips, of the middle of the shoulders, or what is the root of a performer without a body
+    /// ([`Profile`]), in the source's length unit.
     pub root: Vec3,
     /// Heading about +Y from +Z, continuous over time (it does not jump at ±π).
     pub yaw_rad: f64,
-    /// Length of a leg in the source's unit: the mean over the stream so far.
-    pub leg_length: f64,
+    /// The performer's length in the source's unit: of a leg or a hand, the mean over the stream so far; of three tracked points the
+    /// largest distance from the head to a hand.
+    pub unit_length: f64,
 }
 
 impl Observation {
-    /// Between `a` and `b`; directions along great circles, the rest on a line.
+    /// Between `a` and `b`; unit vectors along great circles, the rest on a line.
     pub fn between(a: &Self, b: &Self, t: f64, bones: BoneSet) -> Self {
         if t <= 0.0 {
             return *a;
@@ -35,14 +39,46 @@ impl Observation {
         }
         let mut directions = [Vec3::zeros(); BONES];
         for bone in bones.indices() {
-            directions[bone] = slerp_direction(&a.directions[bone], &b.directions[bone], t);
+            let (from, to) = (&a.directions[bone], &b.directions[bone]);
+            directions[bone] = match ALL_BONES[bone].kind {
+                BoneKind::Direction | BoneKind::PalmForward(_) | BoneKind::PalmNormal(_) => {
+                    slerp_direction(from, to, t)
+                }
+                BoneKind::Offset | BoneKind::Palms | BoneKind::Finger(_) => from.lerp(to, t),
+            };
         }
         Self {
             directions,
             root: a.root.lerp(&b.root, t),
             yaw_rad: a.yaw_rad + (b.yaw_rad - a.yaw_rad) * t,
-            leg_length: a.leg_length + (b.leg_length - a.leg_length) * t,
+            unit_length: a.unit_length + (b.unit_length - a.unit_length) * t,
         }
+    }
+}
+
+/// A length over a stream: the mean of what was seen, or the largest.
+#[derive(Debug, Clone, Copy, Default)]
+struct Length {
+    sum: f64,
+    count: f64,
+    largest: f64,
+}
+
+impl Length {
+    fn take(&mut self, length: Option<f64>) {
+        if let Some(length) = length.filter(|length| *length > 1e-9) {
+            self.sum += length;
+            self.count += 1.0;
+            self.largest = self.largest.max(length);
+        }
+    }
+
+    fn mean(&self) -> Option<f64> {
+        (self.count > 0.0).then(|| self.sum / self.count)
+    }
+
+    fn largest(&self) -> Option<f64> {
+        (self.count > 0.0).then_some(self.largest)
     }
 }
 
@@ -50,10 +86,10 @@ impl Observation {
 #[derive(Debug, Clone)]
 pub struct Observer {
     bones: BoneSet,
+    profile: Profile,
     heading: HeadingLine,
     last: Option<Observation>,
-    leg_sum: f64,
-    leg_count: f64,
+    length: Length,
     /// True if the hip joints have been seen and count: the heading then stays theirs.
     hips_seen: bool,
 }
@@ -61,12 +97,16 @@ pub struct Observer {
 impl Observer {
     /// For the bones an index uses, and what it takes the heading from.
     pub fn new(bones: BoneSet, heading: HeadingLine) -> Self {
+        let profile = Profile::of(bones);
         Self {
             bones,
-            heading,
+            profile,
+            heading: match profile {
+                Profile::Body => heading,
+                _ => HeadingLine::Sensor,
+            },
             last: None,
-            leg_sum: 0.0,
-            leg_count: 0.0,
+            length: Length::default(),
             hips_seen: false,
         }
     }
@@ -76,49 +116,46 @@ impl Observer {
         *self = Self::new(self.bones, self.heading);
     }
 
-    /// Length of a leg in the source's unit, the mean over the stream so far.
-    pub fn leg_length(&self) -> Option<f64> {
-        (self.leg_count > 0.0).then(|| self.leg_sum / self.leg_count)
+    /// See [`Observation::unit_length`]; `None` until it was seen.
+    pub fn unit_length(&self) -> Option<f64> {
+        match self.profile {
+            Profile::Points3 => self.length.largest(),
+            _ => self.length.mean(),
+        }
     }
 
     /// The observation of one pose. A bone or heading that `pose` does not show keeps its last direction;
-    /// `None` until the hip joints or the shoulders have been seen once.
+    /// `None` until the hip joints or the shoulders have been seen once, or the root of a performer without a body.
     pub fn observe(&mut self, pose: &KeyPose) -> Option<Observation> {
         self.hips_seen |= self.heading == HeadingLine::Hips
             && pair(pose, Role::LeftThigh, Role::RightThigh).is_some();
         let yaw_rad = self.yaw(pose)?;
         let (sin, cos) = yaw_rad.sin_cos();
+        let root = self.root(pose)?;
+        self.measure_length(pose);
+        let unit_length = self.unit_length().unwrap_or(1.0);
         let mut directions = self
             .last
             .map_or([Vec3::zeros(); BONES], |last| last.directions);
         for index in self.bones.indices() {
-            let bone = &ALL_BONES[index];
-            if let (Some(from), Some(to)) = (pose.get(bone.from), pose.get(bone.to)) {
-                let along = to - from;
-                let length = along.norm();
-                if length > 1e-9 {
-                    directions[index] = heading_from_world(sin, cos, &(along / length));
-                }
+            if let Some(seen) = seen(&ALL_BONES[index], pose, unit_length, (sin, cos)) {
+                directions[index] = seen;
             }
         }
-        let root = self.root(pose)?;
-        self.measure_leg(pose);
-        let leg_length = if self.leg_count > 0.0 {
-            self.leg_sum / self.leg_count
-        } else {
-            1.0
-        };
         let observation = Observation {
             directions,
             root,
             yaw_rad,
-            leg_length,
+            unit_length,
         };
         self.last = Some(observation);
         Some(observation)
     }
 
     fn yaw(&self, pose: &KeyPose) -> Option<f64> {
+        if self.heading == HeadingLine::Sensor {
+            return Some(0.0);
+        }
         let last = self.last.map(|o| o.yaw_rad);
         let lateral = if self.hips_seen {
             pair(pose, Role::LeftThigh, Role::RightThigh)
@@ -150,26 +187,61 @@ impl Observer {
             .or_else(|| pair(pose, Role::LeftThigh, Role::RightThigh).map(middle));
         // Without hips the root is where the shoulders are: only its velocity counts.
         let shoulders = || pair(pose, Role::LeftArm, Role::RightArm).map(middle);
-        let seen = match self.heading {
-            HeadingLine::Shoulders => shoulders(),
-            HeadingLine::Hips if self.hips_seen => hips,
-            HeadingLine::Hips => hips.or_else(shoulders),
+        let seen = match (self.profile, self.heading) {
+            (Profile::Body, HeadingLine::Shoulders) => shoulders(),
+            (Profile::Body, HeadingLine::Hips) if self.hips_seen => hips,
+            (Profile::Body, _) => hips.or_else(shoulders),
+            (profile, _) => profile.root(pose),
         };
         seen.or(self.last.map(|o| o.root))
     }
 
-    fn measure_leg(&mut self, pose: &KeyPose) {
-        let leg = if self.hips_seen {
-            limb(pose, [Role::LeftThigh, Role::LeftShin, Role::LeftFoot])
-        } else {
+    fn measure_length(&mut self, pose: &KeyPose) {
+        let of_arm = || {
             let arm = ARMS.into_iter().find_map(|arm| limb(pose, arm));
             arm.map(|length| length * LEG_OF_ARM)
         };
-        if let Some(length) = leg.filter(|length| *length > 1e-9) {
-            self.leg_sum += length;
-            self.leg_count += 1.0;
-        }
+        let leg = || limb(pose, [Role::LeftThigh, Role::LeftShin, Role::LeftFoot]);
+        self.length.take(match self.profile {
+            Profile::Body if self.hips_seen => leg(),
+            Profile::Body if self.heading == HeadingLine::Sensor => leg().or_else(of_arm),
+            Profile::Body => of_arm(),
+            Profile::Hand | Profile::Hands => self.profile.hand_length(pose),
+            Profile::Points3 => reach(pose),
+        });
     }
+}
+
+/// What of a bone is a feature, as [`BoneKind`] says, if `pose` shows it.
+fn seen(bone: &Bone, pose: &KeyPose, unit_length: f64, (sin, cos): (f64, f64)) -> Option<Vec3> {
+    let along = || Some(pose.get(bone.to)? - pose.get(bone.from)?);
+    let turned = |v: Vec3| heading_from_world(sin, cos, &v);
+    match bone.kind {
+        BoneKind::Direction => {
+            let along = along()?;
+            let length = along.norm();
+            (length > 1e-9).then(|| turned(along / length))
+        }
+        BoneKind::Offset => Some(turned(along()? / unit_length)),
+        BoneKind::Palms => {
+            let [left, right] = Hand::BOTH.map(|hand| hand.root(pose));
+            Some(turned((right? - left?) / unit_length))
+        }
+        BoneKind::Finger(hand) => {
+            let along = along()? / hand.finger_length(pose)?;
+            Some(hand.palm_frame(pose)?.of_world(&along))
+        }
+        BoneKind::PalmForward(hand) => Some(turned(hand.palm_frame(pose)?.forward)),
+        BoneKind::PalmNormal(hand) => Some(turned(hand.palm_frame(pose)?.normal)),
+    }
+}
+
+/// The larger distance of a hand from the head.
+fn reach(pose: &KeyPose) -> Option<f64> {
+    let head = pose.get(Role::Head)?;
+    let hands = [Role::LeftHand, Role::RightHand];
+    let far = hands.map(|hand| Some((pose.get(hand)? - head).norm()));
+    far.into_iter().flatten().max_by(f64::total_cmp)
 }
 
 /// Length of a leg without the foot in lengths of an arm without the hand, from shares of body height: (.245 + .246) /
@@ -236,7 +308,7 @@ mod tests {
 
     #[test]
     fn yaw_is_continuous_over_many_turns() {
-        let mut observer = Observer::new(BoneSet::ALL, HeadingLine::Hips);
+        let mut observer = Observer::new(BoneSet::BODY, HeadingLine::Hips);
         let mut last = 0.0;
         for step in 0..200 {
             let yaw = observer
@@ -270,16 +342,16 @@ mod tests {
             }
             pose
         };
-        let seen = Observer::new(BoneSet::ALL, HeadingLine::Hips)
+        let seen = Observer::new(BoneSet::BODY, HeadingLine::Hips)
             .observe(&upper(0.0))
             .unwrap();
         assert!((seen.directions[6] - Vec3::z()).norm() < 1e-12);
-        let turned = Observer::new(BoneSet::ALL, HeadingLine::Hips)
+        let turned = Observer::new(BoneSet::BODY, HeadingLine::Hips)
             .observe(&upper(2.0))
             .unwrap();
         assert!((turned.directions[6] - seen.directions[6]).norm() < 1e-9);
         // The upper arm is 0.3 long, and so counts the forearm, which ends nowhere.
-        assert!((seen.leg_length - 0.6 * LEG_OF_ARM).abs() < 1e-9);
+        assert!((seen.unit_length - 0.6 * LEG_OF_ARM).abs() < 1e-9);
     }
 
     #[test]
@@ -305,7 +377,7 @@ mod tests {
 
     #[test]
     fn hips_that_were_seen_once_keep_the_heading() {
-        let mut observer = Observer::new(BoneSet::ALL, HeadingLine::Hips);
+        let mut observer = Observer::new(BoneSet::BODY, HeadingLine::Hips);
         let seen = observer.observe(&standing(1.0, 1.0)).unwrap();
         let mut hidden = standing(2.0, 1.0);
         hidden.set(Role::LeftThigh, Vec3::from_element(f64::NAN));
@@ -314,7 +386,7 @@ mod tests {
 
     #[test]
     fn a_lost_joint_keeps_its_last_direction() {
-        let mut observer = Observer::new(BoneSet::ALL, HeadingLine::Hips);
+        let mut observer = Observer::new(BoneSet::BODY, HeadingLine::Hips);
         let seen = observer.observe(&standing(0.0, 1.0)).unwrap();
         let mut hidden = standing(0.0, 1.0);
         hidden.set(Role::LeftForearm, Vec3::new(f64::NAN, 0.0, 0.0));

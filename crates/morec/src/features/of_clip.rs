@@ -4,7 +4,7 @@ use crate::clip::{Clip, Span};
 use crate::kinematics::{WorldPose, for_each_world_pose};
 use crate::roles::{Role, RoleMap};
 
-use super::{BoneSet, FeatureParams, FeatureStream, KeyPose, Rows};
+use super::{BoneSet, FeatureParams, FeatureStream, KeyPose, Profile, Rows};
 
 /// Calls `each` with the time and pose of every frame of `clip` in turn, as [`for_each_world_pose`] shows them.
 pub fn for_each_pose(
@@ -18,13 +18,23 @@ pub fn for_each_pose(
     });
 }
 
-/// The bones that `clip` shows: both ends mapped, and of some length in its first frame of motion.
+/// The bones that `clip` shows: both ends mapped, and of some length in its first frame of motion. Of these, [those that are
+/// used](Profile::usual_bones).
 pub fn bones_of_clip(clip: &Clip, roles: &RoleMap, rest: &Span) -> BoneSet {
-    if clip.frames == 0 {
-        return BoneSet::NONE;
+    Profile::usual_bones(all_bones_of_clip(clip, roles, rest))
+}
+
+/// All bones that `clip` shows, of any [profile](Profile), in the first frame that shows one: a hand may come later.
+pub fn all_bones_of_clip(clip: &Clip, roles: &RoleMap, rest: &Span) -> BoneSet {
+    let mut frames = rest.end.min(clip.frames.saturating_sub(1))..clip.frames;
+    let shown = |frame| {
+        let bones = BoneSet::of_pose(&KeyPose::of(&WorldPose::of(clip, frame), roles));
+        (!bones.is_empty()).then_some(bones)
+    };
+    match BoneSet::of_roles(roles).is_empty() {
+        true => BoneSet::NONE,
+        false => frames.find_map(shown).unwrap_or(BoneSet::NONE),
     }
-    let world = WorldPose::of(clip, rest.end.min(clip.frames - 1));
-    BoneSet::of_roles(roles).and(BoneSet::of_pose(&KeyPose::of(&world, roles)))
 }
 
 /// True if `clip` shows both hip joints in some frame behind `rest`. O(1) where the first of them does.

@@ -1,6 +1,7 @@
 //! The parameters that turn observations into feature rows.
 
-/// The line of the body whose turning about the vertical gives its heading, and where its root is.
+/// The line of the body whose turning about the vertical gives its heading, and where its root is; none for performers without a
+/// body.
 #[derive(
     Debug,
     Clone,
@@ -20,6 +21,9 @@ pub enum HeadingLine {
     Hips,
     /// The shoulders, whether or not hips are seen.
     Shoulders,
+    /// None: directions are the source's own, as of a device that stands still before the performer. Hands and tracked points have
+    /// this in any case.
+    Sensor,
 }
 
 /// Parameters of resampling, smoothing and weighting. An index keeps the values it was trained with.
@@ -47,7 +51,7 @@ pub struct FeatureParams {
     #[serde(default = "follows_noise")]
     pub follow_noise: bool,
     /// Line of the body that gives the heading and the root: `hips` (shoulders until hips are seen) or `shoulders`, which training
-    /// takes by itself where a clip with samples shows no hips.
+    /// takes by itself where a clip with samples shows no hips; `sensor` for directions as the source has them.
     #[serde(default)]
     pub heading: HeadingLine,
 }

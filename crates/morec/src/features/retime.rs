@@ -66,7 +66,7 @@ mod tests {
     use crate::synth::{Person, Script};
 
     fn rows(poses: &[(f64, KeyPose)], duration: f64) -> Rows {
-        let mut stream = FeatureStream::new(BoneSet::ALL, &FeatureParams::default());
+        let mut stream = FeatureStream::new(BoneSet::BODY, &FeatureParams::default());
         let mut rows = Rows::new(stream.dim());
         for (t, pose) in poses {
             stream.push(t * duration, pose, &mut |row| rows.push(row));
@@ -100,15 +100,15 @@ mod tests {
         });
         let (usual, fast) = (rows(&poses, 1.0), rows(&poses, 0.7));
         let params = FeatureParams::default();
-        let retimed = retimed_rows(&usual, BoneSet::ALL, &params, 0.7);
+        let retimed = retimed_rows(&usual, BoneSet::BODY, &params, 0.7);
         assert!(retimed.len().abs_diff(fast.len()) <= 1);
         // The same poses at the same velocities: without dividing by the factor velocities are far off.
-        let velocities = RowLayout::ALL.velocities();
+        let velocities = RowLayout::BODY.velocities();
         let slow = FeatureParams {
             velocity_saturation: 1e9,
             ..params
         };
-        let resampled = retimed_rows(&usual, BoneSet::ALL, &slow, 0.7);
+        let resampled = retimed_rows(&usual, BoneSet::BODY, &slow, 0.7);
         let zero = Rows::from_values(fast.dim(), vec![0.0; fast.values().len()]);
         let size = difference(&fast, &zero, velocities.clone());
         let error = difference(&fast, &retimed, velocities.clone());

@@ -1,5 +1,7 @@
 //! Smoothing and velocities of a stream, frame by frame, with the edges mirrored.
 
+use std::ops::Range;
+
 use nalgebra::Vector4;
 
 use crate::math::Vec3;
@@ -13,28 +15,26 @@ use super::params::FeatureParams;
 /// A frame as the filters want it.
 #[derive(Debug, Clone, Copy)]
 struct FilterInput {
-    directions: [Vec3; BONES],
     root: Vec3,
     yaw_rad: f64,
     /// Of the yaw: each frame is asked for it as often as the filter is wide.
     sin_cos: (f64, f64),
-    leg_length: f64,
+    unit_length: f64,
 }
 
 impl FilterInput {
     fn of(observation: &Observation) -> Self {
         let Observation {
-            directions,
             root,
             yaw_rad,
-            leg_length,
+            unit_length,
+            ..
         } = *observation;
         Self {
-            directions,
             root,
             yaw_rad,
             sin_cos: yaw_rad.sin_cos(),
-            leg_length,
+            unit_length,
         }
     }
 }
@@ -53,6 +53,9 @@ pub struct Smoother {
     probe: Vec<f64>,
     noise: NoiseMeter,
     ring: Vec<FilterInput>,
+    /// Bones of the same frames, from the first of the set to the last.
+    directions: Vec<Vec3>,
+    span: Range<usize>,
     pushed: usize,
     next_row_frame: usize,
     /// No more frames come: rows need not wait for them.
@@ -111,14 +114,17 @@ impl Smoother {
             directions: [Vec3::zeros(); BONES],
             root: Vec3::zeros(),
             yaw_rad: 0.0,
-            leg_length: 1.0,
+            unit_length: 1.0,
         };
+        let frames = reach.next_power_of_two();
         Self {
             bones,
             kernels: Kernels::all(params),
             probe: half_gaussian(PROBE.sigma_frames, PROBE.cut_frames),
             noise: NoiseMeter::default(),
-            ring: vec![FilterInput::of(&empty); reach.next_power_of_two()],
+            ring: vec![FilterInput::of(&empty); frames],
+            directions: vec![Vec3::zeros(); frames * bones.span().len()],
+            span: bones.span(),
             pushed: 0,
             next_row_frame: params.frames_per_tick - 1,
             ended: false,
@@ -144,7 +150,11 @@ impl Smoother {
     /// stream has become less noisy and its filter shorter.
     pub fn push(&mut self, observation: &Observation) {
         let mask = self.ring.len() - 1;
-        self.ring[self.pushed & mask] = FilterInput::of(observation);
+        let at = self.pushed & mask;
+        self.ring[at] = FilterInput::of(observation);
+        let width = self.span.len();
+        self.directions[at * width..][..width]
+            .copy_from_slice(&observation.directions[self.span.clone()]);
         self.pushed += 1;
         if self.params.follow_noise && self.pushed.is_multiple_of(self.params.frames_per_tick) {
             self.measure_noise();
@@ -167,8 +177,8 @@ impl Smoother {
         }
         let frame = (self.pushed - 1 - PROBE.cut_frames) as isize;
         let smooth = self.directions(frame, &self.probe);
-        let here = self.at(frame).directions;
-        let residual = |bone: usize| (here[bone] - smooth[bone]).norm_squared();
+        let (here, first) = (self.directions_at(frame), self.span.start);
+        let residual = |bone: usize| (here[bone - first] - smooth[bone - first]).norm_squared();
         let sum: f64 = self.bones.indices().map(residual).sum();
         self.noise.take(sum / self.bones.len().max(1) as f64);
     }
@@ -199,8 +209,9 @@ impl Smoother {
             [before, frame, after].map(|frame| self.directions(frame, &kernels.directions));
         for (slot, bone) in self.bones.indices().enumerate() {
             let weight = ALL_BONES[bone].weight;
-            let position = here[bone] * weight;
-            let velocity = (soon[bone] - then[bone]) * (weight * per_secs);
+            let at = bone - self.span.start;
+            let position = here[at] * weight;
+            let velocity = (soon[at] - then[at]) * (weight * per_secs);
             let saturated = velocity / (1.0 + velocity.norm() / self.params.velocity_saturation);
             for (out, value) in row[layout.direction(slot)].iter_mut().zip(&position) {
                 *out = *value as f32;
@@ -227,26 +238,37 @@ impl Smoother {
         i
     }
 
-    fn at(&self, index: isize) -> &FilterInput {
-        &self.ring[self.mirrored(index) as usize & (self.ring.len() - 1)]
+    fn place(&self, index: isize) -> usize {
+        self.mirrored(index) as usize & (self.ring.len() - 1)
     }
 
-    /// Directions of all bones, smoothed with `kernel`.
+    fn at(&self, index: isize) -> &FilterInput {
+        &self.ring[self.place(index)]
+    }
+
+    fn directions_at(&self, index: isize) -> &[Vec3] {
+        let width = self.span.len();
+        &self.directions[self.place(index) * width..][..width]
+    }
+
+    /// Directions of the bones of the span from its first on, smoothed with `kernel`; zero behind its last.
     fn directions(&self, frame: isize, kernel: &[f64]) -> [Vec3; BONES] {
-        let mut sum = self
-            .at(frame)
-            .directions
-            .map(|direction| direction * kernel[0]);
+        let mut sums = [Vec3::zeros(); BONES];
+        let sum = &mut sums[..self.span.len()];
+        for (sum, direction) in sum.iter_mut().zip(self.directions_at(frame)) {
+            *sum = direction * kernel[0];
+        }
         for (k, weight) in kernel.iter().enumerate().skip(1) {
-            let (a, b) = (self.at(frame - k as isize), self.at(frame + k as isize));
-            for ((sum, a), b) in sum.iter_mut().zip(&a.directions).zip(&b.directions) {
+            let a = self.directions_at(frame - k as isize);
+            let b = self.directions_at(frame + k as isize);
+            for ((sum, a), b) in sum.iter_mut().zip(a).zip(b) {
                 *sum += (a + b) * *weight;
             }
         }
-        sum
+        sums
     }
 
-    /// Velocity in the heading frame in leg lengths a second (lateral, up, forward) and yaw rate, smoothed.
+    /// Velocity in the heading frame in the performer's unit of length a second (lateral, up, forward) and yaw rate, smoothed.
     fn root_motion(&self, frame: isize, kernel: &[f64]) -> Vector4<f64> {
         let raw = |k: isize| self.raw_root_motion(self.mirrored(frame + k));
         let outwards = kernel.iter().enumerate().skip(1);
@@ -266,7 +288,7 @@ impl Smoother {
         let velocity = heading_from_world(
             sin,
             cos,
-            &((b.root - a.root) * (per_secs / here.leg_length)),
+            &((b.root - a.root) * (per_secs / here.unit_length)),
         );
         velocity.push((b.yaw_rad - a.yaw_rad) * per_secs)
     }

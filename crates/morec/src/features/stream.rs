@@ -2,11 +2,12 @@
 
 use super::bones::BoneSet;
 use super::grid::Grid;
+use super::hand::lone_left_as_right;
 use super::observe::{Observation, Observer};
 use super::params::FeatureParams;
 use super::smooth::Smoother;
 use super::spikes::SpikeFilter;
-use super::{KeyPose, RowLayout};
+use super::{KeyPose, Profile, RowLayout};
 
 /// Effect of a pose on the stream.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -18,7 +19,8 @@ pub enum Pushed {
     Restarted,
     /// It was not later than the pose before it (a duplicate or a late packet) or its time is not finite.
     Ignored,
-    /// Neither the hip joints nor the shoulders have been seen yet: there is no heading.
+    /// Neither the hip joints nor the shoulders have been seen yet, so there is no heading; or nothing of the hand or the tracked
+    /// points that the index is of.
     NoHips,
 }
 
@@ -33,18 +35,20 @@ pub struct FeatureStream {
     grid: Grid<Observation>,
     dim: usize,
     bones: BoneSet,
+    profile: Profile,
 }
 
 impl FeatureStream {
     /// A stream whose rows hold `bones`.
     pub fn new(bones: BoneSet, params: &FeatureParams) -> Self {
         Self {
-            spikes: SpikeFilter::new(),
+            spikes: SpikeFilter::new(Profile::of(bones)),
             observer: Observer::new(bones, params.heading),
             smoother: Smoother::new(bones, params),
             grid: Grid::new(params.rate_hz),
             dim: RowLayout::of(bones).dim(),
             bones,
+            profile: Profile::of(bones),
         }
     }
 
@@ -106,9 +110,14 @@ impl FeatureStream {
         if self.grid.ignores(time_secs) {
             return Pushed::Ignored;
         }
+        let image = match self.profile {
+            Profile::Hand => lone_left_as_right(pose),
+            _ => None,
+        };
+        let pose = image.as_ref().unwrap_or(pose);
         let pose = self
             .spikes
-            .clean(time_secs, pose, self.observer.leg_length());
+            .clean(time_secs, pose, self.observer.unit_length());
         let Some(observation) = self.observer.observe(&pose) else {
             return Pushed::NoHips;
         };

@@ -3,6 +3,9 @@
 //! One object a line, right-handed axes, Y up; `{"t": 1.25, "positions": {"hips": [0, 0.92, 0], …}}` for points, by role
 //! or by any other name, or `{"t": 1.25, "root": [0, 0.92, 0], "rotations": {"left_arm": [x, y, z, w], …}}` for joints
 //! turned in their parents' frames, from a T-pose that faces +Z. `actor` tells performers apart.
+//!
+//! `"hand": "left"` or `"right"` says whose points those are whose names say no side, and `"points": [[x, y, z], …]` are points in the order
+//! of their numbers in a known model, of a hand or a body; or `{"left": […], "right": […]}` for both hands.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -11,9 +14,11 @@ use super::points::{Point, PointTable, UNSEEN, check_size};
 use super::timing::{Clock, Schedule};
 use super::{Limits, Loaded, ParseError, Place, Warning, json};
 use crate::clip::{Clip, Joint, JointTrack, Skeleton};
+use crate::features::Hand;
 use crate::humanoid::{HUMANOID, HumanoidBone};
 use crate::math::{Quat, Vec3, rotation_of_xyzw, same_hemisphere, slerp};
 use crate::roles::Role;
+use crate::roles::points::{NUMBERED_HANDS, hand_role, numbered_hand};
 
 /// Frames a second of lines without times.
 const ASSUMED_HZ: f64 = 30.0;
@@ -24,9 +29,60 @@ const ASSUMED_HZ: f64 = 30.0;
 struct PoseRecord {
     t: Option<f64>,
     actor: u16,
+    hand: Option<Hand>,
     root: Option<[f64; 3]>,
     positions: BTreeMap<String, Option<[f64; 3]>>,
+    points: NumberedPoints,
     rotations: BTreeMap<String, Option<[f64; 4]>>,
+}
+
+/// Points without names: of one performer, or of both hands.
+#[derive(Debug, serde::Deserialize)]
+#[serde(untagged)]
+enum NumberedPoints {
+    Of(Vec<Option<[f64; 3]>>),
+    Hands(BTreeMap<Hand, Vec<Option<[f64; 3]>>>),
+}
+
+impl Default for NumberedPoints {
+    fn default() -> Self {
+        Self::Of(Vec::new())
+    }
+}
+
+impl PoseRecord {
+    /// Gives every point its name; an error if as many points are no hand.
+    fn name_points(&mut self) -> Result<(), String> {
+        if let Some(hand) = self.hand {
+            let named = std::mem::take(&mut self.positions).into_iter();
+            let of_hand = |(name, place): (String, _)| match hand_role(&name, hand) {
+                Some((_, role)) => (role.name().to_owned(), place),
+                None => (name, place),
+            };
+            self.positions = named.map(of_hand).collect();
+        }
+        let (hands, numbered) = match (std::mem::take(&mut self.points), self.hand) {
+            (NumberedPoints::Hands(hands), _) => (hands, Vec::new()),
+            (NumberedPoints::Of(points), Some(hand)) => {
+                let some = (!points.is_empty()).then_some((hand, points));
+                (some.into_iter().collect(), Vec::new())
+            }
+            (NumberedPoints::Of(points), None) => (BTreeMap::new(), points),
+        };
+        for (hand, points) in hands {
+            let roles = numbered_hand(points.len(), hand).ok_or_else(|| {
+                let known = NUMBERED_HANDS.map(|count| count.to_string()).join(", ");
+                format!("{} points of a hand, where {known} are known", points.len())
+            })?;
+            let named = roles.into_iter().zip(points);
+            let named = named.filter_map(|(role, place)| Some((role?.name().to_owned(), place)));
+            self.positions.extend(named);
+        }
+        let named = numbered.into_iter().enumerate();
+        self.positions
+            .extend(named.map(|(number, place)| (number.to_string(), place)));
+        Ok(())
+    }
 }
 
 /// Recorded motion of one performer.
@@ -48,7 +104,8 @@ pub fn read(
     limits: &Limits,
 ) -> Result<Loaded, ParseError> {
     let mut warnings = Vec::new();
-    let mut performers: BTreeMap<u16, RecordedPerformer> = BTreeMap::new();
+    // Hands that have lines of their own are performers of their own, as live.
+    let mut performers: BTreeMap<(u16, Option<Hand>), RecordedPerformer> = BTreeMap::new();
     let limits = &json::limits_beside(bytes, limits)?;
     let rows = lines(bytes, limits)?;
     if rows.len() > limits.frames {
@@ -61,16 +118,21 @@ pub fn read(
     }
     let mut broken: Vec<(u64, String)> = Vec::new();
     for (number, text) in &rows {
-        match serde_json::from_str::<PoseRecord>(text) {
+        let line = serde_json::from_str::<PoseRecord>(text).map_err(|error| error.to_string());
+        let named = |mut line: PoseRecord| line.name_points().map(|()| line);
+        match line.and_then(named) {
             Ok(line) if line.positions.is_empty() && line.rotations.is_empty() => {
-                broken.push((*number, "neither positions nor rotations".to_owned()));
+                broken.push((
+                    *number,
+                    "neither positions, points nor rotations".to_owned(),
+                ));
             }
             Ok(line) => {
-                let performer = performers.entry(line.actor).or_default();
+                let performer = performers.entry((line.actor, line.hand)).or_default();
                 performer.times.push(line.t.filter(|t| t.is_finite()));
                 performer.lines.push(line);
             }
-            Err(error) => broken.push((*number, error.to_string())),
+            Err(error) => broken.push((*number, error)),
         }
     }
     if performers.is_empty() {
@@ -78,7 +140,7 @@ pub fn read(
             .into_iter()
             .next()
             .unwrap_or((1, "an empty file".to_owned()));
-        let expected = "lines of JSON with \"positions\" or \"rotations\"";
+        let expected = "lines of JSON with \"positions\", \"points\" or \"rotations\"";
         return Err(ParseError::new(Place::Line(line), expected, found));
     }
     if let Some((line, why)) = broken.first() {

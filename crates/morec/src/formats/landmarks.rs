@@ -4,6 +4,7 @@
 //! There is no common form, so the first list is taken that looks so; fields called `world` come first, as the others hold
 //! places in the picture.
 
+mod hands;
 mod matrix;
 mod rows;
 
@@ -106,7 +107,11 @@ pub fn read(
     let frames = frames_in(&document, DEEPEST)
         .or_else(|| by_name.as_ref().map(|frames| frames.iter().collect()))
         .ok_or_else(|| no_frames(&document))?;
-    let people = frames.iter().map(|frame| people_in(frame, DEEPEST)).max();
+    let people = frames.iter().map(|frame| match hands_in(frame) {
+        Some(_) => 0,
+        None => people_in(frame, DEEPEST),
+    });
+    let people = people.max();
     if let Some(people @ 2..) = people {
         let text = format!(
             "up to {people} bodies in a frame; the first of each is read, the others are left out"
@@ -117,7 +122,9 @@ pub fn read(
     let mut times = Vec::with_capacity(frames.len());
     for (at, frame) in frames.iter().enumerate() {
         times.push(time_of(frame));
-        let found = points_in(frame, DEEPEST).unwrap_or_default();
+        let found = hands_in(frame)
+            .or_else(|| points_in(frame, DEEPEST))
+            .unwrap_or_default();
         let names = names.as_ref().filter(|names| names.len() == found.len());
         for (number, (name, place)) in found.into_iter().enumerate() {
             let bare = name.bytes().all(|b| b.is_ascii_digit());
@@ -161,6 +168,12 @@ pub fn read(
         metres_per_unit: None,
     };
     timed.into_loaded(name, warnings, limits)
+}
+
+/// The points of hands whose sides a frame says.
+fn hands_in(frame: &Value) -> Option<Vec<(String, Vec3)>> {
+    const WITHIN_HAND: usize = 3;
+    hands::in_frame(frame, &|hand| points_in(hand, WITHIN_HAND))
 }
 
 /// The document; several one behind the other, as in lines of JSON, are a list.

@@ -186,7 +186,7 @@ impl PointTable {
         }
         let bodies: Vec<String> = groups
             .iter()
-            .filter(|(subject, own)| !subject.is_empty() && is_body(own))
+            .filter(|(subject, own)| !subject.is_empty() && !is_side(subject) && is_body(own))
             .map(|(subject, _)| (*subject).to_owned())
             .collect();
         if bodies.len() < 2 {
@@ -276,9 +276,19 @@ fn is_unlabelled(name: &str) -> bool {
         .any(|start| lower.strip_prefix(start).is_some_and(number))
 }
 
+/// True of the name of a hand, in the place of a person's.
+fn is_side(subject: &str) -> bool {
+    ["left", "right"]
+        .iter()
+        .any(|side| subject.eq_ignore_ascii_case(side))
+}
+
 fn is_root_name(name: &str) -> bool {
     let lower = name.to_ascii_lowercase();
-    lower == "0"
+    let bare = lower.rsplit(':').next().unwrap_or_default();
+    // Hands may be given from their wrists.
+    matches!(bare, "0" | "wrist" | "palm")
+        || bare.ends_with("_0")
         || ["hip", "pelvis", "root"]
             .iter()
             .any(|root| lower.contains(root))

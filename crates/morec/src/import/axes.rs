@@ -31,6 +31,10 @@ pub(super) fn choose(
 /// The axis along which the head is above the feet, over the whole clip.
 fn infer_up(clip: &Clip, body: &BodyMeasures, notes: &mut Vec<String>) -> SignedAxis {
     if body.upwards.iter().all(|v| v.norm() == 0.0) {
+        // A hand points anywhere.
+        if body.hand.is_some() && body.head_over_shoulders.is_empty() {
+            return SignedAxis::Y;
+        }
         if let Some(up) = along(&body.head_over_shoulders) {
             return up;
         }

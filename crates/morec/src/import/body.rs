@@ -2,6 +2,7 @@
 
 use super::signed_axis::SignedAxis;
 use crate::clip::Clip;
+use crate::features::{Hand, KeyPose};
 use crate::kinematics::WorldPose;
 use crate::math::Vec3;
 use crate::roles::{ARMS, LEGS, Role, RoleMap};
@@ -27,6 +28,8 @@ pub(super) struct BodyMeasures {
     pub(super) shoulders: Option<f64>,
     /// From the middle of the hip joints to that of the shoulders.
     pub(super) trunk: Option<f64>,
+    /// From the wrist to the tip of the middle finger.
+    pub(super) hand: Option<f64>,
     /// Leg, hips to neck, neck to head: the height of someone who stands straight, up to the head's joint.
     pub(super) chain: Option<f64>,
 }
@@ -41,9 +44,11 @@ impl BodyMeasures {
         let (mut legs, mut chains) = (Vec::new(), Vec::new());
         let (mut arms, mut trunks) = (Vec::new(), Vec::new());
         let (mut shoulders, mut head_over_shoulders) = (Vec::new(), Vec::new());
-        let mut poses = Vec::new();
+        let (mut poses, mut hands) = (Vec::new(), Vec::new());
         for frame in frames() {
             pose.set(clip, frame);
+            let key = KeyPose::of(&pose, map);
+            hands.extend(Hand::BOTH.iter().filter_map(|hand| hand.length(&key)));
             let joints = Role::ALL.iter().filter_map(|&role| map.joint(role));
             poses.push(joints.map(|joint| pose.positions[joint]).collect());
             let head = extent(clip, map, &pose, &[Role::Head, Role::Neck]);
@@ -67,6 +72,7 @@ impl BodyMeasures {
             shoulders: median(shoulders),
             trunk: median(trunks),
             chain: median(chains),
+            hand: median(hands),
         }
     }
 

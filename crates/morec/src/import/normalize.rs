@@ -43,7 +43,7 @@ pub fn normalize(mut clip: Clip, options: &ImportOptions) -> Result<Take, ParseE
         .unwrap_or_else(|| units::choose(&clip, &body, up, options.stated, &mut notes));
     let unknown = !clip.has_rotations() && point_set.is_none() && options.mapping.is_none();
     let mut doubts = match unknown {
-        true => vec![points::doubt(&clip).to_owned()],
+        true => vec![points::UNKNOWN.to_owned()],
         false => {
             names.extend(&clip.skeleton);
             // A mapping adds joints in places between others.

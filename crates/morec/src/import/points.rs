@@ -5,46 +5,41 @@ use crate::formats::ParseError;
 use crate::kinematics::WorldPose;
 use crate::math::Vec3;
 use crate::roles::mapping::Mapping;
-use crate::roles::points::{PointJoint, recognise_posed};
+use crate::roles::points::{PointJoint, recognise_hands, recognise_numbered_hand, recognise_posed};
 use crate::roles::{Role, RoleMap};
 
 /// Frames that settle what names leave open.
 const LOOKED_AT: usize = 8;
+/// Frames that tell a left hand from a right one: in one of them it may be flat.
+const HANDS_LOOKED_AT: usize = 64;
 
 /// The doubt about a clip of points that belong to no known set.
-const UNKNOWN: &str = "no known set of points, so no body is known: say with --roles which of them are joints, as in \
+pub(super) const UNKNOWN: &str = "no known set of points, so no body is known: say with --roles which of them are joints, as in \
     `left_knee<TAB>LKNE+LKNM` for the middle of two, or leave the clip out if it shows no person";
-
-/// The doubt about a clip of the joints of a hand.
-const HAND: &str =
-    "these points are a hand's: morec recognises bodies and no hands yet, so leave the clip out";
-
-/// The doubt about a clip of points in which no body was found.
-pub(super) fn doubt(clip: &Clip) -> &'static str {
-    const WORDS: [&str; 8] = [
-        "thumb", "index", "middle", "ring", "little", "pinky", "finger", "hand",
-    ];
-    let is_of_hand = |name: &&str| {
-        let lower = name.to_ascii_lowercase();
-        WORDS.iter().any(|word| lower.contains(word))
-    };
-    let of_hand = clip.skeleton.names().filter(is_of_hand).count();
-    match of_hand * 4 >= clip.skeleton.len() * 3 {
-        true if of_hand > 0 => HAND,
-        _ => UNKNOWN,
-    }
-}
 
 /// The roles of a clip of points by tables of known sets, and the set's name.
 pub(super) fn find_roles(clip: &mut Clip) -> (RoleMap, Option<&'static str>) {
     let names: Vec<&str> = clip.skeleton.names().collect();
-    let step = clip.frames.div_ceil(LOOKED_AT).max(1);
-    let poses: Vec<Vec<Vec3>> = (0..clip.frames)
-        .step_by(step)
-        .map(|frame| WorldPose::of(clip, frame).positions)
-        .collect();
-    let Some(found) = recognise_posed(&names, &poses) else {
-        return (RoleMap::default(), None);
+    let poses = |count: usize| -> Vec<Vec<Vec3>> {
+        let step = clip.frames.div_ceil(count).max(1);
+        let frames = (0..clip.frames).step_by(step);
+        let places = |frame| WorldPose::of(clip, frame).positions;
+        frames.map(places).collect()
+    };
+    let played = |(set, roles): (&'static str, Vec<(Role, usize)>)| {
+        let mut map = RoleMap::default();
+        for (role, point) in roles {
+            map.set(role, Some(point));
+        }
+        (map, Some(set))
+    };
+    // As many numbered points may be a body; a hand is sooner known.
+    if let Some(hand) = recognise_numbered_hand(&names, &poses(HANDS_LOOKED_AT)) {
+        return played(hand);
+    }
+    let Some(found) = recognise_posed(&names, &poses(LOOKED_AT)) else {
+        let hands = recognise_hands(&names, &poses(HANDS_LOOKED_AT));
+        return hands.map_or_else(|| (RoleMap::default(), None), played);
     };
     let places = found
         .roles

@@ -1,7 +1,7 @@
 //! A clip made ready for everything that follows.
 
 use crate::clip::{Clip, Span};
-use crate::features::{BoneSet, KeyPose, bones_of_clip, for_each_pose};
+use crate::features::{BoneSet, KeyPose, all_bones_of_clip, for_each_pose};
 use crate::formats::Warning;
 use crate::roles::RoleMap;
 
@@ -40,7 +40,7 @@ impl Take {
 
     /// The bones that recognition can use of it.
     pub fn bones(&self) -> BoneSet {
-        bones_of_clip(&self.clip, &self.roles, self.rest())
+        all_bones_of_clip(&self.clip, &self.roles, self.rest())
     }
 
     /// Time of every frame in seconds, and its key pose, as a live source would have sent them.

@@ -7,6 +7,7 @@ use proptest::prelude::*;
 use super::*;
 use crate::clip::Clip;
 use crate::clip::{Joint, JointTrack, Skeleton};
+use crate::features::{BoneSet, Hand, flat_hand};
 use crate::formats::{Limits, acclaim, bvh};
 use crate::kinematics::WorldPose;
 use crate::math::{Axis, Quat, Vec3};
@@ -122,7 +123,8 @@ fn half_a_body_is_a_body() {
         assert_eq!(take.report.unit, Some("mm"), "{neck}");
         assert_eq!(take.report.doubts, [""; 0], "{neck}");
         assert_eq!(take.report.notes, [""; 0], "{neck}");
-        assert_eq!(take.bones().len(), 6, "shoulders, arms and head");
+        let of_body = take.bones().and(BoneSet::BODY);
+        assert_eq!(of_body.len(), 6, "shoulders, arms and head");
         let found = crate::diagnosis::diagnose_clip(&take.clip, &take.roles, take.rest());
         let worst = found.findings().worst().map(|finding| finding.severity());
         assert_eq!(worst, Some(crate::diagnosis::Severity::Info), "{neck}");
@@ -135,44 +137,71 @@ fn half_a_body_is_a_body() {
     assert_eq!(ready(lying).report.up.to_string(), "z");
 }
 
-#[test]
-fn the_points_of_a_hand_are_named_as_such() {
-    let clip = |names: &[&str]| {
-        let joint = |(at, name): (usize, &&str)| {
-            let place = |frame: usize| Vec3::new(0.02 * at as f64, 1.0, 0.001 * frame as f64);
-            ((*name).to_owned(), (0..30).map(place).collect())
-        };
-        let joints = names.iter().enumerate().map(joint);
-        Clip::of_points("points".into(), 30.0, joints, Default::default())
-    };
-    let leap = [
-        "palm",
-        "thumb_1",
-        "thumb_2",
-        "thumb_tip",
-        "index_1",
-        "index_tip",
-        "ring_1",
-        "ring_tip",
-        "little_1",
-        "little_tip",
-    ];
-    let media_pipe = [
-        "WRIST",
-        "THUMB_CMC",
-        "THUMB_TIP",
-        "INDEX_FINGER_MCP",
-        "PINKY_TIP",
-    ];
-    let numbered = ["hand_0", "hand_1", "hand_2", "hand_3"];
-    for names in [&leap[..], &media_pipe, &numbered] {
-        let doubts = ready(clip(names)).report.doubts;
-        assert!(
-            doubts[0].starts_with("these points are a hand's"),
-            "{doubts:?}"
-        );
+/// A clip of the points of `hands` by these names, each hand's in the order of MediaPipe.
+fn clip_of_hands(hands: &[Hand], name: impl Fn(Hand, usize) -> String) -> Clip {
+    let mut joints: Vec<(String, Vec<Vec3>)> = Vec::new();
+    for hand in hands {
+        let points = hand.points();
+        let roles = std::iter::once(points.wrist).chain(points.fingers.into_iter().flatten());
+        for (number, role) in roles.enumerate() {
+            let place = |frame: usize| {
+                let pose = flat_hand(*hand, 0.2 + 0.02 * frame as f64, 1.0);
+                pose.get(role).unwrap() + Vec3::x() * 0.2 * hands.len() as f64
+            };
+            joints.push((name(*hand, number), (0..30).map(place).collect()));
+        }
     }
-    let doubts = ready(clip(&["p1", "p2", "p3"])).report.doubts;
+    Clip::of_points("hand".into(), 30.0, joints, Default::default())
+}
+
+#[test]
+fn the_points_of_hands_are_known() {
+    const MEDIA_PIPE: &str = "WRIST THUMB_CMC THUMB_MCP THUMB_IP THUMB_TIP INDEX_FINGER_MCP INDEX_FINGER_PIP INDEX_FINGER_DIP \
+        INDEX_FINGER_TIP MIDDLE_FINGER_MCP MIDDLE_FINGER_PIP MIDDLE_FINGER_DIP MIDDLE_FINGER_TIP RING_FINGER_MCP RING_FINGER_PIP \
+        RING_FINGER_DIP RING_FINGER_TIP PINKY_MCP PINKY_PIP PINKY_DIP PINKY_TIP";
+    let side = |hand: Hand| match hand {
+        Hand::Left => "Left",
+        Hand::Right => "Right",
+    };
+    let word = |number: usize| MEDIA_PIPE.split_whitespace().nth(number).unwrap();
+    let names: [&dyn Fn(Hand, usize) -> String; 5] = [
+        &|_, number| number.to_string(),
+        &|_, number| word(number).to_owned(),
+        &|hand, number| format!("{}_{number}", side(hand)),
+        &|hand, number| format!("{}:{}", side(hand), word(number)),
+        &|hand, number| format!("hand_{}_{number}", hand as usize),
+    ];
+    for (at, name) in names.into_iter().enumerate() {
+        for hands in [&[Hand::Left][..], &[Hand::Right], &Hand::BOTH] {
+            // Two hands of the same names are no points of a clip.
+            if at < 2 && hands.len() == 2 {
+                continue;
+            }
+            let take = ready(clip_of_hands(hands, name));
+            assert_eq!(take.report.doubts, [""; 0], "{at} {hands:?}");
+            assert_eq!(take.roles.missing().count(), 0);
+            assert_eq!(
+                take.roles.played().count(),
+                21 * hands.len(),
+                "{at} {hands:?}"
+            );
+            let told = hands
+                .iter()
+                .all(|hand| take.roles.joint(hand.points().wrist).is_some());
+            assert!(told, "{at} {hands:?}");
+            let found = crate::diagnosis::diagnose_clip(&take.clip, &take.roles, take.rest());
+            assert_eq!(found.findings().len(), 0, "{:?}", found.findings());
+        }
+    }
+    let mut few = clip_of_hands(&[Hand::Left], |_, number| word(number).to_owned());
+    few = Clip::of_points(
+        "few".into(),
+        30.0,
+        (few.skeleton.names().take(5).map(str::to_owned))
+            .zip(few.tracks.iter().map(|t| t.positions.clone())),
+        Default::default(),
+    );
+    let doubts = ready(few).report.doubts;
     assert!(
         doubts[0].starts_with("no known set of points"),
         "{doubts:?}"
@@ -286,7 +315,7 @@ fn clips_without_frames_or_bodies_are_answered() {
         tracks: Vec::new(),
         ..person(3, 0.0)
     };
-    assert_eq!(ready(nobody).roles.missing().count(), Role::COUNT);
+    assert_eq!(ready(nobody).roles.missing().count(), Role::BODY_COUNT);
 }
 
 proptest! {

@@ -96,9 +96,13 @@ fn size(body: &BodyMeasures, up: SignedAxis) -> Option<f64> {
         [one] if body.leg.is_some() => Some(*one),
         _ => height(body, up)
             .map(|height| height / HEIGHT)
-            .or_else(|| size_of_arms(body)),
+            .or_else(|| size_of_arms(body))
+            .or_else(|| body.hand.map(|hand| hand / HAND)),
     }
 }
+
+/// Usual length of a hand, metres.
+const HAND: f64 = 0.186;
 
 /// The same of a body without legs.
 fn size_of_arms(body: &BodyMeasures) -> Option<f64> {

@@ -52,10 +52,22 @@ pub struct Manifest {
     /// The verifier without its tables, if there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub verifier: Option<VerifierWords>,
+    /// The held poses without their tables, if there are any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub held: Option<HeldWords>,
     /// Joints of the training clips, by role.
     pub roles: BTreeMap<Role, String>,
     /// Origin of the index.
     pub provenance: Provenance,
+}
+
+/// Held poses without their tables.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct HeldWords {
+    /// Poses that are farther than this from those of a class are none of it.
+    pub reach: f32,
+    /// Ticks for which a pose must be held.
+    pub least_ticks: usize,
 }
 
 /// A verifier without its exemplars.

@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 
 use crate::features::{RowLayout, Rows};
 use crate::templates::{
-    Exemplars, PackedSymmetric, SHAPE_ROWS, TemplateModel, TemplateSample, Verifier,
+    Exemplars, HeldPoses, PackedSymmetric, SHAPE_ROWS, TemplateModel, TemplateSample, Verifier,
 };
 
-use super::manifest::{FORMAT, Manifest, VerifierWords};
+use super::manifest::{FORMAT, HeldWords, Manifest, VerifierWords};
 use super::tensors::{Tables, Tensor, class_id};
 use super::{INDEX_VERSION, IndexError, MotionIndex};
 
@@ -32,6 +32,10 @@ pub(super) fn manifest(model: &TemplateModel, index: &MotionIndex) -> Manifest {
             bar: v.bar,
             operating: v.operating.clone(),
             generic: v.generic.clone(),
+        }),
+        held: model.held.as_ref().map(|held| HeldWords {
+            reach: held.reach,
+            least_ticks: held.least_ticks,
         }),
         roles: index.roles.clone(),
         provenance: index.provenance.clone(),
@@ -70,7 +74,26 @@ pub(super) fn tensors(model: &TemplateModel) -> BTreeMap<String, Tensor> {
     if let Some(verifier) = &model.verifier {
         tensors.extend(exemplars(&verifier.classes, dim, step));
     }
+    if let Some(held) = &model.held {
+        tensors.extend(held_tensors(held));
+    }
     tensors
+}
+
+/// Poses of held classes and of anything else.
+fn held_tensors(held: &HeldPoses) -> [(String, Tensor); 5] {
+    let poses = |rows: &Rows| Tensor::of_rows(rows.iter(), rows.dim(), None);
+    let classes = held.classes.iter().map(|class| u32::from(class.0));
+    [
+        ("held.classes".to_owned(), Tensor::of_u32(classes)),
+        ("held.others".to_owned(), poses(&held.others)),
+        ("held.poses".to_owned(), poses(&held.poses)),
+        (
+            "held.ridged".to_owned(),
+            Tensor::of_f32(held.ridged.packed()),
+        ),
+        ("held.total".to_owned(), Tensor::of_f32(held.total.packed())),
+    ]
 }
 
 /// All classes' exemplars, one class after the other.
@@ -145,6 +168,7 @@ pub(super) fn read(manifest: &Manifest, tables: &Tables) -> Result<TemplateModel
         calibration: manifest.calibration,
         stranger: manifest.stranger.clone(),
         verifier: verifier(manifest, tables, dim, step.as_deref())?,
+        held: held(manifest, tables)?,
         step,
     };
     model
@@ -210,6 +234,33 @@ fn verifier(
         operating,
         generic,
         classes,
+    }))
+}
+
+fn held(manifest: &Manifest, tables: &Tables) -> Result<Option<HeldPoses>, IndexError> {
+    let Some(HeldWords { reach, least_ticks }) = manifest.held else {
+        return Ok(None);
+    };
+    let dim = RowLayout::of(manifest.bones).directions().len();
+    let rows = |name: &str| -> Result<Rows, IndexError> {
+        let values = tables.f32s(name)?;
+        match values.len().is_multiple_of(dim.max(1)) {
+            true => Ok(Rows::from_values(dim, values)),
+            false => Err(IndexError::Content(format!(
+                "tensor {name:?}: expected rows of {dim} values, found {} values",
+                values.len()
+            ))),
+        }
+    };
+    let classes = tables.u32s("held.classes")?.into_iter().map(class_id);
+    Ok(Some(HeldPoses {
+        poses: rows("held.poses")?,
+        classes: classes.collect::<Result<_, _>>()?,
+        others: rows("held.others")?,
+        ridged: symmetric(tables, "held.ridged", dim)?,
+        total: symmetric(tables, "held.total", dim)?,
+        reach,
+        least_ticks,
     }))
 }
 

@@ -5,11 +5,12 @@
 //! decodes the matches of all ([`Recognizer::replay`]). The detections are those of the whole index, to the bit.
 
 use crate::clip::{Clip, Span};
-use crate::features::{BoneSet, FeatureStream, KeyPose, bones_of_clip, for_each_pose};
+use crate::features::{BoneSet, FeatureStream, KeyPose, all_bones_of_clip, for_each_pose};
 use crate::roles::RoleMap;
 use crate::templates::{ClassMatcher, ClassMatches, Metric, TemplateModel, reach_of};
 
 use super::of_clip::recognize_with;
+use super::start::check_shown;
 use super::{Detection, Model, Recognizer, StartError};
 
 impl TemplateModel {
@@ -67,6 +68,7 @@ impl PartMatcher {
     /// # Errors
     /// The model uses none of these bones.
     pub fn new(part: &TemplateModel, bones: BoneSet) -> Result<Self, StartError> {
+        check_shown(part.bones, bones)?;
         let part = part.restricted(bones)?;
         part.check()?;
         let metric = Metric::new(&part.ridged, &part.total);
@@ -111,7 +113,7 @@ pub fn match_clip(
     roles: &RoleMap,
     rest: &Span,
 ) -> Result<ClassMatches, StartError> {
-    let mut matcher = PartMatcher::new(part, bones_of_clip(clip, roles, rest))?;
+    let mut matcher = PartMatcher::new(part, all_bones_of_clip(clip, roles, rest))?;
     for_each_pose(clip, roles, rest, |time_secs, pose| {
         matcher.push(time_secs, pose);
     });
@@ -131,7 +133,7 @@ pub fn recognize_matched(
     rest: &Span,
 ) -> Result<Vec<Detection>, StartError> {
     let model = Model::Templates(std::sync::Arc::new(first.clone()));
-    let bones = bones_of_clip(clip, roles, rest);
+    let bones = all_bones_of_clip(clip, roles, rest);
     recognize_with(
         Recognizer::replay(first, bones, matches)?,
         &model,

@@ -43,9 +43,9 @@ impl Rig {
         Self { skeleton, roles }
     }
 
-    /// The bones that this skeleton shows in `pose`: both ends play a role, are known, and lie apart.
+    /// The bones that this skeleton shows in `pose`: both ends are known and lie apart.
     pub fn bones(&self, pose: &KeyPose) -> BoneSet {
-        BoneSet::of_roles(&self.roles).and(BoneSet::of_pose(pose))
+        BoneSet::of_pose(pose)
     }
 }
 
@@ -70,12 +70,8 @@ impl Frame {
     /// Positions of the role joints: the one place where a posed skeleton becomes what templates compare.
     pub fn key_pose(&self, rig: &Rig) -> KeyPose {
         let mut key = KeyPose::default();
-        for role in Role::ALL {
-            if let Some(position) = rig
-                .roles
-                .joint(role)
-                .and_then(|joint| self.pose.positions.get(joint))
-            {
+        for (role, joint) in rig.roles.played() {
+            if let Some(position) = self.pose.positions.get(joint) {
                 key.set(role, *position);
             }
         }

@@ -5,11 +5,12 @@ use std::thread;
 use std::time::Duration;
 
 use crate::clip::{Clip, Span};
-use crate::features::{BoneSet, KeyPose, bones_of_clip};
+use crate::features::{BoneSet, KeyPose, all_bones_of_clip};
 use crate::kinematics::for_each_world_pose;
 use crate::roles::RoleMap;
 use crate::thesis::pivots::NoPivots;
 
+use super::start::check_shown;
 use super::{
     Detection, Event, EventReader, Frame, Model, PerformerId, Phase, PoseExtractor, Recognizer,
     RecognizerCache, Rig, Session, SessionError, SessionOptions, StartError, wall_now_secs,
@@ -40,7 +41,7 @@ impl RecognizerCache {
         roles: &RoleMap,
         rest: &Span,
     ) -> Result<Vec<Detection>, StartError> {
-        let recognizer = self.recognizer(bones_of_clip(clip, roles, rest))?;
+        let recognizer = self.recognizer(all_bones_of_clip(clip, roles, rest))?;
         recognize_with(recognizer, self.model(), clip, roles, rest)
     }
 
@@ -115,6 +116,9 @@ pub fn recognize_clip_in_session<M: Clone + Into<Model>>(
     let model = model.clone().into();
     // What keeps a clip from being recognised is said as it is without a session.
     reader(&model, clip, roles)?;
+    if let (Model::Templates(model), true) = (&model, clip.frames > 0) {
+        check_shown(model.bones, all_bones_of_clip(clip, roles, rest))?;
+    }
     let options = SessionOptions {
         overload: super::OverflowPolicy::Wait,
         readers: 1,

@@ -1,9 +1,11 @@
 //! Recognition with an index.
 
-use crate::features::BoneSet;
+use crate::features::{ALL_BONES, BoneSet};
 use crate::index::MotionIndex;
+use crate::roles::{Role, RoleMap};
 
-use super::{Recognizer, StartError};
+use super::start::check_shown;
+use super::{Model, Recognizer, StartError};
 
 impl MotionIndex {
     /// Detections of `take`, recognised pose by pose as in a live stream; times from its beginning.
@@ -19,6 +21,42 @@ impl MotionIndex {
         self.complete_roles(&mut roles, &take.clip.skeleton);
         let found = super::recognize_clip(&self.model, &take.clip, &roles, take.rest())?;
         Ok(found.into_iter().map(|d| d.named(&self.model)).collect())
+    }
+
+    /// An error if a stream of this index's method shows `bones` and none of them is the index's: then it is of another kind of performer.
+    ///
+    /// # Errors
+    /// What the index is of, and what is shown.
+    pub fn check_shown(&self, bones: BoneSet) -> Result<(), StartError> {
+        match &self.model {
+            Model::Templates(model) => check_shown(model.bones, bones),
+            Model::Svrdm(_) => Ok(()),
+        }
+    }
+
+    /// The parts that the index's bones need and a performer with these `roles` lacks, who shows the bones `shown`. Empty of one who shows
+    /// all of them, and of one who shows [none](Self::check_shown).
+    pub fn lacks(&self, roles: &RoleMap, shown: BoneSet) -> Vec<&'static str> {
+        let Model::Templates(model) = &self.model else {
+            return Vec::new();
+        };
+        let lacking = || model.bones.indices().filter(|b| !shown.contains(*b));
+        if lacking().next().is_none() || self.check_shown(shown).is_err() {
+            return Vec::new();
+        }
+        let needed = |role: &Role| {
+            let mut bones = lacking().map(|b| ALL_BONES[b]);
+            roles.joint(*role).is_none() && bones.any(|bone| bone.from == *role || bone.to == *role)
+        };
+        let names: Vec<_> = Role::ALL
+            .into_iter()
+            .filter(needed)
+            .map(Role::name)
+            .collect();
+        match names.is_empty() {
+            true => vec!["bones of no length"],
+            false => names,
+        }
     }
 
     /// A recogniser for a stream that offers `bones`.

@@ -1,7 +1,26 @@
 //! Why a stream cannot be recognised.
 
+use crate::features::{BoneSet, Profile};
 use crate::templates::TemplateModelError;
 use crate::thesis::pivots::NoPivots;
+
+/// An error if nothing of what an index `uses` is `shown`.
+pub(super) fn check_shown(uses: BoneSet, shown: BoneSet) -> Result<(), StartError> {
+    if !uses.and(shown).is_empty() {
+        return Ok(());
+    }
+    let (index, shown_here) = (
+        Profile::words_of(uses),
+        Profile::words_of(Profile::usual_bones(shown)),
+    );
+    match shown.is_empty() || index == shown_here {
+        true => Err(TemplateModelError::NoBones.into()),
+        false => Err(StartError::OtherProfile {
+            index,
+            shown: shown_here,
+        }),
+    }
+}
 
 /// Why a stream cannot be recognised with a model.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -12,6 +31,14 @@ pub enum StartError {
     /// The model's parts do not fit together.
     #[error(transparent)]
     Svrdm(#[from] crate::thesis::svrdm::ModelError),
+    /// The stream shows a performer of another kind than the index is of.
+    #[error("this index is of {index}; what is shown here is {shown}")]
+    OtherProfile {
+        /// What the index is of.
+        index: &'static str,
+        /// What the stream shows.
+        shown: &'static str,
+    },
     /// The skeleton lacks the pivot that all others hang from, or its rotations are not known.
     #[error(transparent)]
     Pivots(#[from] NoPivots),

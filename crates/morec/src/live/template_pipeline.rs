@@ -9,6 +9,7 @@ use crate::templates::{
 
 use super::detection::{DetectionBuffer, Steps};
 use super::pipeline::Pipeline;
+use super::start::check_shown;
 use super::{EarlyDetection, RecognizerInput, StartError};
 
 /// Feature rows and templates.
@@ -163,5 +164,6 @@ fn restricted(
     if model.bones.and(bones) == model.bones {
         return Ok(model.clone());
     }
+    check_shown(model.bones, bones)?;
     Ok(Arc::new(model.restricted(bones)?))
 }

@@ -65,10 +65,10 @@ fn apply(copy: &mut Perturbed, perturbation: Perturbation, rng: &mut Rng) {
         }
         Perturbation::Slow(metres) => add_slow(copy, metres * scale, rng),
         Perturbation::Constant(metres) => {
-            let offsets: Vec<Vec3> = Role::ALL
-                .iter()
-                .map(|_| normal3(rng) * (metres * scale))
-                .collect();
+            let mut offsets = [Vec3::zeros(); Role::COUNT];
+            for role in roles_of(copy) {
+                offsets[role.index()] = normal3(rng) * (metres * scale);
+            }
             each_joint(copy, |_, role, p| *p += offsets[role.index()]);
         }
         Perturbation::Tilt(degrees) => {
@@ -86,9 +86,10 @@ fn apply(copy: &mut Perturbed, perturbation: Perturbation, rng: &mut Rng) {
             }
         }
         Perturbation::Spikes(share) => {
+            let roles = roles_of(copy);
             for (_, pose) in &mut copy.poses {
                 if rng.chance(share) {
-                    let role = Role::ALL[rng.below(Role::COUNT)];
+                    let role = roles[rng.below(roles.len())];
                     let off = normal3(rng).normalize() * (SPIKE_METRES * scale);
                     if let Some(place) = pose.get(role) {
                         pose.set(role, place + off);
@@ -118,12 +119,21 @@ fn apply(copy: &mut Perturbed, perturbation: Perturbation, rng: &mut Rng) {
 /// `pose` as a mirror shows it: left and right exchanged, X reversed.
 pub fn mirrored(pose: &KeyPose) -> KeyPose {
     let mut out = KeyPose::default();
-    for role in Role::ALL {
+    for role in pose.roles() {
         if let Some(p) = pose.get(role) {
             out.set(role.opposite(), Vec3::new(-p.x, p.y, p.z));
         }
     }
     out
+}
+
+/// The parts of the body, seen or not, and what is seen of hands.
+fn roles_of(copy: &Perturbed) -> Vec<Role> {
+    let seen = |role: &Role| {
+        let mut poses = copy.poses.iter();
+        !role.is_of_hand() || poses.any(|(_, pose)| pose.get(*role).is_some())
+    };
+    Role::ALL.into_iter().filter(seen).collect()
 }
 
 /// Length of a leg, the mean over the poses that show one; the reference where none does.
@@ -147,7 +157,7 @@ fn leg_metres(poses: &[(f64, KeyPose)]) -> f64 {
 
 fn each_joint(copy: &mut Perturbed, mut change: impl FnMut(usize, Role, &mut Vec3)) {
     for (frame, (_, pose)) in copy.poses.iter_mut().enumerate() {
-        for role in Role::ALL {
+        for role in pose.roles() {
             if let Some(mut place) = pose.get(role) {
                 change(frame, role, &mut place);
                 pose.set(role, place);
@@ -163,10 +173,10 @@ fn add_slow(copy: &mut Perturbed, metres: f64, rng: &mut Rng) {
     };
     let step_secs = (last.0 - first.0) / (frames.max(2) - 1) as f64;
     let sigma_frames = SLOW_SIGMA_SECS / step_secs.max(1e-6);
-    let noise: Vec<Vec<Vec3>> = Role::ALL
-        .iter()
-        .map(|_| slow(frames, sigma_frames.min(frames as f64), rng))
-        .collect();
+    let mut noise = vec![Vec::new(); Role::COUNT];
+    for role in roles_of(copy) {
+        noise[role.index()] = slow(frames, sigma_frames.min(frames as f64), rng);
+    }
     each_joint(copy, |frame, role, p| {
         *p += noise[role.index()][frame] * metres;
     });
@@ -230,7 +240,7 @@ fn resample(copy: &mut Perturbed, hz: f64) {
         let (a, b) = (&copy.poses[after.saturating_sub(1)], &copy.poses[after]);
         let share = ((t - a.0) / (b.0 - a.0).max(1e-12)).clamp(0.0, 1.0);
         let mut pose = KeyPose::default();
-        for role in Role::ALL {
+        for role in a.1.roles() {
             if let (Some(p), Some(q)) = (a.1.get(role), b.1.get(role)) {
                 pose.set(role, p.lerp(&q, share));
             }

@@ -11,7 +11,7 @@ use base64::engine::general_purpose::STANDARD;
 use serde_json::json;
 
 use crate::clip::Clip;
-use crate::features::ALL_BONES;
+use crate::features::{ALL_BONES, Bone, BoneKind, Hand, Profile};
 use crate::kinematics::WorldPose;
 use crate::math::Vec3;
 use crate::roles::{Role, RoleMap};
@@ -163,7 +163,12 @@ fn clip(played: &PlayedClip, most: usize) -> serde_json::Value {
         poses.push(places);
     }
     let (middle, reach) = middle(&poses);
-    let unit_metres = (reach / f64::from(i16::MAX)).max(0.001);
+    // A hand is a tenth of a body.
+    let size = match roles.profile() {
+        Profile::Hand | Profile::Hands => 0.1,
+        _ => 1.0,
+    };
+    let unit_metres = (reach / f64::from(i16::MAX)).max(0.001 * size);
     let mut bytes: Vec<u8> = Vec::new();
     for place in poses.iter().flatten() {
         for axis in 0..3 {
@@ -196,6 +201,7 @@ fn clip(played: &PlayedClip, most: usize) -> serde_json::Value {
         "middle": [middle.x, middle.y, middle.z],
         "lines": lines(clip, roles),
         "unit_metres": unit_metres,
+        "size": size,
         "places": STANDARD.encode(bytes),
         "labels": marks(&played.labels),
         "detections": marks(&played.detections),
@@ -225,12 +231,20 @@ fn lines(clip: &Clip, roles: &RoleMap) -> Vec<(usize, usize)> {
     if clip.has_rotations() {
         return Vec::new();
     }
-    let ends = ALL_BONES.iter().map(|bone| (bone.from, bone.to));
+    let of_body = roles.profile() == Profile::Body;
+    let of_parts = |bone: &&Bone| {
+        matches!(bone.kind, BoneKind::Direction) || !of_body && bone.kind == BoneKind::Offset
+    };
+    let parts = ALL_BONES.iter().filter(of_parts);
+    let ends = parts.map(|bone| (bone.from, bone.to));
+    let is_known = |role: Role| roles.joint(role).is_some();
+    let hands = Hand::BOTH.into_iter().flat_map(|hand| hand.lines(is_known));
     let hips = [
         (Role::Hips, Role::LeftThigh),
         (Role::Hips, Role::RightThigh),
     ];
     ends.chain(hips)
+        .chain(hands)
         .filter_map(|(from, to)| Some((roles.joint(from)?, roles.joint(to)?)))
         .collect()
 }

@@ -12,7 +12,7 @@ function open(number) {
     const view16 = new DataView(bytes.buffer);
     clip.xyz = new Float32Array(bytes.length / 2);
     for (let i = 0; i < clip.xyz.length; i++) clip.xyz[i] = view16.getInt16(2 * i, true) * clip.unit_metres;
-    clip.height = 0.5;
+    clip.height = 0.5 * clip.size;
     for (let i = 1; i < clip.xyz.length; i += 3) clip.height = Math.max(clip.height, clip.xyz[i]);
   }
   secs = 0;
@@ -55,7 +55,7 @@ function draw() {
   const joints = clip.parents.length, from = 3 * joints * frame;
   const next = 3 * joints * Math.min(clip.frames - 1, frame + 1);
   const value = (i) => (1 - part) * clip.xyz[from + i] + part * clip.xyz[next + i];
-  const scale = view.zoom * 0.8 * height / Math.max(1, clip.height);
+  const scale = view.zoom * 0.8 * height / Math.max(clip.size, clip.height);
   const [sy, cy, st, ct] = [Math.sin(view.yaw), Math.cos(view.yaw), Math.sin(view.tilt), Math.cos(view.tilt)];
   // The camera follows the first joint over the floor.
   const [ox, oz] = [value(0), value(2)];
@@ -65,9 +65,9 @@ function draw() {
   };
   pen.strokeStyle = "#8886";
   pen.lineWidth = 1;
-  const fx = Math.round(ox), fz = Math.round(oz);
-  for (let k = -3; k <= 3; k++) {
-    for (const [a, b] of [[[fx + k, fz - 3], [fx + k, fz + 3]], [[fx - 3, fz + k], [fx + 3, fz + k]]]) {
+  const m = clip.size, fx = m * Math.round(ox / m), fz = m * Math.round(oz / m), reach = 3 * m;
+  for (let k = -reach; k <= reach + m / 2; k += m) {
+    for (const [a, b] of [[[fx + k, fz - reach], [fx + k, fz + reach]], [[fx - reach, fz + k], [fx + reach, fz + k]]]) {
       pen.beginPath();
       pen.moveTo(...seen(a[0], 0, a[1]));
       pen.lineTo(...seen(b[0], 0, b[1]));

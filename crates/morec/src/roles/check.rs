@@ -5,6 +5,7 @@ use super::names::JointNames;
 use super::tree::JointTree;
 use super::{ARMS, LEGS, Role, RoleMap, proportions};
 use crate::clip::Skeleton;
+use crate::features::Profile;
 use crate::math::Vec3;
 
 /// Advice at the end of every sentence about wrong roles.
@@ -25,7 +26,9 @@ pub(crate) fn check_named(
     map: &RoleMap,
     poses: &[Vec<Vec3>],
 ) -> Vec<String> {
-    let Some(first) = poses.first().filter(|_| !skeleton.is_empty()) else {
+    // Hands and tracked points have no proportions of a body.
+    let is_body = map.profile() == Profile::Body && !skeleton.is_empty();
+    let Some(first) = poses.first().filter(|_| is_body) else {
         return Vec::new();
     };
     let body = PosedBody {

@@ -157,10 +157,10 @@ fn what_is_not_there_is_missing_and_nothing_panics() {
         tip: None,
     };
     let alone = RoleMap::find(&Skeleton::new(vec![one]).unwrap());
-    assert_eq!(alone.missing().count(), Role::COUNT - 1);
+    assert_eq!(alone.missing().count(), Role::BODY_COUNT - 1);
     assert_eq!(
         RoleMap::find(&Skeleton::default()).missing().count(),
-        Role::COUNT
+        Role::BODY_COUNT
     );
 }
 

@@ -138,7 +138,7 @@ mod tests {
             rows.push(&row(t < 10, swing));
         }
         let params = FeatureParams::default();
-        let found = still_stretches(&rows, BoneSet::ALL, &params, &StillParams::default());
+        let found = still_stretches(&rows, BoneSet::BODY, &params, &StillParams::default());
         let kinds: Vec<StillKind> = found.iter().map(|f| f.1).collect();
         assert_eq!(
             kinds,

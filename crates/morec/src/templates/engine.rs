@@ -4,6 +4,7 @@ use crate::decode::{Candidate, Decoder, TickDetection};
 
 use super::class_matches::{ClassMatches, MatchReplay};
 use super::early::{EarlyDetectionParams, OngoingMatch};
+use super::held::HoldDetector;
 use super::verifier::{CandidateScorer, Evidence};
 use super::{
     Calibration, ClassMatcher, MatchGate, Metric, PerformerLevel, StrangerGate, TemplateModel,
@@ -22,6 +23,7 @@ pub struct TemplateEngine {
     threshold: f32,
     calibration: Option<Calibration>,
     stranger: Option<Box<PerformerAdaptation>>,
+    held: Option<Box<HoldDetector>>,
 }
 
 /// The wider gate and what is known of the performer.
@@ -165,6 +167,7 @@ impl TemplateEngine {
             threshold: model.threshold,
             calibration: model.calibration_in_use(),
             stranger,
+            held: (model.held.as_ref()).map(|held| Box::new(HoldDetector::new(held))),
             metric,
         };
         engine.apply_rules();
@@ -193,6 +196,9 @@ impl TemplateEngine {
         if let Matches::Computed(matcher) = &mut self.matches {
             matcher.reset();
         }
+        if let Some(held) = &mut self.held {
+            held.reset();
+        }
         self.decoder.reset();
         self.recent.pushed = 0;
     }
@@ -206,8 +212,11 @@ impl TemplateEngine {
     }
 
     /// Takes the next tick's row and returns the detections that are now certain. No allocation.
-    pub fn push(&mut self, row: &[f32]) -> &[TickDetection] {
+    pub fn push(&mut self, row: &[f32]) -> impl Iterator<Item = &TickDetection> {
         self.recent.push(row);
+        if let Some(held) = &mut self.held {
+            held.push(row);
+        }
         let (near, negative) = match &mut self.matches {
             Matches::Computed(matcher) => {
                 self.metric.apply(row, &mut self.mapped);
@@ -218,7 +227,12 @@ impl TemplateEngine {
         };
         self.decoder.push(near, negative);
         self.decode(false);
-        self.decoder.found()
+        self.found()
+    }
+
+    fn found(&self) -> impl Iterator<Item = &TickDetection> {
+        let held = self.held.as_ref().and_then(|held| held.found());
+        self.decoder.found().iter().chain(held)
     }
 
     /// Decides the ticks that are due, and reports.
@@ -252,8 +266,10 @@ impl TemplateEngine {
     /// The class whose beginning is nearest at the last tick, if one is near enough by `params`. O(template rows),
     /// no allocation; changes nothing. None on matches from elsewhere.
     pub fn underway(&self, params: &EarlyDetectionParams) -> Option<OngoingMatch> {
+        let farthest = params.reach * self.threshold;
+        let held = self.held.as_ref().and_then(|held| held.underway(farthest));
         match &self.matches {
-            Matches::Computed(matcher) => matcher.underway(params, self.threshold),
+            Matches::Computed(matcher) => matcher.underway(params, self.threshold).or(held),
             Matches::Given(_) => None,
         }
     }
@@ -264,10 +280,13 @@ impl TemplateEngine {
     }
 
     /// Ends the stretch and returns the detections that its last ticks still hold. The next row begins a new one.
-    pub fn finish(&mut self) -> &[TickDetection] {
+    pub fn finish(&mut self) -> impl Iterator<Item = &TickDetection> {
         self.decode(true);
+        if let Some(held) = &mut self.held {
+            held.finish();
+        }
         self.reset();
-        self.decoder.found()
+        self.found()
     }
 }
 

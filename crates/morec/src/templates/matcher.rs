@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::decode::{DecodeParams, FAR};
+use crate::decode::{DecodeParams, FAR, TYPICAL_SPREAD};
 use crate::features::Rows;
 
 use super::bank::{Match, PartialMatch, TemplateBank};
@@ -19,8 +19,9 @@ use super::stretches::Stretches;
 /// correlation coefficient to evaluate reproducibility*, 1989, Eq. 1.
 ///
 /// Distances `D` are normalised to `D / ((V_T + V_S) / 2 V_0)^b` with an exponent `b`
-/// ([`DecodeParams::spread_exponent`]) from 0 (plain) to 1 (a share of the motion that is not explained) and `V_0` = [`TYPICAL_SPREAD`], which keeps their
-/// scale: a small gesture must be met more exactly than a large one.
+/// ([`DecodeParams::spread_exponent`]) from 0 (plain) to 1 (a share of the motion that is not explained) and `V_0` =
+/// [`DecodeParams::typical_spread`], which keeps their scale: a small gesture must be met more exactly than a large one. All are
+/// multiplied by [`TYPICAL_SPREAD`]` / V_0`, so that a threshold means the same whatever rows are made of.
 ///
 /// For performers unlike the teacher, a share `a` of the squared difference of means is taken as their stance and not as part of the motion
 /// ([`NormalizedMatch::discounted`]): `D' = D − a |m_T − m_S|²`, held against a body at rest without it, too.
@@ -29,7 +30,7 @@ use super::stretches::Stretches;
 #[derive(Debug, Clone)]
 pub struct Matcher {
     bank: TemplateBank,
-    exponent: f32,
+    norm: SpreadNorm,
     rest_spread: f32,
     spreads: Arc<[f32]>,
     norm_bounds: Arc<[NormBound]>,
@@ -47,17 +48,18 @@ struct NormBound {
 impl NormBound {
     /// The tangent where both spreads are `spread`: a power of at most 1 is concave, so its tangents lie above it. A margin covers
     /// rounding.
-    fn new(exponent: f32, spread: f32) -> Self {
+    fn new(norm: SpreadNorm, spread: f32) -> Self {
         const MARGIN: f32 = 1.0 + 1e-4;
-        if spread < LEAST_SPREAD * TYPICAL_SPREAD || exponent > 1.0 {
+        let exponent = norm.exponent;
+        if spread < LEAST_SPREAD * norm.typical || exponent > 1.0 {
             return Self {
                 at_zero: f32::INFINITY,
                 slope: 0.0,
             };
         }
-        let at_tangent = MARGIN * norm(exponent, spread);
+        let at_tangent = MARGIN * norm.at(spread);
         Self {
-            at_zero: (at_tangent * (1.0 - exponent / 2.0)).max(MARGIN * norm(exponent, 0.0)),
+            at_zero: (at_tangent * (1.0 - exponent / 2.0)).max(MARGIN * norm.at(0.0)),
             slope: at_tangent * exponent / (2.0 * spread),
         }
     }
@@ -67,20 +69,31 @@ impl NormBound {
     }
 }
 
-/// Smaller spreads, as shares of [`TYPICAL_SPREAD`], count as this.
+/// Smaller spreads, as shares of the typical one, count as this.
 const LEAST_SPREAD: f32 = 1e-3;
 
-/// Divisor of a distance where the mean spread is `spread`.
-fn norm(exponent: f32, spread: f32) -> f32 {
-    if exponent == 0.0 {
-        1.0
-    } else {
-        (spread / TYPICAL_SPREAD).max(LEAST_SPREAD).powf(exponent)
-    }
+/// Divisors of distances.
+#[derive(Debug, Clone, Copy)]
+struct SpreadNorm {
+    exponent: f32,
+    /// `V_0`.
+    typical: f32,
 }
 
-/// Spread of a usual template under a trained metric, the median over referee signals and Kinect gestures.
-pub const TYPICAL_SPREAD: f32 = 1.7;
+impl SpreadNorm {
+    /// Divisor of a distance where the mean spread is `spread`.
+    fn at(self, spread: f32) -> f32 {
+        let scale = self.typical / TYPICAL_SPREAD;
+        if self.exponent == 0.0 {
+            scale
+        } else {
+            scale
+                * (spread / self.typical)
+                    .max(LEAST_SPREAD)
+                    .powf(self.exponent)
+        }
+    }
+}
 
 /// A template's match, held against a body at rest and normalised.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -140,6 +153,10 @@ impl NormalizedMatch {
 impl Matcher {
     /// Lays out `templates`, all of rows of `dim` values; of `decode` only what concerns spreads counts.
     pub fn new(templates: &[Rows], dim: usize, decode: &DecodeParams) -> Self {
+        let norm = SpreadNorm {
+            exponent: decode.spread_exponent,
+            typical: decode.typical_spread,
+        };
         let mut means = Rows::new(dim);
         let mut spreads = Vec::with_capacity(templates.len());
         for template in templates {
@@ -149,10 +166,10 @@ impl Matcher {
         }
         Self {
             bank: TemplateBank::new(templates, dim),
-            exponent: decode.spread_exponent,
+            norm,
             rest_spread: decode.rest_spread,
             norm_bounds: (spreads.iter())
-                .map(|spread| NormBound::new(decode.spread_exponent, *spread))
+                .map(|spread| NormBound::new(norm, *spread))
                 .collect(),
             spreads: spreads.into(),
             means: Arc::new(means),
@@ -239,8 +256,7 @@ impl Matcher {
         };
         if distance < FAR {
             found.spread = stretches.spread(age);
-            found.distance =
-                distance / norm(self.exponent, (self.spreads[index] + found.spread) / 2.0);
+            found.distance = distance / self.norm.at((self.spreads[index] + found.spread) / 2.0);
         }
         found
     }
@@ -270,7 +286,7 @@ impl Matcher {
     pub fn partial(&self, index: usize, least: usize) -> Option<PartialMatch> {
         let found = self.bank.partial(index, least)?;
         Some(PartialMatch {
-            distance: found.distance / norm(self.exponent, self.spreads[index]),
+            distance: found.distance / self.norm.at(self.spreads[index]),
             ..found
         })
     }
@@ -349,10 +365,11 @@ mod tests {
 
         #[test]
         fn the_line_lies_above_the_divisor(
-            exponent in 0.0f32..=1.0, template in 0.0f32..20.0, stretch in 0.0f32..60.0,
+            exponent in 0.0f32..=1.0, typical in 0.1f32..5.0, template in 0.0f32..20.0, stretch in 0.0f32..60.0,
         ) {
-            let line = NormBound::new(exponent, template).at(stretch);
-            prop_assert!(line >= norm(exponent, (template + stretch) / 2.0));
+            let norm = SpreadNorm { exponent, typical };
+            let line = NormBound::new(norm, template).at(stretch);
+            prop_assert!(line >= norm.at((template + stretch) / 2.0));
         }
 
         #[test]

@@ -5,8 +5,8 @@ use crate::decode::{CandidatePolicy, DecodeParams};
 use crate::features::{BoneSet, FeatureParams, RowLayout, Rows};
 
 use super::{
-    Calibration, Exemplars, OperatingPoint, PackedSymmetric, PerformerKind, StrangerGate, Verifier,
-    threshold_at,
+    Calibration, Exemplars, HeldPoses, OperatingPoint, PackedSymmetric, PerformerKind,
+    StrangerGate, Verifier, threshold_at,
 };
 
 /// One labelled sample's rows, before the metric.
@@ -49,6 +49,8 @@ pub struct TemplateModel {
     pub stranger: Option<StrangerGate>,
     /// The second look at candidates, if there was enough to learn it from.
     pub verifier: Option<Verifier>,
+    /// Poses of classes that are held, which have no templates; none in older indexes, and of bodies.
+    pub held: Option<HeldPoses>,
     /// If template rows are whole multiples of a step, column by column: the steps. Files then hold bytes.
     pub step: Option<Vec<f32>>,
 }
@@ -118,6 +120,10 @@ impl TemplateModel {
         }
         if let Some(stranger) = &self.stranger {
             stranger.check().map_err(TemplateModelError::Value)?;
+        }
+        if let Some(held) = &self.held {
+            held.check(RowLayout::of(self.bones), self.classes.len())
+                .map_err(TemplateModelError::Value)?;
         }
         if !(self.threshold.is_finite() && self.threshold > 0.0) {
             let message = format!("the threshold must be above 0, found {}", self.threshold);
@@ -282,6 +288,8 @@ impl TemplateModel {
                 .verifier
                 .as_ref()
                 .map(|v| restricted_verifier(v, share as f32, pick)),
+            held: (self.held.as_ref())
+                .map(|held| held.restricted(RowLayout::of(self.bones), &keep)),
             total,
             step: self
                 .step

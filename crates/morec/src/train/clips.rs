@@ -29,15 +29,7 @@ pub fn train_clips(
     }
     let mut prepared = build_train_set(&all, labelling, options.bones, &options.params.features);
     if prepared.bones == BoneSet::NONE {
-        return Err(if options.bones == BoneSet::ALL {
-            prepared.no_bone()
-        } else {
-            let wanted: Vec<String> = options.bones.into();
-            TrainError::Params(format!(
-                "no bone to learn from: not every labelled clip shows one of {}",
-                wanted.join(", ")
-            ))
-        });
+        return Err(prepared.no_bone(options.bones));
     }
     let (mirror, bones) = (options.mirror, prepared.bones);
     add_mirrored(&mut prepared.set, bones, mirror, &options.one_sided);

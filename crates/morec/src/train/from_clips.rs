@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use crate::classes::ClassId;
 use crate::clip::{Clip, Span};
 use crate::features::{
-    BoneSet, FeatureParams, HeadingLine, bones_of_clip, rows_of_clip, shows_hips,
+    BoneSet, FeatureParams, HeadingLine, Profile, all_bones_of_clip, rows_of_clip, shows_hips,
 };
 use crate::import::Take;
 use crate::labels::Sample;
@@ -69,8 +69,9 @@ pub struct Prepared {
     pub set: TrainSet,
     /// Bones that every labelled clip shows.
     pub bones: BoneSet,
-    /// What rows take the heading from: the shoulders if a clip that teaches shows no hips.
-    pub heading: HeadingLine,
+    /// Parameters that rows were made with: the heading is the shoulders' if a clip that teaches shows no hips, and hands have
+    /// [parameters of their own](Profile::features).
+    pub features: FeatureParams,
     /// Number of clips that hold samples.
     pub teaching: usize,
     /// Number of those among them that show no hips.
@@ -82,16 +83,24 @@ pub struct Prepared {
 }
 
 impl Prepared {
-    /// `params` with the heading that rows were made with.
+    /// `params` with the features that rows were made with.
     pub fn params(&self, params: &TrainParams) -> TrainParams {
-        let mut params = params.clone();
-        params.features.heading = self.heading;
-        params
+        TrainParams {
+            features: self.features.clone(),
+            ..params.clone()
+        }
     }
 
     /// Why there is no bone to learn from, where [`bones`](Self::bones) is empty.
-    pub fn no_bone(&self) -> TrainError {
+    pub fn no_bone(&self, wanted: BoneSet) -> TrainError {
         const NAMED: usize = 3;
+        if wanted != BoneSet::BODY && self.teaching > 0 {
+            let wanted: Vec<String> = wanted.into();
+            return TrainError::Params(format!(
+                "no bone to learn from: not every labelled clip shows one of {}",
+                wanted.join(", ")
+            ));
+        }
         match (self.bodiless.len(), self.teaching) {
             (0, 0) => TrainError::NoSamples,
             (0, _) => TrainError::NoCommonBone,
@@ -109,7 +118,8 @@ impl Prepared {
 
 /// Cuts clips into what training needs. Rows are made in parallel, in the order of `clips`.
 ///
-/// `wanted` are the bones that count, of those that every labelled clip shows.
+/// `wanted` are the bones that count, of those that every labelled clip shows. Where these clips show no body, and no bones but the
+/// body's are wanted, those of hands or of tracked points count.
 pub fn build_train_set(
     clips: &[TrainClip],
     labelling: &LabelSet<'_>,
@@ -119,7 +129,7 @@ pub fn build_train_set(
     let by_clip = by_clip(labelling.samples);
     let shown: Vec<BoneSet> = clips
         .par_iter()
-        .map(|c| bones_of_clip(&c.clip, &c.roles, &c.rest))
+        .map(|c| all_bones_of_clip(&c.clip, &c.roles, &c.rest))
         .collect();
     let taught = clips
         .iter()
@@ -129,24 +139,21 @@ pub fn build_train_set(
         .clone()
         .filter(|(c, _)| !shows_hips(&c.clip, &c.roles, &c.rest))
         .count();
-    let params = &FeatureParams {
-        heading: match hipless {
-            0 => params.heading,
-            _ => HeadingLine::Shoulders,
-        },
-        ..params.clone()
-    };
     let bodiless = taught
         .clone()
         .filter(|(_, shown)| shown.is_empty())
         .map(|(clip, _)| clip.name.clone())
         .collect();
-    let bones = taught
+    let common = taught
         .clone()
         .map(|(_, b)| *b)
         .reduce(BoneSet::and)
-        .unwrap_or(BoneSet::NONE)
-        .and(wanted);
+        .unwrap_or(BoneSet::NONE);
+    let bones = match common.and(BoneSet::BODY).is_empty() && wanted.and(BoneSet::BODY) == wanted {
+        true => Profile::usual_bones(common),
+        false => common.and(wanted),
+    };
+    let params = &features(params, Profile::of(bones), hipless > 0);
     let serves = |shown: &BoneSet| shown.and(bones) == bones && !bones.is_empty();
     let (usable, left_out): (Vec<_>, Vec<_>) =
         clips.iter().zip(&shown).partition(|(_, b)| serves(b));
@@ -156,17 +163,40 @@ pub fn build_train_set(
         .map(|(clip, _)| stream(clip, bones, params, labelling, &by_clip, &held_back))
         .collect();
     clips_are_people_if_one_is_named(&mut streams);
+    if Profile::of(bones) != Profile::Body {
+        unlabelled_as_background(&mut streams, params);
+    }
     Prepared {
         set: TrainSet {
             classes: labelling.classes.to_vec(),
             streams,
         },
         bones,
-        heading: params.heading,
+        features: params.clone(),
         hipless,
         teaching: taught.clone().count(),
         bodiless,
-        lacking: left_out.into_iter().map(|(c, _)| c.name.clone()).collect(),
+        lacking: left_out
+            .into_iter()
+            .filter(|(clip, _)| clip.source != StreamKind::Everyday)
+            .map(|(clip, _)| clip.name.clone())
+            .collect(),
+    }
+}
+
+/// `params` for the rows of a profile: its own in place of those that nobody chose.
+fn features(params: &FeatureParams, profile: Profile, hipless: bool) -> FeatureParams {
+    match profile {
+        Profile::Body if hipless && params.heading == HeadingLine::Hips => FeatureParams {
+            heading: HeadingLine::Shoulders,
+            ..params.clone()
+        },
+        Profile::Body => params.clone(),
+        _ if *params == FeatureParams::default() => profile.features(),
+        _ => FeatureParams {
+            heading: HeadingLine::Sensor,
+            ..params.clone()
+        },
     }
 }
 
@@ -181,6 +211,35 @@ fn clips_are_people_if_one_is_named(streams: &mut [TrainStream]) {
     if people.len() < 2 {
         streams.iter_mut().for_each(|s| s.group.clone_from(&s.name));
     }
+}
+
+/// Unlabelled stretches of a second and more become background by themselves: hands are never at rest, so that what they do between
+/// gestures is what must be kept out.
+fn unlabelled_as_background(streams: &mut Vec<TrainStream>, params: &FeatureParams) {
+    let least = params.tick_hz() as usize;
+    let mut found = Vec::new();
+    for stream in streams.iter_mut() {
+        if stream.source != StreamKind::Labelled || !stream.rest_is_background {
+            continue;
+        }
+        let mut start = 0;
+        let len = stream.rows.len();
+        let spans = stream.known.iter().map(|known| known.ticks.clone());
+        for span in spans.chain(std::iter::once(len..len)) {
+            let stop = span.start.min(len);
+            if stop >= start + least {
+                found.push(TrainStream {
+                    source: StreamKind::Background,
+                    rows: stream.rows.slice(start..stop),
+                    known: Vec::new(),
+                    ..stream.clone()
+                });
+            }
+            start = start.max(span.end.min(len));
+        }
+        stream.rest_is_background = false;
+    }
+    streams.extend(found);
 }
 
 type ByClip<'a> = BTreeMap<&'a str, Vec<&'a Sample>>;

@@ -7,6 +7,7 @@ mod data;
 mod examples;
 mod faster;
 mod from_clips;
+mod held;
 mod mining;
 mod mirror;
 mod notes;

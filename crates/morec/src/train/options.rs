@@ -42,7 +42,7 @@ impl Default for TrainOptions {
             everyday: Everyday::Always,
             mirror: Mirror::default(),
             one_sided: Vec::new(),
-            bones: BoneSet::ALL,
+            bones: BoneSet::BODY,
         }
     }
 }

@@ -1,14 +1,15 @@
 //! Report of a training run, for people to read.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::classes::ClassInfo;
+use crate::features::Profile;
 use crate::templates::OperatingPoint;
 
 use super::alike::AlikeClasses;
 use super::from_clips::Prepared;
 use super::notes::class_notes;
-use super::set::{StreamKind, TrainSample};
+use super::set::{StreamKind, TrainSample, TrainStream};
 use super::templates::TrainedTemplates;
 use super::thesis::SvrdmReport;
 
@@ -45,6 +46,13 @@ impl TrainingReport {
     /// The report on `trained`, from `prepared`.
     pub fn of(prepared: &Prepared, trained: &TrainedTemplates, tick_hz: f64) -> Self {
         let streams = &prepared.set.streams;
+        let labelled = streams.iter().filter(|s| s.source == StreamKind::Labelled);
+        let labelled: BTreeSet<&str> = labelled.map(|s| s.name.as_str()).collect();
+        // Unlabelled stretches of hands are background that bears the name of its clip.
+        let origin = |stream: &TrainStream| match labelled.contains(stream.name.as_str()) {
+            true => source_name(StreamKind::Labelled).to_owned(),
+            false => source_name(stream.source).to_owned(),
+        };
         let mut background_secs = BTreeMap::new();
         for stream in streams
             .iter()
@@ -52,15 +60,11 @@ impl TrainingReport {
         {
             let known: usize = stream.known.iter().map(|k| k.ticks.len()).sum();
             let secs = stream.rows.len().saturating_sub(known) as f64 / tick_hz;
-            *background_secs
-                .entry(source_name(stream.source).to_owned())
-                .or_insert(0.0) += secs;
+            *background_secs.entry(origin(stream)).or_insert(0.0) += secs;
         }
         let mut negatives = BTreeMap::new();
         for miss in &trained.negatives {
-            *negatives
-                .entry(source_name(streams[miss.stream].source).to_owned())
-                .or_insert(0) += 1;
+            *negatives.entry(origin(&streams[miss.stream])).or_insert(0) += 1;
         }
         let classes = trained.model.classes.clone();
         let mut notes = class_notes(&classes);
@@ -68,13 +72,33 @@ impl TrainingReport {
         if copies > 0 {
             notes.push(format!("mirrored copies of {copies} samples teach too"));
         }
-        if prepared.hipless > 0 {
+        let profile = Profile::of(prepared.bones);
+        if profile != Profile::Body {
+            notes.push(format!(
+                "the index is of {}: it looks at {}",
+                profile.words(),
+                Vec::<String>::from(prepared.bones).join(", ")
+            ));
+        } else if prepared.hipless > 0 {
             notes.push(format!(
                 "{} of {} clips that teach show no hips: the shoulders tell which way the body faces, for this index in every \
                  stream; it looks at {}",
                 prepared.hipless,
                 prepared.teaching,
                 Vec::<String>::from(prepared.bones).join(", ")
+            ));
+        }
+        if let Some(held) = &trained.model.held {
+            let mut classes = held.classes.clone();
+            classes.sort_unstable();
+            classes.dedup();
+            let names = classes
+                .iter()
+                .map(|class| trained.model.classes[class.index()].name.as_str());
+            notes.push(format!(
+                "recognised by a pose that is held for {:.1} s or longer, and reported when it is left: {}",
+                held.least_ticks as f64 / tick_hz,
+                names.collect::<Vec<_>>().join(", ")
             ));
         }
         if !prepared.lacking.is_empty() {

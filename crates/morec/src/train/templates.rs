@@ -6,7 +6,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 
 use crate::classes::ClassInfo;
-use crate::features::{BoneSet, Rows};
+use crate::decode::TYPICAL_SPREAD;
+use crate::features::{BoneSet, Profile, Rows};
 use crate::progress::Progress;
 use crate::templates::{
     ALARM_RATES, Calibration, MatchGate, Matcher, Metric, OperatingPoint, PackedSymmetric,
@@ -17,6 +18,7 @@ use crate::templates::{
 use super::alike::{AlikeClasses, alike_classes};
 use super::examples::{self, CandidateFinder, LeaveOneOutView, VerifierExample};
 use super::faster::{faster_copies, without_early};
+use super::held;
 use super::mining::{NearMiss, TemplateDistances, hard_negatives};
 use super::operating::AlarmCurve;
 use super::params::TrainParams;
@@ -89,6 +91,31 @@ pub struct TrainedTemplates {
     pub alike: Vec<AlikeClasses>,
 }
 
+/// `params` with the spread of the usual template among `samples`, where rows are not a body's. Thresholds are then at most that
+/// spread, unless another bound was chosen: a hand is near to many gestures that nobody taught.
+fn of_profile(
+    params: &TrainParams,
+    bones: BoneSet,
+    samples: &[TrainSample],
+    metric: &Metric,
+) -> TrainParams {
+    let mut params = params.clone();
+    if Profile::of(bones) != Profile::Body {
+        let spread = |sample: &TrainSample| {
+            let mapped = metric.apply_all(&sample.rows);
+            mean_and_spread(&mapped, mapped.dim()).1
+        };
+        let mut spreads: Vec<f32> = samples.iter().map(spread).collect();
+        spreads.sort_by(f32::total_cmp);
+        let usual = spreads.get(spreads.len() / 2).copied();
+        params.decode.typical_spread = usual.unwrap_or(TYPICAL_SPREAD).max(1e-3);
+        if params.max_threshold == TrainParams::default().max_threshold {
+            params.max_threshold = f64::from(TYPICAL_SPREAD);
+        }
+    }
+    params
+}
+
 /// Trains templates for `set`, whose rows hold `bones`.
 ///
 /// 1. metric from how samples of one class by different people differ;
@@ -114,8 +141,15 @@ pub fn train(
     let (ridged, total) = metric_of(set, &samples, params);
     let metric = Metric::new(&ridged, &total);
     let classes = class_infos(set, &samples);
+    let held = held::learn(set, &samples, bones, params);
+    let is_held = |sample: &TrainSample| {
+        let held = held.as_ref().map(|held| &held.classes);
+        held.is_some_and(|classes| classes.contains(&sample.class))
+    };
+    let samples = samples.into_iter().filter(|s| !is_held(s)).collect();
     let (samples, quiet) = moving(samples, &metric, params);
     let mut samples = templates_of(samples, set.classes.len(), params.max_templates);
+    let params = &of_profile(params, bones, &samples, &metric);
     let step = TrainingContext {
         set,
         metric: &metric,
@@ -216,6 +250,7 @@ pub fn train(
         calibration: params.calibrate.then_some(calibration),
         stranger: stranger.filter(|_| verifier.is_none()),
         verifier,
+        held,
         step: None,
     };
     let model = if params.compact {
@@ -492,6 +527,9 @@ fn moving(
         some.sort_by(f32::total_cmp);
         (some[some.len() / 2], some.len())
     };
+    if samples.is_empty() {
+        return (samples, Vec::new());
+    }
     let all = median(&|_| true).0;
     let is_quiet = |i: usize| {
         let (of_class, count) = median(&|j| samples[j].class == samples[i].class);

@@ -93,7 +93,7 @@ fn feature_rows_are_the_prototypes() {
     let params = TrainParams::reference().features;
     for (name, expected) in golden().feature_rows {
         let clip = kit::referee(&data, &name, StreamKind::Labelled);
-        let bones = morec::features::BoneSet::ALL;
+        let bones = morec::features::BoneSet::BODY;
         let rows = rows_of_clip(&clip.clip, &clip.roles, &clip.rest, bones, &params);
         for (index, expected) in expected.iter().enumerate() {
             for (column, (found, expected)) in
@@ -133,7 +133,7 @@ fn thresholds_and_detections_are_the_prototypes() {
             classes: &classes,
             unlabelled_is_background: true,
         };
-        let prepared = build_train_set(&others, &labelling, BoneSet::ALL, &params.features);
+        let prepared = build_train_set(&others, &labelling, BoneSet::BODY, &params.features);
         let model = train(&prepared.set, prepared.bones, &params, &())
             .unwrap()
             .model;
@@ -157,10 +157,10 @@ fn thresholds_and_detections_are_the_prototypes() {
         let mut engine = TemplateEngine::new(&model).unwrap();
         let mut found = vec![];
         for (tick, row) in rows.iter().enumerate() {
-            let now = engine.push(row).iter();
+            let now = engine.push(row);
             found.extend(now.map(|d| (*d, 4 * (tick as i64 + 1))));
         }
-        let last = engine.finish().iter();
+        let last = engine.finish();
         found.extend(last.map(|d| (*d, 4 * rows.len() as i64)));
         assert_eq!(found.len(), expected.detections.len(), "{left_out}");
         for ((d, reported), e) in found.iter().zip(&expected.detections) {

@@ -17,6 +17,7 @@ mod faster_copies;
 mod fbx;
 mod for_ever;
 mod golden;
+mod hands;
 mod index_file;
 mod kit;
 mod layers;

@@ -114,7 +114,7 @@ fn a_source_that_breaks_off_changes_its_skeleton_and_sends_rubbish_does_not_end_
 #[test]
 fn performers_do_not_disturb_each_other() {
     let poses = stream();
-    let alone = inline(&made::model(), BoneSet::ALL, &poses);
+    let alone = inline(&made::model(), BoneSet::BODY, &poses);
     let mut steps = vec![rig(3, Rig::of_roles()), rig(0, Rig::of_roles())];
     for pose in &poses {
         steps.push(Step::Frames(3, vec![*pose]));

@@ -1,6 +1,7 @@
 //! Synthetic bodies put through each fault give exactly that finding, and none without; real clips give none.
 
 mod bodies;
+mod hands;
 mod streams;
 
 use super::*;

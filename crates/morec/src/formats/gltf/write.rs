@@ -76,7 +76,7 @@ const fn bone(role: Role, name: &'static str, required: bool) -> VrmBone {
 }
 
 /// After *VRMC_vrm-1.0*, humanoid.
-const BONES: [VrmBone; Role::COUNT] = [
+const BONES: [VrmBone; Role::BODY_COUNT] = [
     bone(Role::Hips, "hips", true),
     bone(Role::Torso, "spine", true),
     bone(Role::Neck, "neck", false),

@@ -112,3 +112,39 @@ fn cut_or_altered_lines_never_panic() {
         }
     }
 }
+
+/// Lines about a hand: by names without a side, by numbers, of one hand and of both.
+#[test]
+fn hands_are_named_by_their_lines() {
+    let names = |line: &str| -> Vec<String> {
+        let mut all = Vec::new();
+        for clip in load(&format!("{line}\n{line}\n")).clips {
+            all.extend(clip.skeleton.names().map(str::to_owned));
+        }
+        all
+    };
+    let list = |count: usize| vec!["[0,1,2]"; count].join(",");
+    let named = r#"{"hand": "left", "positions": {"index_tip": [0,1,2], "WRIST": [0,0,0], "note": [1,1,1]}}"#;
+    assert_eq!(names(named), ["left_hand", "left_index_tip", "note"]);
+    let web = names(&format!(r#"{{"hand": "right", "points": [{}]}}"#, list(25)));
+    assert_eq!(web.len(), 21, "{web:?}");
+    assert!(web.iter().all(|name| name.starts_with("right_")));
+    let both = format!(
+        r#"{{"t": 0, "points": {{"left": [{0}], "right": [{0}]}}}}"#,
+        list(21)
+    );
+    assert_eq!(names(&both).len(), 42);
+    let told = names(&format!(r#"{{"t": 0, "points": [{}]}}"#, list(33)));
+    assert_eq!((told.len(), told[0].as_str()), (33, "0"));
+    // Each hand's lines are a clip.
+    let hands = format!("{named}\n{}\n", named.replace("left", "right"));
+    assert_eq!(load(&hands.repeat(2)).clips.len(), 2);
+    let wrong = format!(r#"{{"hand": "left", "points": [{}]}}"#, list(7));
+    let error = read(wrong.as_bytes(), "x", None, &Limits::default()).unwrap_err();
+    assert!(
+        error
+            .to_string()
+            .contains("7 points of a hand, where 20, 21, 25, 26 are known"),
+        "{error}"
+    );
+}

@@ -3,6 +3,9 @@
 use super::*;
 use serde_json::json;
 
+use crate::features::{Hand, flat_hand};
+use crate::roles::Role;
+
 fn open(document: &Value) -> Result<Loaded, ParseError> {
     read(
         document.to_string().as_bytes(),
@@ -343,4 +346,60 @@ fn joints_as_matrices() {
     )
     .unwrap();
     assert_eq!(loaded.clips[0].skeleton.len(), 5);
+}
+
+/// Frames of hands, whose sides are given by names of fields, by a label of each, or by a list beside them.
+#[test]
+fn hands_have_their_sides() {
+    let points = |hand: Hand, frame: usize| -> Value {
+        let pose = flat_hand(hand, 0.1 * frame as f64, 1.0);
+        let places = media_pipe(hand).map(|role| pose.get(role).unwrap_or_default());
+        places
+            .map(|p| json!({"x": p.x, "y": p.y, "z": p.z}))
+            .collect()
+    };
+    let (left, right) = (Hand::Left, Hand::Right);
+    let fields = |f: usize| {
+        json!({"t": f as f64 / 20.0, "left_hand_landmarks": points(right, 0), "left_hand_world_landmarks": points(left, f),
+            "right_hand_landmarks": points(right, f)})
+    };
+    let labels = |f: usize| {
+        let hand = |of, name| json!({"handedness": [{"categoryName": name, "score": 0.9}], "landmarks": points(of, f)});
+        json!({"timestamp_ms": 50 * f, "hands": [hand(right, "Right"), hand(left, "Left")]})
+    };
+    let lists = |f: usize| {
+        json!({"time": f as f64 / 20.0, "handedness": [[{"displayName": "Left"}], [{"displayName": "Right"}]],
+            "landmarks": [points(right, 0), points(left, 0)], "worldLandmarks": [points(left, f), points(right, f)]})
+    };
+    let forms: [&dyn Fn(usize) -> Value; 3] = [&fields, &labels, &lists];
+    for form in forms {
+        let document: Value = (0..8).map(form).collect();
+        assert!(looks_so(document.to_string().as_bytes()), "{document}");
+        let loaded = open(&document).unwrap();
+        let clip = &loaded.clips[0];
+        assert_eq!(
+            (clip.skeleton.len(), clip.rate_hz),
+            (42, 20.0),
+            "{:?}",
+            loaded.warnings
+        );
+        for hand in Hand::BOTH {
+            let name = if hand == left { "left_8" } else { "right_8" };
+            let joint = clip.skeleton.find(name).unwrap();
+            let tip = flat_hand(hand, 0.5, 1.0)
+                .get(hand.points().fingers[1][3])
+                .unwrap();
+            assert!(
+                (clip.tracks[joint].positions[5] - tip).norm() < 1e-9,
+                "{name}"
+            );
+        }
+        assert_eq!(loaded.warnings, []);
+    }
+}
+
+/// The roles of MediaPipe's points.
+fn media_pipe(hand: Hand) -> impl Iterator<Item = Role> {
+    let points = hand.points();
+    std::iter::once(points.wrist).chain(points.fingers.into_iter().flatten())
 }

@@ -373,8 +373,11 @@ fn is_jsonl(head: &Head) -> bool {
         let rest = rest.and_then(|rest| rest.strip_prefix(b":"));
         rest.is_some_and(|rest| rest.trim_ascii_start().starts_with(b"{"))
     };
+    // Lists of points that have a time or a hand are lines; any other list is a document of landmarks.
+    let is_numbered =
+        named(b"\"points\"") || holds(b"\"points\"") && (holds(b"\"t\"") || holds(b"\"hand\""));
     first.starts_with(b"{")
-        && (named(b"\"positions\"") || named(b"\"rotations\""))
+        && (named(b"\"positions\"") || named(b"\"rotations\"") || is_numbered)
         && !holds(b"\"asset\"")
 }
 

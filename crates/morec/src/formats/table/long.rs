@@ -108,7 +108,7 @@ pub(super) fn columns(header: usize, (_, cells): &TableLine) -> Option<Columns> 
 }
 
 /// Names of the column that tells people apart.
-const PEOPLE: [&str; 14] = [
+const PEOPLE: [&str; 19] = [
     "person",
     "person_id",
     "personid",
@@ -123,6 +123,11 @@ const PEOPLE: [&str; 14] = [
     "subject_id",
     "actor",
     "individual",
+    "hand",
+    "handedness",
+    "hand_id",
+    "hand_index",
+    "hand_label",
 ];
 
 /// TableFrames in the order in which they appear.

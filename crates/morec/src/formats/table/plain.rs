@@ -2,7 +2,7 @@
 
 use super::layout::{ColumnLayout, TableLine};
 use crate::formats::cells::{Decimal, number};
-use crate::roles::points::numbered_counts;
+use crate::roles::points::{NUMBERED_HANDS, numbered_counts};
 
 /// Rows that a table of numbers has at least to be taken for points without its name saying so.
 const LEAST_ROWS: usize = 5;
@@ -12,6 +12,14 @@ fn is_known(count: usize) -> bool {
     numbered_counts().any(|known| known == count)
 }
 
+/// The cells of a row; a separator may stand behind the last.
+fn filled<'a, 'b>(cells: &'b [&'a str]) -> &'b [&'a str] {
+    match cells.split_last() {
+        Some((&"", before)) => before,
+        _ => cells,
+    }
+}
+
 fn is_number(cell: &str) -> bool {
     number(cell, Decimal::Either).is_some()
 }
@@ -19,8 +27,9 @@ fn is_number(cell: &str) -> bool {
 /// True if all rows are numbers, as many as a known set needs.
 pub(super) fn is_row_of_points(rows: &[TableLine]) -> bool {
     let width = rows.first().map_or(0, |(_, cells)| cells.len());
-    let alike =
-        |(_, cells): &TableLine| cells.len() == width && cells.iter().all(|cell| is_number(cell));
+    let alike = |(_, cells): &TableLine| {
+        cells.len() == width && filled(cells).iter().all(|cell| is_number(cell))
+    };
     rows.len() >= LEAST_ROWS && rows.iter().all(alike) && layout(rows).is_some()
 }
 
@@ -73,8 +82,8 @@ fn stride(rows: &[TableLine]) -> Option<usize> {
 pub(super) fn layout(rows: &[TableLine]) -> Option<ColumnLayout> {
     let (_, first) = rows.first()?;
     // A header that says nothing may stand before the numbers.
-    let header_rows = usize::from(!first.iter().all(|cell| is_number(cell)));
-    let (_, cells) = rows.get(header_rows)?;
+    let header_rows = usize::from(!filled(first).iter().all(|cell| is_number(cell)));
+    let cells = filled(&rows.get(header_rows)?.1);
     if !cells.iter().all(|cell| is_number(cell)) {
         return None;
     }
@@ -87,7 +96,8 @@ pub(super) fn layout(rows: &[TableLine]) -> Option<ColumnLayout> {
     let (before, width, count) = fits(0, 3)
         .or_else(|| fits(1, 3))
         .or_else(|| fits(0, 4))
-        .or_else(|| fits(1, 4))?;
+        .or_else(|| fits(1, 4))
+        .or_else(|| hand_width(cells))?;
     let named = names_above(&rows[..header_rows], before, width, count);
     if named.is_none() && header_rows > 0 && is_telling(first) {
         return None;
@@ -105,7 +115,12 @@ pub(super) fn layout(rows: &[TableLine]) -> Option<ColumnLayout> {
         .iter()
         .filter_map(value)
         .all(|v| v.fract() == 0.0);
-    let text = format!("no names of columns; read as x, y and z of {count} points");
+    let turned = if width == 7 {
+        " with rotations, which are left out"
+    } else {
+        ""
+    };
+    let text = format!("no names of columns; read as x, y and z of {count} points{turned}");
     let notes = if named.is_some() {
         Vec::new()
     } else {
@@ -113,12 +128,37 @@ pub(super) fn layout(rows: &[TableLine]) -> Option<ColumnLayout> {
     };
     Some(ColumnLayout {
         points: (0..count).map(point).collect(),
-        time: (before == 1 && !counts).then_some((0, None)),
-        frame: (before == 1 && counts).then_some(0),
+        time: match before {
+            1 => (!counts).then_some((0, None)),
+            2 => Some((1, None)),
+            _ => None,
+        },
+        frame: (before > 0 && counts).then_some(0),
         header_rows,
         notes,
         ..ColumnLayout::default()
     })
+}
+
+/// Columns before the points, columns of a point and number of points in a row that holds a hand: places alone, or each with a
+/// rotation x, y, z, w as in the rows of SHREC.
+fn hand_width(cells: &[&str]) -> Option<(usize, usize, usize)> {
+    let value = |at: usize| number(cells.get(at)?, Decimal::Either);
+    let is_rotation = |at: usize| {
+        let squares = (at..at + 4).map(|at| Some(value(at)?.powi(2)));
+        squares
+            .sum::<Option<f64>>()
+            .is_some_and(|length| (length - 1.0).abs() < 0.02)
+    };
+    let fits = |(before, width): (usize, usize)| {
+        let values = cells.len().checked_sub(before)?;
+        let count = values / width;
+        let is_hand = values.is_multiple_of(width) && NUMBERED_HANDS.contains(&count);
+        let turned = width < 7 || (0..count).all(|point| is_rotation(before + width * point + 3));
+        (is_hand && turned).then_some((before, width, count))
+    };
+    let mut layouts = [(0, 3), (1, 3), (0, 7), (1, 7), (2, 7)].into_iter();
+    layouts.find_map(fits)
 }
 
 /// True if a row names its columns by more than numbers: then they are not x, y and z of a point each.

@@ -1,5 +1,7 @@
 use super::*;
 use crate::clip::Clip;
+use crate::features::{Hand, flat_hand};
+use crate::roles::Role;
 
 fn load(text: &str) -> (Clip, String) {
     let mut loaded = read(text.as_bytes(), "x", None, &Limits::default()).unwrap();
@@ -232,4 +234,60 @@ fn a_row_of_nothing_but_a_vertical_tab_is_blank() {
     for text in ["\x0b\n", "\x0b\u{3000}\n1 2 3\n4 5 6\n"] {
         fail(text);
     }
+}
+
+/// SHREC's rows: palm, three points of the thumb, four of each finger, each with a rotation; and rows of MediaPipe's points by hand.
+#[test]
+fn rows_of_a_hand() {
+    let hand = Hand::Left;
+    let points = hand.points();
+    let [thumb, fingers @ ..] = points.fingers;
+    let shrec: Vec<Role> = [points.palm, thumb[0], thumb[1], thumb[3]]
+        .into_iter()
+        .chain(fingers.into_iter().flatten())
+        .collect();
+    let row = |frame: usize| {
+        let pose = flat_hand(hand, 0.1 * frame as f64, 1.0);
+        let cells = shrec.iter().flat_map(|role| {
+            let at = pose.get(*role).unwrap_or_default();
+            [at.x, at.y, at.z, 0.0, 0.6, 0.0, 0.8].map(|v| format!("{v:.6}"))
+        });
+        cells.collect::<Vec<String>>()
+    };
+    let lines = |before: &dyn Fn(usize) -> String, end: &str| -> String {
+        (0..8)
+            .map(|f| format!("{}{}{end}\n", before(f), row(f).join(";")))
+            .collect()
+    };
+    for text in [
+        lines(&|_| String::new(), ""),
+        lines(&|_| String::new(), ";"),
+        lines(&|f| format!("{f};{:.2};", 0.05 * f as f64), ""),
+    ] {
+        assert!(looks_so(text.as_bytes()), "{text}");
+        let (clip, said) = load(&text);
+        assert_eq!((clip.frames, clip.skeleton.len()), (8, 20));
+        assert!(said.contains("rotations, which are left out"), "{said}");
+        let take = crate::Take::new(clip).unwrap();
+        assert_eq!(take.report.point_set, Some("SHREC hand (20)"));
+        assert_eq!(take.roles.joint(points.palm), Some(0));
+        assert_eq!(take.roles.joint(points.fingers[4][3]), Some(19));
+    }
+    let mut text = "frame,handedness,landmark,x,y,z\n".to_owned();
+    for frame in 0..8 {
+        for (hand, side) in [(Hand::Right, "Right"), (Hand::Left, "Left")] {
+            let points = hand.points();
+            let roles = std::iter::once(points.wrist).chain(points.fingers.into_iter().flatten());
+            let pose = flat_hand(hand, 0.1 * frame as f64, 1.0);
+            for (number, role) in roles.enumerate() {
+                let at = pose.get(role).unwrap_or_default();
+                text += &format!("{frame},{side},{number},{},{},{}\n", at.x, at.y, at.z);
+            }
+        }
+    }
+    let (clip, said) = load(&text);
+    assert_eq!((clip.frames, clip.skeleton.len()), (8, 42), "{said}");
+    let take = crate::Take::new(clip).unwrap();
+    assert_eq!(take.roles.joint(Role::RightIndexTip), Some(8));
+    assert_eq!(take.roles.joint(Role::LeftIndexTip), Some(29));
 }

@@ -1,6 +1,7 @@
 //! Recorded places and rotations to joints that hang together.
 
 use crate::clip::{Clip, Joint, JointTrack, Skeleton};
+use crate::features::Hand;
 use crate::math::{Quat, Vec3, same_hemisphere, slerp};
 use crate::roles::Role;
 
@@ -49,7 +50,9 @@ impl RecordedJoints {
         let played = |role: Role| rig.roles.joint(role).filter(|joint| seen(*joint));
         let mut at = [None; Role::COUNT];
         let (mut from, mut joints) = (Vec::new(), Vec::<Joint>::new());
-        for (role, name) in NAMES {
+        let hands = Role::ALL.into_iter().filter(|role| role.is_of_hand());
+        let points = hands.map(|role| (role, role.name()));
+        for (role, name) in NAMES.into_iter().chain(points) {
             let Some(joint) = played(role) else { continue };
             let above = std::iter::successors(above(role), |role| above(*role));
             let parent = above.filter_map(|role| at[role.index()]).next();
@@ -135,7 +138,7 @@ fn locals(joints: &[Joint], world: &[Vec<Quat>], count: usize) -> Vec<Quat> {
 }
 
 /// Roles in an order in which what carries comes first, under the names that joints of BVH files have.
-const NAMES: [(Role, &str); Role::COUNT] = [
+const NAMES: [(Role, &str); Role::BODY_COUNT] = [
     (Role::Hips, "Hips"),
     (Role::Torso, "Spine"),
     (Role::Neck, "Neck"),
@@ -159,6 +162,16 @@ const NAMES: [(Role, &str); Role::COUNT] = [
 /// The role that carries another.
 fn above(role: Role) -> Option<Role> {
     use Role::*;
+    for hand in Hand::BOTH.map(Hand::points) {
+        if role == hand.palm {
+            return Some(hand.wrist);
+        }
+        let mut fingers = hand.fingers.iter();
+        if let Some(finger) = fingers.find(|finger| finger.contains(&role)) {
+            let at = finger.iter().position(|point| *point == role)?;
+            return Some(at.checked_sub(1).map_or(hand.palm, |at| finger[at]));
+        }
+    }
     Some(match role {
         Hips => return None,
         Torso | LeftThigh | RightThigh => Hips,
@@ -174,6 +187,7 @@ fn above(role: Role) -> Option<Role> {
         LeftFoot => LeftShin,
         RightShin => RightThigh,
         RightFoot => RightShin,
+        _ => return None,
     })
 }
 

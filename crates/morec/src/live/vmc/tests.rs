@@ -26,7 +26,7 @@ fn swinging(secs: f64) -> WorldPose {
             None => (bone.offset(), local),
         };
     }
-    for role in Role::ALL {
+    for role in Role::BODY {
         let bone = HUMANOID.iter().position(|b| b.role == Some(role)).unwrap();
         pose.positions.push(at[bone].0);
         pose.rotations.push(at[bone].1);
@@ -112,7 +112,7 @@ impl Heard {
 }
 
 fn far(a: &KeyPose, b: &WorldPose) -> f64 {
-    Role::ALL
+    Role::BODY
         .iter()
         .map(|r| (a.get(*r).unwrap() - b.positions[r.index()]).norm())
         .fold(0.0, f64::max)

@@ -5,12 +5,16 @@
 //! of the hip joints, a knee by the middle of two markers, a hip joint by a regression from the pelvis.
 
 mod anatomy;
+mod hands;
 mod landmarks;
 mod markers;
 mod names;
 mod place;
 mod set;
 
+pub use hands::{
+    NUMBERED_HANDS, SideVotes, hand_role, numbered_hand, recognise_hands, recognise_numbered_hand,
+};
 pub use place::PointJoint;
 pub(in crate::roles) use place::said;
 pub use set::Recognised;
@@ -48,8 +52,8 @@ pub fn recognise(names: &[&str]) -> Option<Recognised> {
     recognise_posed(names, &[])
 }
 
-/// Who plays what among points of these names: names of roles if most are, else those of the set that they belong to.
-/// Empty if no part of a body is known. O(sets × points).
+/// Who plays what among points of these names: names of roles if most are, else those of the set that they belong to, else
+/// points of hands, of the right one if no name says a side. Empty if no part of a body or hand is known. O(sets × points).
 pub fn places_of(names: &[&str]) -> Vec<(Role, PointJoint)> {
     let named = names.iter().enumerate();
     let by_role: Vec<(Role, PointJoint)> = named
@@ -58,7 +62,17 @@ pub fn places_of(names: &[&str]) -> Vec<(Role, PointJoint)> {
     if by_role.len() >= 5 && 2 * by_role.len() > names.len() {
         return by_role;
     }
-    recognise(names).map_or_else(Vec::new, |found| found.roles)
+    let hands = || {
+        let (_, roles) = recognise_hands(names, &[])?;
+        let points = roles.into_iter();
+        Some(
+            points
+                .map(|(role, at)| (role, PointJoint::Point(at)))
+                .collect(),
+        )
+    };
+    let body = recognise(names).map(|found| found.roles);
+    body.or_else(hands).unwrap_or_default()
 }
 
 /// [`recognise`] with the points in some frames, which settle what numbers alone do not: 17 points may be COCO's or

@@ -30,7 +30,7 @@ pub(super) fn normalised_one(name: &str) -> String {
 }
 
 /// Lower-case words, cut at marks and where the case changes; digits stay with the word before them.
-fn words(name: &str) -> Vec<String> {
+pub(super) fn words(name: &str) -> Vec<String> {
     let bare = name.rsplit(':').next().unwrap_or(name);
     let letters: Vec<char> = bare.chars().collect();
     let mut words = Vec::new();

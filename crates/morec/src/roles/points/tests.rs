@@ -106,7 +106,7 @@ fn joints_of_any_skeleton_by_name() {
         "RightFoot",
     ];
     let found = recognise(&names).unwrap();
-    assert_eq!(found.roles.len(), Role::COUNT);
+    assert_eq!(found.roles.len(), Role::BODY_COUNT);
     let joint = |role: Role| {
         let (_, place) = found.roles.iter().find(|(r, _)| *r == role).unwrap();
         names[place.single().unwrap()]

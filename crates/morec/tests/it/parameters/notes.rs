@@ -218,6 +218,10 @@ pub const NOTES: &[(&str, &str)] = &[
         "F1 on referee by clip and by person, Kinect sessions by the same person and by others: 0.920, 0.872, 0.778, 0.724 at 0; 0.960, 0.901, 0.799, 0.754 at 0.75; 0.960, 0.864, 0.811, 0.762 at 1; chosen on these four; 0 in older indexes",
     ),
     (
+        "decode.typical_spread",
+        "not chosen on data: a body's is the median over referee signals and Kinect gestures, as ever; of hands and tracked points training takes the median of the index's templates",
+    ),
+    (
         "decode.rest_gate",
         "with `decode.rest_spread` at 0.5, F1 on referee by clip and by person, Kinect sessions by the same person and by others: 0.58: 0.917, 0.750, 0.855, 0.813; 0.60 (two faster copies): 0.949, 0.864, 0.855, 0.805; 0.62: 0.960, 0.889, 0.841, 0.808; 0.64: 0.960, 0.901, 0.818, 0.800; 0.66: 0.960, 0.901, 0.807, 0.774; 0 in older indexes",
     ),
