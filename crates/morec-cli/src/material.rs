@@ -73,8 +73,9 @@ pub struct MaterialArgs {
     /// class is not
     #[arg(long, value_delimiter = ',', value_name = "CLASSES")]
     pub one_sided: Vec<String>,
-    /// Parts of the body that count (templates only): all, upper (nothing below the hips: for seated performers), arms,
-    /// or names of bones, separated by commas, as the report of training lists them
+    /// Parts that count (templates only): all (of clips without a body: their hands), upper (nothing below the hips: for
+    /// seated performers), arms, hand (left ones as in a mirror), left_hand, hands, body_and_hands, points3 (head and hands
+    /// as tracked points), or names of bones, separated by commas, as the report of training lists them
     #[arg(long, value_name = "PARTS", default_value = "all")]
     pub bones: BoneSet,
     /// Roles of joints, where inference fails: lines of `role<TAB>joint name`

@@ -51,9 +51,9 @@ impl Stats {
         let mut engine = TemplateEngine::new(model)?;
         timed(&mut self.matching, || {
             for row in rows.iter() {
-                engine.push(row);
+                let _ = engine.push(row);
             }
-            engine.finish();
+            let _ = engine.finish();
         });
         let template_rows = model.samples.iter().map(|s| s.rows.len()).sum::<usize>()
             + model

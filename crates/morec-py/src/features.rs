@@ -67,15 +67,21 @@ fn columns(bones: BoneSet) -> Vec<String> {
     columns
 }
 
-/// Positions of the parts of the body, frame by frame: float64 of shape (frames, 18, 3), NaN where unknown.
+/// Positions of the parts of the body, frame by frame: float64 of shape (frames, 18, 3), NaN where unknown; (frames, 60, 3) with the
+/// points of hands where the clip shows any.
 #[pyfunction]
 pub fn key_positions<'py>(py: Python<'py>, clip: &PyClip) -> PyResult<Bound<'py, PyAny>> {
     let data = clip.data.clone();
+    let shows_hands = data.roles.played().any(|(role, _)| role.is_of_hand());
+    let roles = match shows_hands {
+        true => &Role::ALL[..],
+        false => &Role::BODY[..],
+    };
     let values = py.detach(|| {
-        let mut values = Vec::with_capacity(data.clip.frames * Role::COUNT * 3);
+        let mut values = Vec::with_capacity(data.clip.frames * roles.len() * 3);
         for_each_pose(&data.clip, &data.roles, &data.rest, |_, pose: &KeyPose| {
-            for role in Role::ALL {
-                match pose.get(role) {
+            for role in roles {
+                match pose.get(*role) {
                     Some(p) => values.extend([p.x, p.y, p.z]),
                     None => values.extend([f64::NAN; 3]),
                 }
@@ -83,5 +89,5 @@ pub fn key_positions<'py>(py: Python<'py>, clip: &PyClip) -> PyResult<Bound<'py,
         });
         values
     });
-    Ok(owned(py, values, &[clip.data.clip.frames, Role::COUNT, 3])?.into_any())
+    Ok(owned(py, values, &[clip.data.clip.frames, roles.len(), 3])?.into_any())
 }

@@ -4,11 +4,10 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use morec::features::{bones_of_clip, rows_of_clip};
+use morec::features::{all_bones_of_clip, rows_of_clip};
 use morec::import::SignedAxis;
 use morec::index::MotionIndex;
 use morec::live::{Detection, Model, RecognizerCache, StartError};
-use morec::roles::Role;
 use morec::templates::{MatchGate, Matcher, Metric, PerformerKind, Stretches};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -57,20 +56,15 @@ pub fn index_from_bytes(bytes: &[u8]) -> PyResult<PyIndex> {
 
 /// A sentence about the bones that the index uses and a clip does not show; `None` if it shows all.
 fn lacks(index: &MotionIndex, data: &ClipData) -> Option<String> {
-    let Model::Templates(model) = &index.model else {
-        return None;
-    };
-    let shown = bones_of_clip(&data.clip, &data.roles, &data.rest);
-    if data.clip.frames == 0 || shown.and(model.bones) == model.bones {
+    if data.clip.frames == 0 {
         return None;
     }
-    let optional = [Role::Torso, Role::LeftShoulder, Role::RightShoulder];
-    let missing = data.roles.missing().filter(|role| !optional.contains(role));
-    let names: Vec<&str> = missing.map(Role::name).collect();
-    let names = match names.is_empty() {
-        true => "bones of no length".to_owned(),
-        false => names.join(", "),
-    };
+    let shown = all_bones_of_clip(&data.clip, &data.roles, &data.rest);
+    let lacking = index.lacks(&data.roles, shown);
+    if lacking.is_empty() {
+        return None;
+    }
+    let names = lacking.join(", ");
     Some(format!(
         "{}: the index uses bones that this clip does not show (missing: {names}); recognising without them",
         data.clip.name
@@ -320,7 +314,7 @@ fn class_distances(index: &MotionIndex, data: &Arc<ClipData>) -> Result<Vec<f32>
     };
     let data = completed(index, data);
     let named = |error: String| format!("{}: {error}", data.clip.name);
-    let shown = bones_of_clip(&data.clip, &data.roles, &data.rest).and(model.bones);
+    let shown = all_bones_of_clip(&data.clip, &data.roles, &data.rest).and(model.bones);
     let model = model.restricted(shown).map_err(|e| named(e.to_string()))?;
     let (bones, features) = (model.bones, &model.features);
     let rows = rows_of_clip(&data.clip, &data.roles, &data.rest, bones, features);

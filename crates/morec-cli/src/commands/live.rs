@@ -162,7 +162,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         complain(&source.name, &source.notices, &mut line);
         dropped += status.dropped_events;
         eprintln!("morec: {}", summary(&source.name, &status));
-        advice::of_status(&status)
+        advice::of_status(&status, &index)
             .iter()
             .for_each(|text| eprintln!("morec:   {text}"));
     }

@@ -6,13 +6,12 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result};
 use clap::ValueEnum;
-use morec::features::BoneSet;
+use morec::features::all_bones_of_clip;
 use morec::import::{ImportOptions, Take};
 use morec::index::MotionIndex;
 use morec::labels::{FOUND_HEADER, FoundLine};
 use morec::live::vmc::Bundling;
 use morec::live::{Detection, Model, PoseExtractor, RecognizerCache, recognize_clip_in_session};
-use morec::roles::Role;
 use morec::templates::PerformerKind;
 
 use super::send::bundling;
@@ -290,13 +289,19 @@ fn adapt(imported: &mut Take, index: &MotionIndex, path: &Path, complete: bool) 
         return;
     }
     let (what, missing) = match &index.model {
-        Model::Templates(model) => ("bones", missing_roles(imported, model.bones)),
+        Model::Templates(_) => {
+            let shown = all_bones_of_clip(&imported.clip, &imported.roles, imported.rest());
+            ("bones", index.lacks(&imported.roles, shown).join(", "))
+        }
         Model::Svrdm(_) => {
             // Without a root there is an error to come, which says more.
             let reader = PoseExtractor::new(&index.model, &imported.clip.skeleton, &imported.roles);
             (
                 "joints",
-                reader.map_or_else(|_| vec![], |reader| reader.missing_pivots().to_vec()),
+                reader.map_or_else(
+                    |_| String::new(),
+                    |reader| reader.missing_pivots().join(", "),
+                ),
             )
         }
     };
@@ -305,33 +310,10 @@ fn adapt(imported: &mut Take, index: &MotionIndex, path: &Path, complete: bool) 
     }
     if !missing.is_empty() {
         eprintln!(
-            "morec: {}: the index uses {what} that this clip does not show (missing: {}); recognising without them",
-            path.display(),
-            missing.join(", ")
+            "morec: {}: the index uses {what} that this clip does not show (missing: {missing}); recognising without them",
+            path.display()
         );
     }
-}
-
-/// Roles that a clip lacks for the bones `used`.
-fn missing_roles(imported: &Take, used: BoneSet) -> Vec<String> {
-    if imported.bones().and(used) == used {
-        return vec![];
-    }
-    let missing: Vec<String> = imported
-        .roles
-        .missing()
-        .filter(|r| needed(*r))
-        .map(|r| r.name().to_owned())
-        .collect();
-    if missing.is_empty() {
-        vec!["bones of no length".to_owned()]
-    } else {
-        missing
-    }
-}
-
-fn needed(role: Role) -> bool {
-    !matches!(role, Role::Torso | Role::LeftShoulder | Role::RightShoulder)
 }
 
 fn write_found(

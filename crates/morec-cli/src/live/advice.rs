@@ -3,13 +3,17 @@
 use std::time::{Duration, Instant};
 
 use morec::diagnosis::{Diagnosis, Finding, Severity};
+use morec::features::BoneSet;
 use morec::index::MotionIndex;
-use morec::live::{MAX_PERFORMERS, Status};
+use morec::live::{MAX_PERFORMERS, StartError, Status};
 
 /// Nothing has come in so long: say so.
 const SILENCE: Duration = Duration::from_secs(2);
 /// Between two looks.
 const EVERY: Duration = Duration::from_millis(200);
+
+/// A shorter stream tells nothing of what it shows.
+const LEAST_SECS: f64 = 0.9;
 
 /// Said once of a performer for whom the wider gate opened.
 const OPENED: &str = "performs unlike the teacher: a wider gate from now on (--performer teacher keeps the narrow one)";
@@ -100,7 +104,7 @@ impl AdvisedSource {
         }
     }
 
-    /// Says once that the index was trained with another heading than the stream has.
+    /// Says once that the index is of another kind of performer than the stream, or was trained with another heading.
     fn heading(&mut self, status: &Status, index: &MotionIndex, lines: &mut Vec<String>) {
         let known = status.actors.iter().filter_map(|actor| actor.diagnosis);
         let doubt = known.filter_map(|d| heading(&d, index)).next();
@@ -111,10 +115,27 @@ impl AdvisedSource {
     }
 }
 
-fn heading(diagnosis: &Diagnosis, index: &MotionIndex) -> Option<&'static str> {
+/// An error if the index is of another kind of performer than the stream shows.
+fn other_profile(diagnosis: &Diagnosis, index: &MotionIndex) -> Option<String> {
+    let shown = BoneSet::of_seen(|role| diagnosis.seen.contains(role));
+    match index.check_shown(shown) {
+        Err(error @ StartError::OtherProfile { .. }) if diagnosis.secs >= LEAST_SECS => {
+            Some(format!("error: {error}"))
+        }
+        _ => None,
+    }
+}
+
+/// What does not fit in a stream and an index.
+fn heading(diagnosis: &Diagnosis, index: &MotionIndex) -> Option<String> {
+    let other = other_profile(diagnosis, index);
+    if other.is_some() {
+        return other;
+    }
     let missing = |finding: &Finding| matches!(finding, Finding::JointsMissing { .. });
     let known = diagnosis.findings().iter().any(missing);
-    index.heading_doubt(diagnosis.missing).filter(|_| known)
+    let doubt = index.heading_doubt(diagnosis.missing).filter(|_| known);
+    doubt.map(str::to_owned)
 }
 
 fn matters(finding: &Finding) -> bool {
@@ -146,8 +167,8 @@ fn silence(status: &Status) -> String {
     }
 }
 
-/// Everything found of a source, a sentence each, for the end of a session.
-pub fn of_status(status: &Status) -> Vec<String> {
+/// Everything found of a source that is compared with `index`, a sentence each, for the end of a session.
+pub fn of_status(status: &Status, index: &MotionIndex) -> Vec<String> {
     let mut lines = Vec::new();
     if status.frames == 0 {
         lines.push(silence(status));
@@ -161,6 +182,7 @@ pub fn of_status(status: &Status) -> Vec<String> {
             actor => format!("performer {actor}"),
         };
         lines.push(format!("{name}: {diagnosis}"));
+        lines.extend(other_profile(&diagnosis, index));
         lines.extend(diagnosis.findings().iter().map(sentence));
     }
     lines
@@ -263,18 +285,20 @@ mod tests {
         assert!(
             said[0].starts_with("vmc://here, performer 1: error: 100 % of the frames show no body")
         );
-        assert!(of_status(&status)[1].contains("no body"));
+        let index = MotionIndex::from_bytes(INDEX).unwrap();
+        assert!(of_status(&status, &index)[1].contains("no body"));
     }
 
     #[test]
     fn silence_has_its_reasons() {
+        let index = MotionIndex::from_bytes(INDEX).unwrap();
         let mut status = Status::default();
-        assert!(of_status(&status)[0].contains("nothing has arrived"));
+        assert!(of_status(&status, &index)[0].contains("nothing has arrived"));
         status.source.packets = 9;
-        assert!(of_status(&status)[0].contains("no pose"));
+        assert!(of_status(&status, &index)[0].contains("no pose"));
         status.source.malformed = 8;
-        assert!(of_status(&status)[0].contains("cannot be understood"));
+        assert!(of_status(&status, &index)[0].contains("cannot be understood"));
         status.source.not_motion = 3;
-        assert!(of_status(&status)[0].contains("rest pose"));
+        assert!(of_status(&status, &index)[0].contains("rest pose"));
     }
 }

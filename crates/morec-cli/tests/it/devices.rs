@@ -131,10 +131,10 @@ fn landmarks_of_mediapipe_become_a_clean_stream_by_the_guides_table() {
 #[test]
 fn joints_of_azure_kinect_become_a_clean_stream_by_the_guides_table() {
     let table = parts("Kinect");
-    assert_eq!(table.len(), Role::COUNT);
+    assert_eq!(table.len(), Role::BODY_COUNT);
     let names: std::collections::BTreeSet<&str> =
         table.values().filter_map(Value::as_str).collect();
-    assert_eq!(names.len(), Role::COUNT, "each joint plays one part");
+    assert_eq!(names.len(), Role::BODY_COUNT, "each joint plays one part");
     let poses = performance();
     let line = |(secs, places): &(f64, BTreeMap<Role, Vec3>)| {
         let positions: BTreeMap<&String, [f64; 3]> = table

@@ -8,6 +8,7 @@ mod devices;
 mod documents;
 mod evaluate;
 mod folders;
+mod hands;
 mod inspect;
 mod kit;
 mod labels;

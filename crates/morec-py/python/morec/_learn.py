@@ -118,7 +118,8 @@ def train(
     one_sided : sequence of str
         With mirror yes: classes whose mirror image is another motion; it then teaches what the class is not.
     bones : str or sequence of str
-        Which parts of the body count (templates only): all, upper, arms, or names of bones.
+        Which parts count (templates only): all (of clips without a body: their hands), upper, arms, hand, left_hand, hands,
+        body_and_hands, points3, or names of bones.
     params : dict, optional
         Parameters of the method by their path, as ``{"rho": 0.4, "decode.lag_ticks": 2}``.
     progress : bool or callable, optional

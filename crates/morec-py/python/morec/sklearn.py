@@ -23,7 +23,8 @@ class MotionClassifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
     Parameters
     ----------
     joints : sequence of str, optional
-        Names of the points, if samples are arrays; see `Clip.from_positions`. ``morec.ROLES`` by default.
+        Names of the points, if samples are arrays; see `Clip.from_positions`. ``morec.ROLES`` by default, those of the
+        body where there are no more.
     rate_hz : float
         Frames a second of arrays.
     up : str, optional
@@ -139,6 +140,9 @@ class MotionClassifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
         from ._morec import ROLES
 
         names = list(ROLES if self.joints is None else self.joints)
+        body = ROLES.index("left_palm")
+        if self.joints is None and X.ndim >= 3 and X.shape[2] in (body, 3 * body):
+            names = names[:body]
         if X.ndim == 3 and X.shape[2] == 3 * len(names):
             X = X.reshape(*X.shape[:2], len(names), 3)
         if X.ndim != 4 or X.shape[2:] != (len(names), 3):

@@ -6,6 +6,7 @@ pub mod mesh;
 pub mod strip;
 
 use morec::clip::Clip;
+use morec::features::{Hand, Profile};
 use morec::kinematics::WorldPose;
 use morec::math::Vec3;
 use morec::roles::{Role, RoleMap};
@@ -78,7 +79,7 @@ impl Body {
 
     /// The body of a skeleton with these `parents` of its joints, measured in `pose`.
     pub fn new(parents: &[Option<usize>], roles: &RoleMap, pose: &WorldPose) -> Self {
-        let height = height(&pose.positions);
+        let height = height(&pose.positions, roles.profile());
         let flat = parents.iter().all(Option::is_none);
         let mut limbs = Vec::new();
         let mut add = |from: usize, to: usize| {
@@ -96,8 +97,10 @@ impl Body {
                 // The trunk goes by the chest if there is one.
                 !(chest && (*from, *to) == (Role::Hips, Role::Neck))
             });
-            for (from, to) in bones {
-                if let (Some(from), Some(to)) = (roles.joint(*from), roles.joint(*to)) {
+            let is_known = |role: Role| roles.joint(role).is_some();
+            let hands = Hand::BOTH.into_iter().flat_map(|hand| hand.lines(is_known));
+            for (from, to) in bones.copied().chain(hands) {
+                if let (Some(from), Some(to)) = (roles.joint(from), roles.joint(to)) {
                     add(from, to);
                 }
             }
@@ -134,7 +137,10 @@ impl Body {
     }
 }
 
-fn height(positions: &[Vec3]) -> f64 {
+fn height(positions: &[Vec3], profile: Profile) -> f64 {
+    if matches!(profile, Profile::Hand | Profile::Hands) {
+        return HAND_M;
+    }
     let heights = || positions.iter().map(|p| p.y).filter(|y| y.is_finite());
     let span = heights().fold(f64::MIN, f64::max) - heights().fold(f64::MAX, f64::min);
     if span.is_finite() && span > 0.3 {
@@ -143,6 +149,9 @@ fn height(positions: &[Vec3]) -> f64 {
         1.7
     }
 }
+
+/// Hands are drawn in this size, whatever their pose: from the wrist to the fingertips, metres.
+const HAND_M: f64 = 0.19;
 
 /// Part of the body that a limb is.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -158,6 +167,8 @@ enum LimbPart {
     Shin,
     Foot,
     Small,
+    /// Of a hand that is drawn alone.
+    Finger,
 }
 
 impl LimbPart {
@@ -165,6 +176,9 @@ impl LimbPart {
         use Role::*;
         let is =
             |joint: usize, wanted: &[Role]| wanted.iter().any(|r| roles.joint(*r) == Some(joint));
+        if matches!(roles.profile(), Profile::Hand | Profile::Hands) {
+            return LimbPart::Finger;
+        }
         if is(to, &[LeftThigh, RightThigh]) {
             return LimbPart::Pelvis;
         }
@@ -216,6 +230,7 @@ impl LimbPart {
             LimbPart::Shin => [0.031, 0.021],
             LimbPart::Foot => [0.023, 0.016],
             LimbPart::Small => [0.008, 0.006],
+            LimbPart::Finger => [0.04, 0.035],
         }
     }
 }
@@ -242,6 +257,12 @@ fn side(from: usize, to: usize, parents: &[Option<usize>], roles: &RoleMap) -> B
         RightHand,
         RightArm,
     ];
+    let played = roles.played().filter(|(_, joint)| *joint == to);
+    match played.filter_map(|(role, _)| Hand::of(role)).next() {
+        Some(Hand::Left) => return BodySide::Left,
+        Some(Hand::Right) => return BodySide::Right,
+        None => {}
+    }
     let mut at = Some(to);
     let mut first = true;
     while let Some(joint) = at {

@@ -1,6 +1,7 @@
 //! A strip of small figures: what a stretch of motion looks like at a glance.
 
 use egui::{Pos2, Rect, Shape, Stroke, Vec2};
+use morec::features::Profile;
 use morec::math::{Axis, Vec3};
 
 use super::BodySide;
@@ -52,9 +53,14 @@ fn figure(
     let flat = flat.try_normalize(1e-9).unwrap_or_else(Vec3::x);
     // Turned by 35° from the front, so that arms stretched forward are seen too.
     let right = Axis::Y.rotation(35f64.to_radians()) * flat;
+    // Hands are in the air.
+    let floor = match motion.roles.profile() {
+        Profile::Hand | Profile::Hands => hips.y - 0.3 * body.height,
+        _ => motion.floor,
+    };
     let at = |p: &Vec3| {
         let x = (p - hips).dot(&right) as f32 * scale;
-        let y = (p.y - motion.floor) as f32 * scale;
+        let y = (p.y - floor) as f32 * scale;
         foot + Vec2::new(x, -y)
     };
     let limit = 0.6 * body.height;

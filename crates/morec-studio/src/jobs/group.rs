@@ -115,7 +115,7 @@ fn grouped(
         .iter()
         .filter_map(of_item)
         .map(|(_, bones)| *bones)
-        .fold(BoneSet::ALL, BoneSet::and);
+        .fold(BoneSet::BODY, BoneSet::and);
     let mut shapes = Vec::new();
     for item in &items {
         let Some((rows, bones)) = of_item(item) else {

@@ -91,26 +91,28 @@ pub fn everyday() -> &'static [TrainClip] {
 }
 
 /// Options of training: those of `morec train`, with everyday motion that is among the clips already.
-fn options() -> TrainOptions {
+fn options(bones: BoneSet) -> TrainOptions {
     TrainOptions {
+        bones,
         everyday: Everyday::Never,
         ..TrainOptions::default()
     }
 }
 
 /// The same as a recipe.
-pub fn recipe() -> Recipe {
-    options().into()
+pub fn recipe(bones: BoneSet) -> Recipe {
+    options(bones).into()
 }
 
 /// Trains an index of the database at `path`.
 pub fn run(
     path: &Path,
     classes: &[String],
+    bones: BoneSet,
     progress: &JobProgress,
 ) -> Result<Box<TrainedIndex>, JobError> {
     let begun = std::time::Instant::now();
-    let mut trained = trained(path, classes, progress)?;
+    let mut trained = trained(path, classes, options(bones), progress)?;
     trained.secs = begun.elapsed().as_secs_f64();
     Ok(Box::new(trained))
 }
@@ -118,6 +120,7 @@ pub fn run(
 fn trained(
     path: &Path,
     classes: &[String],
+    options: TrainOptions,
     progress: &JobProgress,
 ) -> Result<TrainedIndex, JobError> {
     let data = material(path, classes).map_err(|e| JobError::Failed(e.to_string()))?;
@@ -130,14 +133,15 @@ fn trained(
         params,
         mirror,
         one_sided,
+        bones: wanted,
         ..
-    } = options();
-    let mut prepared = prepared(&data, &params, progress);
+    } = options;
+    let mut prepared = prepared(&data, wanted, &params, progress);
     if progress.cancelled() {
         return Err(JobError::Cancelled);
     }
     if prepared.bones == BoneSet::NONE {
-        let why = TrainError::NoSamples;
+        let why = prepared.no_bone(wanted);
         return Err(JobError::Failed(format!("Training stopped: {why}")));
     }
     let bones = prepared.bones;
@@ -171,7 +175,12 @@ fn trained(
 }
 
 /// Streams to train from. Everyday motion is the same for every index of the same bones and heading: its rows are made once.
-fn prepared(data: &TrainingData, params: &TrainParams, progress: &JobProgress) -> Prepared {
+fn prepared(
+    data: &TrainingData,
+    wanted: BoneSet,
+    params: &TrainParams,
+    progress: &JobProgress,
+) -> Prepared {
     static EVERYDAY: Mutex<BTreeMap<(BoneSet, HeadingLine), Vec<TrainStream>>> =
         Mutex::new(BTreeMap::new());
     let labelling = LabelSet {
@@ -180,21 +189,21 @@ fn prepared(data: &TrainingData, params: &TrainParams, progress: &JobProgress) -
         classes: &data.classes,
         unlabelled_is_background: true,
     };
-    let mut prepared = build_train_set(&data.clips, &labelling, BoneSet::ALL, &params.features);
+    let mut prepared = build_train_set(&data.clips, &labelling, wanted, &params.features);
     let mut known = EVERYDAY.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some(streams) = known.get(&(prepared.bones, prepared.heading)) {
+    if let Some(streams) = known.get(&(prepared.bones, prepared.features.heading)) {
         prepared.set.streams.extend_from_slice(streams);
         return prepared;
     }
     progress.report("everyday motion", 0, 0);
     let mut clips = data.clips.clone();
     clips.extend_from_slice(everyday());
-    let prepared = build_train_set(&clips, &labelling, BoneSet::ALL, &params.features);
+    let prepared = build_train_set(&clips, &labelling, wanted, &params.features);
     let streams = prepared.set.streams.iter();
     let made = streams
         .filter(|s| s.source == StreamKind::Everyday)
         .cloned();
-    known.insert((prepared.bones, prepared.heading), made.collect());
+    known.insert((prepared.bones, prepared.features.heading), made.collect());
     prepared
 }
 

@@ -1,8 +1,11 @@
 //! Training: what is learned, how it went, how good it is on what it was not taught.
 
-use egui::{CentralPanel, Context, Frame, Margin, RichText, ScrollArea, SidePanel, Ui};
+use egui::{
+    CentralPanel, ComboBox, Context, Frame, Margin, RichText, ScrollArea, SidePanel, Ui, WidgetType,
+};
 
 use super::{Out, background, matrix, moments, padded, thesis, view, widgets};
+use morec::features::BoneSet;
 use morec::train::TrainingReport;
 
 use crate::format;
@@ -98,8 +101,30 @@ fn choose(ui: &mut Ui, state: &State, out: Out) {
             ui.colored_label(colour, class.accepted.to_string());
         });
     }
+    parts(ui, state, out);
     background::list(ui, state, out);
     teach_next(ui, state);
+}
+
+/// The parts of the body that count.
+fn parts(ui: &mut Ui, state: &State, out: Out) {
+    let chosen = state.train.parts;
+    ui.horizontal(|ui| {
+        ui.label("Parts");
+        let name = |at: usize| BoneSet::NAMED[at].0.replace('_', " ");
+        let combo = ComboBox::from_id_salt("parts").selected_text(name(chosen));
+        let combo = combo.show_ui(ui, |ui| {
+            for at in 0..BoneSet::NAMED.len() {
+                if ui.selectable_label(at == chosen, name(at)).clicked() {
+                    out.push(Command::Train(TrainCommand::Parts(at)));
+                }
+            }
+        });
+        widgets::named(&combo.response, WidgetType::ComboBox, "Parts that count", false);
+        combo.response.on_hover_text(
+            "What motions are told apart by. All: the body, or hands where the clips show nothing else",
+        );
+    });
 }
 
 /// Hints about the labels that would help most.

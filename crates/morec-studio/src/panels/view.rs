@@ -371,6 +371,10 @@ fn trail_menu(ui: &mut Ui, state: &State, motion: &ClipMotion, look: &mut impl F
         for role in [
             Role::LeftHand,
             Role::RightHand,
+            Role::LeftPalm,
+            Role::RightPalm,
+            Role::LeftIndexTip,
+            Role::RightIndexTip,
             Role::LeftFoot,
             Role::RightFoot,
             Role::Head,

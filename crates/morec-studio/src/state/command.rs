@@ -310,6 +310,8 @@ pub enum TrainCommand {
         class: String,
         on: bool,
     },
+    /// The parts that count, by their place among the named sets.
+    Parts(usize),
     Train,
     Judge,
     /// Lists the moments of a cell of the confusion matrix and goes to the first; `None` lists the mistakes.

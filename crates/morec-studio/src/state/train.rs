@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
+use morec::features::BoneSet;
 use morec::index::MotionIndex;
 use morec::train::TrainingReport;
 use morec::train::thesis::SvrdmTrainParams;
@@ -16,6 +17,8 @@ use crate::store::Snapshot;
 pub struct Train {
     /// Classes that are left out.
     pub without: BTreeSet<String>,
+    /// The parts that count, by their place in [`BoneSet::NAMED`].
+    pub parts: usize,
     pub index: Option<Arc<MotionIndex>>,
     pub bytes: Vec<u8>,
     pub report: Option<TrainingReport>,
@@ -40,6 +43,11 @@ pub struct Train {
 }
 
 impl Train {
+    /// Name and bones of the parts that count.
+    pub fn parts(&self) -> (&'static str, BoneSet) {
+        BoneSet::NAMED[self.parts.min(BoneSet::NAMED.len() - 1)]
+    }
+
     /// True if labels or background have changed since the index was trained.
     pub fn is_stale(&self) -> bool {
         self.index.is_some() && self.taught != self.now

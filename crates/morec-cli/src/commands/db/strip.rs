@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use morec::clip::Clip;
+use morec::features::{Hand, Profile};
 use morec::kinematics::WorldPose;
 use morec::math::Vec3;
 use morec::roles::{Role, RoleMap};
@@ -30,7 +31,7 @@ pub fn strip(stored: &StoredClip, start_secs: f64, stop_secs: f64, poses: usize)
         right: WIDTH * poses as f64,
         top: 0.0,
     };
-    let height = body_height(clip, first);
+    let height = body_height(clip, stored.roles.profile(), first);
     for pose in 0..poses {
         let at = first + (last.max(first) - first) * pose / (poses - 1).max(1);
         figure(
@@ -67,10 +68,14 @@ impl PictureBounds {
 }
 
 /// Height of the pose of a frame; never 0.
-fn body_height(clip: &Clip, frame: usize) -> f64 {
+fn body_height(clip: &Clip, profile: Profile, frame: usize) -> f64 {
     let pose = WorldPose::of(clip, frame);
     let heights = || pose.positions.iter().map(|p| p.y);
-    (heights().fold(f64::MIN, f64::max) - heights().fold(f64::MAX, f64::min)).max(0.3)
+    let least = match profile {
+        Profile::Hand | Profile::Hands => 0.2,
+        _ => 0.3,
+    };
+    (heights().fold(f64::MIN, f64::max) - heights().fold(f64::MAX, f64::min)).max(least)
 }
 
 /// Start of the bone that ends in `joint`: its parent; in a clip of points the role before its own.
@@ -97,8 +102,11 @@ fn bone_start(clip: &Clip, roles: &RoleMap, joint: usize) -> Option<usize> {
         return clip.skeleton.joints()[joint].parent;
     }
     let ends_here = |(_, end): &&(Role, Role)| roles.joint(*end) == Some(joint);
-    let (start, _) = BONES.iter().find(ends_here)?;
-    roles.joint(*start)
+    let body = BONES.iter().copied();
+    let is_known = |role: Role| roles.joint(role).is_some();
+    let hands = Hand::BOTH.into_iter().flat_map(|hand| hand.lines(is_known));
+    let (start, _) = body.chain(hands).find(|bone| ends_here(&bone))?;
+    roles.joint(start)
 }
 
 fn figure(
@@ -168,6 +176,10 @@ fn view(pose: &WorldPose, roles: &RoleMap) -> (Vec3, Vec3) {
 
 /// Side of the limb that a joint belongs to: left, right, or neither.
 fn side(clip: &Clip, roles: &RoleMap, joint: usize) -> Option<bool> {
+    let played = roles.played().filter(|(_, j)| *j == joint);
+    if let Some(hand) = played.filter_map(|(role, _)| Hand::of(role)).next() {
+        return Some(hand == Hand::Left);
+    }
     const LEFT: [Role; 3] = [Role::LeftThigh, Role::LeftShoulder, Role::LeftArm];
     const RIGHT: [Role; 3] = [Role::RightThigh, Role::RightShoulder, Role::RightArm];
     let mut at = Some(joint);

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use morec::features::Hand;
 use morec::import::Take;
 use morec::kinematics::WorldPose;
 use morec::math::Vec3;
@@ -17,7 +18,16 @@ enum DrawnSide {
     Right,
 }
 
-/// Lines between roles. Where one is not played, the line is left out.
+impl DrawnSide {
+    fn of(hand: Hand) -> Self {
+        match hand {
+            Hand::Left => DrawnSide::Left,
+            Hand::Right => DrawnSide::Right,
+        }
+    }
+}
+
+/// Lines between roles of a body. Where one is not played, the line is left out.
 const BONES: [(Role, Role, DrawnSide); 20] = [
     (Role::Hips, Role::Torso, DrawnSide::Middle),
     (Role::Torso, Role::Neck, DrawnSide::Middle),
@@ -49,6 +59,8 @@ pub struct Drawing {
     height: f64,
     width: f64,
     low: f64,
+    /// True if no body is seen.
+    is_hand: bool,
 }
 
 impl Drawing {
@@ -66,7 +78,9 @@ impl Drawing {
         let frame = (report.rest_frames.end + clip.frames) / 2;
         let pose = WorldPose::of(clip, frame.min(clip.frames - 1));
         let at = |role: Role| roles.joint(role).map(|joint| pose.positions[joint]);
-        let hips = at(Role::Hips).or(at(Role::Neck)).or(at(Role::Head))?;
+        let body = at(Role::Hips).or(at(Role::Neck)).or(at(Role::Head));
+        let mut hands = roles.played().filter(|(role, _)| Hand::of(*role).is_some());
+        let hips = body.or_else(|| Some(pose.positions[hands.next()?.1]))?;
         let across = |a: Role, b: Role| {
             let mut across = at(a)? - at(b)?;
             across.y = 0.0;
@@ -95,6 +109,7 @@ impl Drawing {
             height: high - low,
             width,
             low,
+            is_hand: body.is_none(),
             front,
             side,
         })
@@ -145,15 +160,21 @@ impl Drawing {
         side: DrawnSide,
     ) -> impl Iterator<Item = ([f64; 2], [f64; 2])> + 'a {
         let there = |role: Role| places[role.index()].is_some();
+        let hands = Hand::BOTH.into_iter().flat_map(move |hand| {
+            let side = DrawnSide::of(hand);
+            let lines = hand.lines(there).into_iter();
+            lines.map(move |(a, b)| (a, b, side))
+        });
         BONES
-            .iter()
-            .filter(move |&&(a, b, of)| {
+            .into_iter()
+            .chain(hands)
+            .filter(move |&(a, b, of)| {
                 of == side
                     && !(a == Role::Hips && b == Role::Neck && there(Role::Torso))
                     && !(a == Role::Neck && b == Role::LeftArm && there(Role::LeftShoulder))
                     && !(a == Role::Neck && b == Role::RightArm && there(Role::RightShoulder))
             })
-            .filter_map(|&(a, b, _)| Some((places[a.index()]?, places[b.index()]?)))
+            .filter_map(|(a, b, _)| Some((places[a.index()]?, places[b.index()]?)))
     }
 
     /// As an SVG picture, with the joints' names at their places.
@@ -196,7 +217,9 @@ impl Drawing {
                     "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"3\"><title>{role}: {}</title></circle>",
                     escaped(&self.names[role.index()])
                 );
-                if middle == half {
+                // Beside a body there is no room for the names of fingers.
+                let has_room = !role.is_of_hand() || self.is_hand;
+                if middle == half && has_room {
                     let (end, shift) = if x < middle - 1.0 {
                         ("end", -6.0)
                     } else {

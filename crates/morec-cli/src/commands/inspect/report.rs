@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use morec::clip::{Clip, Span};
 use morec::diagnosis::{Diagnosis, Finding, Findings, diagnose_clip};
+use morec::features::{Hand, Profile};
 use morec::formats::Warning;
 use morec::formats::probe::Format;
 use morec::import::{ImportReport, Take};
@@ -55,6 +56,8 @@ struct ClipReport {
     duration_secs: f64,
     joints: Vec<JointReport>,
     missing_roles: Vec<Role>,
+    #[serde(skip)]
+    roles: String,
     #[serde(flatten)]
     facts: ImportReport,
     repaired: Vec<Span>,
@@ -149,6 +152,7 @@ impl ClipReport {
             duration_secs: clip.duration_secs(),
             joints: joints(clip, roles),
             missing_roles: roles.missing().collect(),
+            roles: count_of(roles),
             facts: facts.clone(),
             repaired: clip.repaired.clone(),
             diagnosis: Diagnosed {
@@ -184,6 +188,13 @@ impl ClipReport {
                 "stays in place"
             }
         )?;
+        if let Some(hand) = self.diagnosis.figures.hand_m {
+            writeln!(
+                out,
+                "  hand       {:.1} cm from wrist to fingertip",
+                100.0 * hand
+            )?;
+        }
         if let Some(noise_m) = self.diagnosis.figures.noise_m {
             writeln!(out, "  noise      {:.2} cm", 100.0 * noise_m)?;
         }
@@ -200,13 +211,7 @@ impl ClipReport {
             let set = facts.point_set.unwrap_or("no known set");
             writeln!(out, "  points     {set}; rotations are not known")?;
         }
-        let found = Role::COUNT - self.missing_roles.len();
-        writeln!(
-            out,
-            "  roles      {found} of {}{}",
-            Role::COUNT,
-            self.missing()
-        )?;
+        writeln!(out, "  roles      {}{}", self.roles, self.missing())?;
         writeln!(out, "  joints     {}", self.joints.len())?;
         self.write_joints(out)?;
         for doubt in &facts.doubts {
@@ -243,17 +248,16 @@ impl ClipReport {
     }
 
     fn write_summary(&self, out: &mut dyn Write, format: Format) -> io::Result<()> {
-        let found = Role::COUNT - self.missing_roles.len();
         writeln!(
             out,
-            "  {}, {} joints, {}; up {}, {}, rest pose {}; {found} of {} roles{}",
+            "  {}, {} joints, {}; up {}, {}, rest pose {}; roles {}{}",
             format_name(format),
             self.joints.len(),
             self.length(),
             self.facts.up,
             self.unit(),
             self.rest(),
-            Role::COUNT,
+            self.roles,
             self.missing(),
         )?;
         if !self.facts.has_rotations {
@@ -275,7 +279,7 @@ impl ClipReport {
 
     /// What is found, but for what a clip without any role says by itself: that no frame shows a body.
     fn findings(&self) -> impl Iterator<Item = &Finding> {
-        let is_body = self.missing_roles.len() < Role::COUNT;
+        let is_body = self.missing_roles.len() < Role::BODY_COUNT;
         let said = move |finding: &&Finding| is_body || !matches!(finding, Finding::Nobody { .. });
         self.diagnosis.findings.iter().filter(said)
     }
@@ -309,6 +313,28 @@ impl ClipReport {
         } else {
             format!("; missing: {}", names.join(", "))
         }
+    }
+}
+
+/// How many of the roles are found: `18 of 18`, `21 of 21 (right hand)`, `18 of 18 and 42 of 42 (both hands)`.
+fn count_of(map: &RoleMap) -> String {
+    let is_found = |role: Role| map.joint(role).is_some();
+    let count = |profile: Profile| {
+        let expected: Vec<Role> = profile.expected(is_found).collect();
+        let found = expected.iter().filter(|role| is_found(**role)).count();
+        format!("{found} of {}", expected.len())
+    };
+    let hands = Hand::BOTH.map(|hand| hand.beside_wrist().into_iter().any(is_found));
+    let of_hands = match hands {
+        [true, true] => format!("{} (both hands)", count(Profile::Hands)),
+        [true, false] => format!("{} (left hand)", count(Profile::Hand)),
+        [false, true] => format!("{} (right hand)", count(Profile::Hand)),
+        [false, false] => String::new(),
+    };
+    match map.profile() {
+        Profile::Hand | Profile::Hands => of_hands,
+        profile if of_hands.is_empty() => count(profile),
+        profile => format!("{} and {of_hands}", count(profile)),
     }
 }
 

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;
 
+use morec::features::BoneSet;
 use morec::index::MotionIndex;
 use morec::train::Recipe;
 use morec::train::thesis::SvrdmOptions;
@@ -23,9 +24,23 @@ const TRAINING: &str = "Training";
 const JUDGING: &str = "Judging";
 
 /// The command that trains an index.
-fn train_line(db: &Path, classes: &[String], output: impl AsRef<Path>) -> ShownCommand {
+fn train_line(
+    db: &Path,
+    classes: &[String],
+    parts: &'static str,
+    output: impl AsRef<Path>,
+) -> ShownCommand {
     let line = ShownCommand::new("morec train").with("--db", db);
-    line.list("--classes", classes).with("-o", output.as_ref())
+    let line = with_parts(line.list("--classes", classes), parts);
+    line.with("-o", output.as_ref())
+}
+
+/// The option for the parts that count, unless it is the default.
+fn with_parts(line: ShownCommand, parts: &'static str) -> ShownCommand {
+    match parts == BoneSet::NAMED[0].0 {
+        true => line,
+        false => line.with("--bones", parts),
+    }
 }
 
 impl State {
@@ -37,8 +52,9 @@ impl State {
                     false => self.train.without.insert(class),
                 };
             }
+            TrainCommand::Parts(parts) => self.train.parts = parts,
             TrainCommand::Train => self.start_training(),
-            TrainCommand::Judge => self.start_judging(train::recipe()),
+            TrainCommand::Judge => self.start_judging(train::recipe(self.train.parts().1)),
             TrainCommand::Cell(cell) => self.show_cell(cell),
             TrainCommand::Moment(at) => self.go_to_moment(at),
             TrainCommand::Keep(name) => {
@@ -88,14 +104,15 @@ impl State {
             job.cancel();
         }
         let (db, classes) = (store.path().to_owned(), self.chosen());
+        let (parts, bones) = self.train.parts();
         self.train.taught = self.train.now;
-        self.show_line(train_line(&db, &classes, format!("{INDEX}.index")));
+        self.show_line(train_line(&db, &classes, parts, format!("{INDEX}.index")));
         self.jobs.start(
             TRAINING,
             true,
             &self.wake,
             JobOutcome::Trained,
-            move |progress| train::run(&db, &classes, progress),
+            move |progress| train::run(&db, &classes, bones, progress),
         );
     }
 
@@ -113,7 +130,7 @@ impl State {
         let line = line.with("--by", by.option());
         let line = match &recipe {
             Recipe::Svrdm(_) => self.with_thesis(line),
-            Recipe::Templates(_) => Some(line),
+            Recipe::Templates(_) => Some(with_parts(line, self.train.parts().0)),
         };
         self.show_line(line.map(|line| line.list("--classes", &classes)));
         self.jobs.start(
@@ -240,7 +257,7 @@ impl State {
             Err(why) => self.complain(format!("{name}: not written: {why}")),
         }
         if let Some(store) = &self.store {
-            let line = train_line(store.path(), &self.chosen(), path);
+            let line = train_line(store.path(), &self.chosen(), self.train.parts().0, path);
             self.show_line(line);
         }
     }
