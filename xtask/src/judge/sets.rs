@@ -100,6 +100,7 @@ pub struct DataSets {
     pub sessions: MotionSet,
     pub actions: MotionSet,
     pub action_sessions: MotionSet,
+    pub hands: MotionSet,
 }
 
 impl DataSets {
@@ -122,6 +123,7 @@ impl DataSets {
             sessions: labelled("sessions/clips", "sessions/labels.tsv")?,
             actions: labelled("kinect_actions/clips", "kinect_actions/teach.tsv")?,
             action_sessions: labelled("kinect_actions/sessions", "kinect_actions/labels.tsv")?,
+            hands: labelled("hands/clips", "hands/labels.tsv")?,
         })
     }
 }

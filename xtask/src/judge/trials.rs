@@ -53,6 +53,7 @@ pub fn trials(sets: &DataSets) -> Vec<Trial<'_>> {
     all.extend(gestures(sets));
     all.extend(sessions(sets));
     all.extend(actions(sets));
+    all.extend(hands(sets));
     all.retain(|t| !t.lessons.is_empty());
     all
 }
@@ -234,6 +235,37 @@ fn actions(sets: &DataSets) -> Vec<Trial<'_>> {
         }
     }
     all
+}
+
+/// Streams of hands, each quarter of them tested on what the others teach.
+fn hands(sets: &DataSets) -> Vec<Trial<'_>> {
+    const PARTS: usize = 4;
+    let set = &sets.hands;
+    let part_of = |name: &str| {
+        set.clips
+            .iter()
+            .position(|c| c.name == name)
+            .map(|at| at % PARTS)
+    };
+    let of_part = |part: usize| {
+        let taught = set
+            .samples
+            .iter()
+            .filter(|s| part_of(&s.clip) != Some(part));
+        let tested = set.clips.iter().skip(part).step_by(PARTS);
+        let trial = Trial::new(
+            "hands by quarter",
+            set,
+            taught.cloned().collect(),
+            tested,
+            &set.samples,
+        );
+        Trial {
+            name: format!("part {part}"),
+            ..trial
+        }
+    };
+    (0..PARTS).map(of_part).collect()
 }
 
 /// One person's lessons on the own session and on those of others, and everybody's on the session of the one left out.
