@@ -24,7 +24,7 @@ class MotionClassifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
     ----------
     joints : sequence of str, optional
         Names of the points, if samples are arrays; see `Clip.from_positions`. ``morec.ROLES`` by default, those of the
-        body where there are no more.
+        body for arrays that are no wider.
     rate_hz : float
         Frames a second of arrays.
     up : str, optional
@@ -140,9 +140,8 @@ class MotionClassifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
         from ._morec import ROLES
 
         names = list(ROLES if self.joints is None else self.joints)
-        body = ROLES.index("left_palm")
-        if self.joints is None and X.ndim >= 3 and X.shape[2] in (body, 3 * body):
-            names = names[:body]
+        if self.joints is None and not (X.ndim >= 3 and X.shape[2] in (len(names), 3 * len(names))):
+            names = names[: ROLES.index("left_palm")]
         if X.ndim == 3 and X.shape[2] == 3 * len(names):
             X = X.reshape(*X.shape[:2], len(names), 3)
         if X.ndim != 4 or X.shape[2:] != (len(names), 3):
