@@ -1,7 +1,7 @@
 //! A clip made ready for everything that follows.
 
 use crate::clip::{Clip, Span};
-use crate::features::{BoneSet, KeyPose, all_bones_of_clip, for_each_pose};
+use crate::features::{BoneSet, KeyPose, bones_of_clip, for_each_pose};
 use crate::formats::Warning;
 use crate::roles::RoleMap;
 
@@ -38,9 +38,9 @@ impl Take {
         &self.report.rest_frames
     }
 
-    /// The bones that recognition can use of it.
+    /// The bones that are [used](crate::features::Profile::usual_bones) of it unless others are asked for.
     pub fn bones(&self) -> BoneSet {
-        all_bones_of_clip(&self.clip, &self.roles, self.rest())
+        bones_of_clip(&self.clip, &self.roles, self.rest())
     }
 
     /// Time of every frame in seconds, and its key pose, as a live source would have sent them.
