@@ -32,7 +32,7 @@ use morec::live::Recording;
 use morec::live::vmc::{HUMANOID, HUMANOID_BONES};
 use morec::math::{Quat, Vec3, rotation_of_xyzw};
 use morec::roles::Role;
-use morec::roles::points::{NUMBERED_HANDS, hand_role, numbered_hand};
+use morec::roles::points::{NUMBERED_HANDS, NumberedPoints, hand_role};
 use serde_json::{Map, Value, json};
 
 /// A pose as a line gives it.
@@ -44,22 +44,8 @@ struct PoseFields {
     hand: Option<Hand>,
     root: Option<[f64; 3]>,
     positions: BTreeMap<String, Option<[f64; 3]>>,
-    points: LinePoints,
+    points: NumberedPoints,
     rotations: BTreeMap<String, Option<[f64; 4]>>,
-}
-
-/// Points without names: of one performer, or of both hands.
-#[derive(Debug, serde::Deserialize)]
-#[serde(untagged)]
-enum LinePoints {
-    Of(Vec<Option<[f64; 3]>>),
-    Hands(BTreeMap<Hand, Vec<Option<[f64; 3]>>>),
-}
-
-impl Default for LinePoints {
-    fn default() -> Self {
-        Self::Of(Vec::new())
-    }
 }
 
 /// A pose in the order of roles; what is unknown is not a number.
@@ -106,7 +92,7 @@ impl PoseLine {
                     pose.positions[role.index()] = Vec3::from(*position);
                 }
             }
-            pose.number(&line.points)?;
+            pose.number(line.points)?;
         } else {
             pose.turn(&line)?;
         }
@@ -124,7 +110,7 @@ impl PoseLine {
         }
         match (hand_role(name, self.hand.unwrap_or(Hand::Right)), self.hand) {
             (Some((Some(of), _)), Some(hand)) if of != hand => {
-                let (name, hand) = (shown(name), side(hand));
+                let (name, hand) = (shown(name), hand.name());
                 Err(format!(
                     "positions.{name}: expected a point of the {hand} hand, as `hand` says, found one of the other"
                 ))
@@ -143,30 +129,16 @@ impl PoseLine {
     }
 
     /// Takes points that have numbers for names.
-    fn number(&mut self, points: &LinePoints) -> Result<(), String> {
-        let place = |point: &Option<[f64; 3]>| point.map_or(UNKNOWN, Vec3::from);
-        let hands: Vec<(Hand, &Vec<_>)> = match (points, self.hand) {
-            (LinePoints::Hands(hands), _) => hands.iter().map(|(hand, of)| (*hand, of)).collect(),
-            (LinePoints::Of(points), Some(hand)) if !points.is_empty() => vec![(hand, points)],
-            (LinePoints::Of(points), _) => {
-                self.points = points.iter().map(place).collect();
-                return Ok(());
-            }
-        };
-        for (hand, points) in hands {
-            let roles = numbered_hand(points.len(), hand).ok_or_else(|| {
-                format!(
-                    "points: expected {} points of a hand, found {}",
-                    one_of(&NUMBERED_HANDS),
-                    points.len()
-                )
-            })?;
-            for (role, point) in roles.into_iter().zip(points) {
-                if let Some(role) = role {
-                    self.positions[role.index()] = place(point);
-                }
-            }
+    fn number(&mut self, points: NumberedPoints) -> Result<(), String> {
+        let place = |point: Option<[f64; 3]>| point.map_or(UNKNOWN, Vec3::from);
+        let (of_hands, numbered) = points.by_hand(self.hand).map_err(|count| {
+            let known = one_of(&NUMBERED_HANDS);
+            format!("points: expected {known} points of a hand, found {count}")
+        })?;
+        for (role, point) in of_hands {
+            self.positions[role.index()] = place(point);
         }
+        self.points = numbered.into_iter().map(place).collect();
         Ok(())
     }
 
@@ -248,13 +220,6 @@ pub(crate) fn one_of(counts: &[usize]) -> String {
     match words.split_last() {
         Some((last, first)) if !first.is_empty() => format!("{} or {last}", first.join(", ")),
         _ => words.concat(),
-    }
-}
-
-fn side(hand: Hand) -> &'static str {
-    match hand {
-        Hand::Left => "left",
-        Hand::Right => "right",
     }
 }
 

@@ -48,8 +48,7 @@ const MOST_FADE_SECS: f64 = 0.1;
 /// A leg of a grown person; what children and giants have lies within [`LEGS_M`].
 const LEG_M: f64 = 0.85;
 const LEGS_M: std::ops::Range<f64> = 0.35..1.4;
-/// A hand from the wrist to the tip of its middle finger, and what people have.
-const HAND_M: f64 = 0.186;
+/// A hand from the wrist to the tip of its middle finger.
 const HANDS_M: std::ops::Range<f64> = 0.1..0.3;
 /// Less of the frames is never.
 const SELDOM: f64 = 0.01;
@@ -204,7 +203,7 @@ impl Diagnoser {
         let leg = self.shape.leg.get().or_else(trunk).or_else(arm);
         let hand = self.hands.length.get();
         let leg = leg.map(|leg| (leg, LEG_M, LEGS_M));
-        let known = leg.or_else(|| hand.map(|hand| (hand, HAND_M, HANDS_M)));
+        let known = leg.or_else(|| hand.map(|hand| (hand, proportions::HAND, HANDS_M)));
         let Some((length, usual, range)) = known.filter(|(length, ..)| *length > 1e-9) else {
             return (1.0, true);
         };

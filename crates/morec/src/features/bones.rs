@@ -55,8 +55,7 @@ pub const BONES: usize = 29;
 /// Number of those of the body, which come first.
 pub const BODY_BONES: usize = 11;
 
-const fn bone(name: &'static str, from: Role, to: Role, weight: f64) -> Bone {
-    let kind = BoneKind::Direction;
+const fn bone(kind: BoneKind, name: &'static str, from: Role, to: Role, weight: f64) -> Bone {
     Bone {
         name,
         from,
@@ -66,22 +65,18 @@ const fn bone(name: &'static str, from: Role, to: Role, weight: f64) -> Bone {
     }
 }
 
+const fn line(name: &'static str, from: Role, to: Role, weight: f64) -> Bone {
+    bone(BoneKind::Direction, name, from, to, weight)
+}
+
 const fn offset(name: &'static str, from: Role, to: Role, weight: f64) -> Bone {
-    let kind = BoneKind::Offset;
-    Bone {
-        kind,
-        ..bone(name, from, to, weight)
-    }
+    bone(BoneKind::Offset, name, from, to, weight)
 }
 
 /// A finger from its base to its tip.
 const fn finger(name: &'static str, hand: Hand, number: usize) -> Bone {
     let [base, .., tip] = hand.points().fingers[number];
-    let kind = BoneKind::Finger(hand);
-    Bone {
-        kind,
-        ..bone(name, base, tip, 0.6)
-    }
+    bone(BoneKind::Finger(hand), name, base, tip, 0.6)
 }
 
 /// An axis of a palm, along its middle or across it.
@@ -94,28 +89,25 @@ const fn axis(name: &'static str, kind: BoneKind) -> Bone {
         BoneKind::PalmForward(Hand::Left) => (Role::LeftHand, Role::LeftMiddle1),
         _ => (Role::RightHand, Role::RightMiddle1),
     };
-    Bone {
-        kind,
-        ..bone(name, from, to, 0.5)
-    }
+    bone(kind, name, from, to, 0.5)
 }
 
 /// Every bone, in the order of feature columns: the body's, each hand's, lines between tracked points.
 ///
 /// The weights of the body were chosen on referee signals: arms tell gestures apart, legs matter less, the head's direction is
-/// noisy. Those of hands and tracked points were chosen on a prototype.
+/// noisy. Those of hands and tracked points are a prototype's, in the units of these rows.
 pub const ALL_BONES: [Bone; BONES] = [
-    bone("left_thigh", Role::LeftThigh, Role::LeftShin, 0.8),
-    bone("left_shin", Role::LeftShin, Role::LeftFoot, 0.8),
-    bone("right_thigh", Role::RightThigh, Role::RightShin, 0.8),
-    bone("right_shin", Role::RightShin, Role::RightFoot, 0.8),
-    bone("torso", Role::Hips, Role::Neck, 1.0),
-    bone("shoulder_line", Role::LeftArm, Role::RightArm, 0.6),
-    bone("left_arm", Role::LeftArm, Role::LeftForearm, 1.0),
-    bone("left_forearm", Role::LeftForearm, Role::LeftHand, 1.0),
-    bone("right_arm", Role::RightArm, Role::RightForearm, 1.0),
-    bone("right_forearm", Role::RightForearm, Role::RightHand, 1.0),
-    bone("head", Role::Neck, Role::Head, 0.3),
+    line("left_thigh", Role::LeftThigh, Role::LeftShin, 0.8),
+    line("left_shin", Role::LeftShin, Role::LeftFoot, 0.8),
+    line("right_thigh", Role::RightThigh, Role::RightShin, 0.8),
+    line("right_shin", Role::RightShin, Role::RightFoot, 0.8),
+    line("torso", Role::Hips, Role::Neck, 1.0),
+    line("shoulder_line", Role::LeftArm, Role::RightArm, 0.6),
+    line("left_arm", Role::LeftArm, Role::LeftForearm, 1.0),
+    line("left_forearm", Role::LeftForearm, Role::LeftHand, 1.0),
+    line("right_arm", Role::RightArm, Role::RightForearm, 1.0),
+    line("right_forearm", Role::RightForearm, Role::RightHand, 1.0),
+    line("head", Role::Neck, Role::Head, 0.3),
     finger("left_thumb", Hand::Left, 0),
     finger("left_index", Hand::Left, 1),
     finger("left_middle", Hand::Left, 2),
@@ -130,10 +122,13 @@ pub const ALL_BONES: [Bone; BONES] = [
     finger("right_little", Hand::Right, 4),
     axis("right_palm_forward", BoneKind::PalmForward(Hand::Right)),
     axis("right_palm_normal", BoneKind::PalmNormal(Hand::Right)),
-    Bone {
-        kind: BoneKind::Palms,
-        ..bone("palm_line", Role::LeftPalm, Role::RightPalm, 0.6)
-    },
+    bone(
+        BoneKind::Palms,
+        "palm_line",
+        Role::LeftPalm,
+        Role::RightPalm,
+        0.6,
+    ),
     offset("head_to_left_hand", Role::Head, Role::LeftHand, 1.8),
     offset("head_to_right_hand", Role::Head, Role::RightHand, 1.8),
     offset("hand_line", Role::LeftHand, Role::RightHand, 1.0),
@@ -163,6 +158,8 @@ impl BoneSet {
     pub const HANDS: BoneSet = BoneSet::range(11, 26);
     /// The body and both hands.
     pub const BODY_AND_HANDS: BoneSet = BoneSet::range(0, 25);
+    /// The line between the palms, which is known where both are.
+    pub(super) const PALM_LINE: BoneSet = BoneSet::range(25, 26);
     /// Lines between the head and the hands.
     pub const POINTS3: BoneSet = BoneSet::range(26, 29);
 

@@ -51,8 +51,8 @@ const fn points(wrist: Role, palm: Role) -> HandPoints {
 const LEFT: HandPoints = points(Role::LeftHand, Role::LeftPalm);
 const RIGHT: HandPoints = points(Role::RightHand, Role::RightPalm);
 
-/// Length of a hand from the wrist to the tip of the middle finger, in mean lengths of the four fingers: 186 mm and 78 mm of a
-/// grown man (Greiner, *Hand anthropometry of U.S. army personnel*, 1991).
+/// Length of a hand from the wrist to the tip of the middle finger, in mean lengths of the four fingers: a round figure, of some
+/// 19 cm and 8 cm. Travel is measured in it, and units of length are recognised by it.
 const HAND_OF_FINGER: f64 = 2.4;
 
 /// Axes of a palm in the world, at right angles to each other, of length 1.
@@ -79,6 +79,14 @@ impl PalmFrame {
 impl Hand {
     /// Both, left first.
     pub const BOTH: [Hand; 2] = [Hand::Left, Hand::Right];
+
+    /// `left` or `right`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Hand::Left => "left",
+            Hand::Right => "right",
+        }
+    }
 
     /// The other one.
     pub const fn other(self) -> Hand {
@@ -203,13 +211,7 @@ pub(super) fn lone_left_as_right(pose: &KeyPose) -> Option<KeyPose> {
     if Hand::Right.is_seen(pose) || !Hand::Left.is_seen(pose) {
         return None;
     }
-    let mut image = KeyPose::default();
-    for role in pose.roles() {
-        if let Some(place) = pose.get(role) {
-            image.set(role.opposite(), Vec3::new(-place.x, place.y, place.z));
-        }
-    }
-    Some(image)
+    Some(pose.mirrored())
 }
 
 /// A hand with the palm down whose fingers go along +Z, bent towards the palm by `bend` radians at every joint; `scale` 1 is a metre's.

@@ -47,6 +47,17 @@ impl KeyPose {
         })
     }
 
+    /// The pose as a mirror shows it: left and right exchanged, X reversed.
+    #[must_use]
+    pub fn mirrored(&self) -> Self {
+        let mut image = Self::default();
+        for role in self.roles() {
+            let place = self.positions[role.index()];
+            image.set(role.opposite(), Vec3::new(-place.x, place.y, place.z));
+        }
+        image
+    }
+
     /// Puts `role` at `position`; a position that is not finite counts as unknown.
     pub fn set(&mut self, role: Role, position: Vec3) {
         if position.iter().all(|c| c.is_finite()) {

@@ -67,7 +67,6 @@ pub fn mirrored_rows(rows: &Rows, bones: BoneSet) -> Option<Rows> {
 mod tests {
     use super::*;
     use crate::features::{FeatureParams, FeatureStream, KeyPose, for_each_pose};
-    use crate::perturb::mirrored;
     use crate::roles::RoleMap;
     use crate::synth::{Person, Script};
 
@@ -93,7 +92,7 @@ mod tests {
         for_each_pose(&take.clip, &roles, &(0..0), |t, pose| {
             poses.push((t, *pose))
         });
-        let image: Vec<(f64, KeyPose)> = poses.iter().map(|(t, p)| (*t, mirrored(p))).collect();
+        let image: Vec<(f64, KeyPose)> = poses.iter().map(|(t, p)| (*t, p.mirrored())).collect();
         let expected = rows(&image);
         let found = mirrored_rows(&rows(&poses), BoneSet::BODY).unwrap();
         assert_eq!(found.len(), expected.len());

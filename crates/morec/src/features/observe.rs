@@ -4,7 +4,7 @@ use crate::math::{Vec3, slerp_direction};
 use crate::roles::{ARMS, Role};
 
 use super::bones::{ALL_BONES, BONES, Bone, BoneKind, BoneSet};
-use super::hand::Hand;
+use super::hand::{Hand, PalmFrame};
 use super::profile::Profile;
 use super::{HeadingLine, KeyPose};
 
@@ -137,8 +137,11 @@ impl Observer {
         let mut directions = self
             .last
             .map_or([Vec3::zeros(); BONES], |last| last.directions);
+        let palms = Hand::BOTH.map(|hand| self.palm(hand, pose));
         for index in self.bones.indices() {
-            if let Some(seen) = seen(&ALL_BONES[index], pose, unit_length, (sin, cos)) {
+            let bone = &ALL_BONES[index];
+            let palm = bone.hand().and_then(|hand| palms[hand as usize]);
+            if let Some(seen) = seen(bone, pose, palm, unit_length, (sin, cos)) {
                 directions[index] = seen;
             }
         }
@@ -150,6 +153,18 @@ impl Observer {
         };
         self.last = Some(observation);
         Some(observation)
+    }
+
+    /// The palm of a hand whose bones count, and the length of its fingers; `None` of other hands, and where it is not seen.
+    fn palm(&self, hand: Hand, pose: &KeyPose) -> Option<(PalmFrame, Option<f64>)> {
+        let bones = match hand {
+            Hand::Left => BoneSet::LEFT_HAND,
+            Hand::Right => BoneSet::HAND,
+        };
+        match self.bones.and(bones).is_empty() {
+            true => None,
+            false => Some((hand.palm_frame(pose)?, hand.finger_length(pose))),
+        }
     }
 
     fn yaw(&self, pose: &KeyPose) -> Option<f64> {
@@ -212,8 +227,14 @@ impl Observer {
     }
 }
 
-/// What of a bone is a feature, as [`BoneKind`] says, if `pose` shows it.
-fn seen(bone: &Bone, pose: &KeyPose, unit_length: f64, (sin, cos): (f64, f64)) -> Option<Vec3> {
+/// What of a bone is a feature, as [`BoneKind`] says, if `pose` shows it; `palm` is the palm of its hand and the length of the fingers.
+fn seen(
+    bone: &Bone,
+    pose: &KeyPose,
+    palm: Option<(PalmFrame, Option<f64>)>,
+    unit_length: f64,
+    (sin, cos): (f64, f64),
+) -> Option<Vec3> {
     let along = || Some(pose.get(bone.to)? - pose.get(bone.from)?);
     let turned = |v: Vec3| heading_from_world(sin, cos, &v);
     match bone.kind {
@@ -227,12 +248,12 @@ fn seen(bone: &Bone, pose: &KeyPose, unit_length: f64, (sin, cos): (f64, f64)) -
             let [left, right] = Hand::BOTH.map(|hand| hand.root(pose));
             Some(turned((right? - left?) / unit_length))
         }
-        BoneKind::Finger(hand) => {
-            let along = along()? / hand.finger_length(pose)?;
-            Some(hand.palm_frame(pose)?.of_world(&along))
+        BoneKind::Finger(_) => {
+            let (frame, finger_length) = palm?;
+            Some(frame.of_world(&(along()? / finger_length?)))
         }
-        BoneKind::PalmForward(hand) => Some(turned(hand.palm_frame(pose)?.forward)),
-        BoneKind::PalmNormal(hand) => Some(turned(hand.palm_frame(pose)?.normal)),
+        BoneKind::PalmForward(_) => Some(turned(palm?.0.forward)),
+        BoneKind::PalmNormal(_) => Some(turned(palm?.0.normal)),
     }
 }
 

@@ -94,17 +94,17 @@ impl Profile {
     /// Of the bones that a source shows, those that are used unless others are asked for: the body's where there are any, both
     /// hands', one hand's, the lines of tracked points.
     pub fn usual_bones(shown: BoneSet) -> BoneSet {
-        let (body, hands) = (shown.and(BoneSet::BODY), shown.and(BoneSet::HANDS));
-        let both = [BoneSet::LEFT_HAND, BoneSet::HAND].map(|hand| !hands.and(hand).is_empty());
-        // Of a lone left hand the line between the palms is not known.
-        let is_pair = hands.len() > BoneSet::LEFT_HAND.or(BoneSet::HAND).and(hands).len();
-        match (body.is_empty(), both) {
-            (false, _) => body,
-            (true, [true, true]) if is_pair => hands,
-            (true, [_, true]) => hands.and(BoneSet::HAND),
-            (true, [true, false]) => hands,
-            (true, [false, false]) => shown.and(BoneSet::POINTS3),
-        }
+        // Of a lone left hand, which counts as a right one too, the line between the palms is not known.
+        let is_pair = !shown.and(BoneSet::PALM_LINE).is_empty();
+        let hands = match is_pair {
+            true => [BoneSet::HANDS, BoneSet::HANDS],
+            false => [BoneSet::HAND, BoneSet::LEFT_HAND],
+        };
+        let [first, second] = hands;
+        let mut usual = [BoneSet::BODY, first, second, BoneSet::POINTS3].into_iter();
+        usual
+            .find_map(|set| Some(shown.and(set)).filter(|bones| !bones.is_empty()))
+            .unwrap_or(BoneSet::NONE)
     }
 
     /// The usual parameters of its rows.

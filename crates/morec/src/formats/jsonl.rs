@@ -18,7 +18,7 @@ use crate::features::Hand;
 use crate::humanoid::{HUMANOID, HumanoidBone};
 use crate::math::{Quat, Vec3, rotation_of_xyzw, same_hemisphere, slerp};
 use crate::roles::Role;
-use crate::roles::points::{NUMBERED_HANDS, hand_role, numbered_hand};
+use crate::roles::points::{NUMBERED_HANDS, NumberedPoints, hand_role};
 
 /// Frames a second of lines without times.
 const ASSUMED_HZ: f64 = 30.0;
@@ -36,20 +36,6 @@ struct PoseRecord {
     rotations: BTreeMap<String, Option<[f64; 4]>>,
 }
 
-/// Points without names: of one performer, or of both hands.
-#[derive(Debug, serde::Deserialize)]
-#[serde(untagged)]
-enum NumberedPoints {
-    Of(Vec<Option<[f64; 3]>>),
-    Hands(BTreeMap<Hand, Vec<Option<[f64; 3]>>>),
-}
-
-impl Default for NumberedPoints {
-    fn default() -> Self {
-        Self::Of(Vec::new())
-    }
-}
-
 impl PoseRecord {
     /// Gives every point its name; an error if as many points are no hand.
     fn name_points(&mut self) -> Result<(), String> {
@@ -61,23 +47,14 @@ impl PoseRecord {
             };
             self.positions = named.map(of_hand).collect();
         }
-        let (hands, numbered) = match (std::mem::take(&mut self.points), self.hand) {
-            (NumberedPoints::Hands(hands), _) => (hands, Vec::new()),
-            (NumberedPoints::Of(points), Some(hand)) => {
-                let some = (!points.is_empty()).then_some((hand, points));
-                (some.into_iter().collect(), Vec::new())
-            }
-            (NumberedPoints::Of(points), None) => (BTreeMap::new(), points),
-        };
-        for (hand, points) in hands {
-            let roles = numbered_hand(points.len(), hand).ok_or_else(|| {
-                let known = NUMBERED_HANDS.map(|count| count.to_string()).join(", ");
-                format!("{} points of a hand, where {known} are known", points.len())
-            })?;
-            let named = roles.into_iter().zip(points);
-            let named = named.filter_map(|(role, place)| Some((role?.name().to_owned(), place)));
-            self.positions.extend(named);
-        }
+        let points = std::mem::take(&mut self.points);
+        let (of_hands, numbered) = points.by_hand(self.hand).map_err(|count| {
+            let known = NUMBERED_HANDS.map(|count| count.to_string()).join(", ");
+            format!("{count} points of a hand, where {known} are known")
+        })?;
+        let named = of_hands.into_iter();
+        self.positions
+            .extend(named.map(|(role, place)| (role.name().to_owned(), place)));
         let named = numbered.into_iter().enumerate();
         self.positions
             .extend(named.map(|(number, place)| (number.to_string(), place)));

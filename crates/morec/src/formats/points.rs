@@ -11,6 +11,7 @@ use self::gaps::{Filled, union};
 use self::point::{SHOWN, is_seen};
 use super::{Limits, Loaded, ParseError, Place, Warning};
 use crate::clip::{Clip, Points};
+use crate::features::Hand;
 use crate::math::{Quat, Vec3};
 use crate::roles::points::{numbered_counts, recognise_posed, subject_of};
 
@@ -278,9 +279,8 @@ fn is_unlabelled(name: &str) -> bool {
 
 /// True of the name of a hand, in the place of a person's.
 fn is_side(subject: &str) -> bool {
-    ["left", "right"]
-        .iter()
-        .any(|side| subject.eq_ignore_ascii_case(side))
+    let mut hands = Hand::BOTH.into_iter();
+    hands.any(|hand| subject.eq_ignore_ascii_case(hand.name()))
 }
 
 fn is_root_name(name: &str) -> bool {

@@ -97,12 +97,9 @@ fn size(body: &BodyMeasures, up: SignedAxis) -> Option<f64> {
         _ => height(body, up)
             .map(|height| height / HEIGHT)
             .or_else(|| size_of_arms(body))
-            .or_else(|| body.hand.map(|hand| hand / HAND)),
+            .or_else(|| body.hand.map(|hand| hand / human::HAND)),
     }
 }
-
-/// Usual length of a hand, metres.
-const HAND: f64 = 0.186;
 
 /// The same of a body without legs.
 fn size_of_arms(body: &BodyMeasures) -> Option<f64> {

@@ -82,12 +82,17 @@ pub(super) fn tensors(model: &TemplateModel) -> BTreeMap<String, Tensor> {
 
 /// Poses of held classes and of anything else.
 fn held_tensors(held: &HeldPoses) -> [(String, Tensor); 5] {
-    let poses = |rows: &Rows| Tensor::of_rows(rows.iter(), rows.dim(), None);
+    let tables = [&held.poses, &held.others];
+    let rows = tables.iter().flat_map(|rows| rows.iter());
+    let lengths = tables.iter().map(|rows| rows.len() as u32);
     let classes = held.classes.iter().map(|class| u32::from(class.0));
     [
         ("held.classes".to_owned(), Tensor::of_u32(classes)),
-        ("held.others".to_owned(), poses(&held.others)),
-        ("held.poses".to_owned(), poses(&held.poses)),
+        ("held.lengths".to_owned(), Tensor::of_u32(lengths)),
+        (
+            "held.rows".to_owned(),
+            Tensor::of_rows(rows, held.poses.dim(), None),
+        ),
         (
             "held.ridged".to_owned(),
             Tensor::of_f32(held.ridged.packed()),
@@ -242,21 +247,19 @@ fn held(manifest: &Manifest, tables: &Tables) -> Result<Option<HeldPoses>, Index
         return Ok(None);
     };
     let dim = RowLayout::of(manifest.bones).directions().len();
-    let rows = |name: &str| -> Result<Rows, IndexError> {
-        let values = tables.f32s(name)?;
-        match values.len().is_multiple_of(dim.max(1)) {
-            true => Ok(Rows::from_values(dim, values)),
-            false => Err(IndexError::Content(format!(
-                "tensor {name:?}: expected rows of {dim} values, found {} values",
-                values.len()
-            ))),
-        }
-    };
+    let lengths = tables.u32s("held.lengths")?;
+    let rows = tables.pieces("held.rows", dim, &lengths, None)?;
+    let [poses, others] = <[Rows; 2]>::try_from(rows).map_err(|rows| {
+        IndexError::Content(format!(
+            "held.lengths: expected 2 lengths, found {}",
+            rows.len()
+        ))
+    })?;
     let classes = tables.u32s("held.classes")?.into_iter().map(class_id);
     Ok(Some(HeldPoses {
-        poses: rows("held.poses")?,
+        poses,
         classes: classes.collect::<Result<_, _>>()?,
-        others: rows("held.others")?,
+        others,
         ridged: symmetric(tables, "held.ridged", dim)?,
         total: symmetric(tables, "held.total", dim)?,
         reach,

@@ -100,7 +100,7 @@ fn apply(copy: &mut Perturbed, perturbation: Perturbation, rng: &mut Rng) {
         Perturbation::Occlude(share) => occlude(copy, share, rng),
         Perturbation::Mirror => {
             for (_, pose) in &mut copy.poses {
-                *pose = mirrored(pose);
+                *pose = pose.mirrored();
             }
         }
         Perturbation::Camera(factor) => {
@@ -114,17 +114,6 @@ fn apply(copy: &mut Perturbed, perturbation: Perturbation, rng: &mut Rng) {
         }
         Perturbation::Rate(hz) => resample(copy, hz),
     }
-}
-
-/// `pose` as a mirror shows it: left and right exchanged, X reversed.
-pub fn mirrored(pose: &KeyPose) -> KeyPose {
-    let mut out = KeyPose::default();
-    for role in pose.roles() {
-        if let Some(p) = pose.get(role) {
-            out.set(role.opposite(), Vec3::new(-p.x, p.y, p.z));
-        }
-    }
-    out
 }
 
 /// The parts of the body, seen or not, and what is seen of hands.

@@ -9,7 +9,7 @@ mod device;
 mod noise;
 mod parse;
 
-pub use apply::{Perturbed, mirrored, perturb};
+pub use apply::{Perturbed, perturb};
 pub use device::Device;
 pub use parse::UnknownPerturbation;
 

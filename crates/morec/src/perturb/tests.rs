@@ -72,7 +72,7 @@ fn the_clock_follows_lost_frames_and_another_pace() {
 fn a_mirror_twice_is_no_mirror() {
     let twice = perturb(still(1), &[Perturbation::Mirror; 2], 1);
     assert_eq!(twice.poses, still(1));
-    let once = mirrored(&still(1)[0].1);
+    let once = still(1)[0].1.mirrored();
     assert_eq!(once.get(Role::LeftHand), Some(Vec3::new(0.5, 1.0, 0.2)));
     assert_eq!(once.get(Role::RightHand), None);
 }

@@ -19,3 +19,5 @@ pub(crate) const BETWEEN_SHOULDERS: f64 = 0.7;
 /// Hip to ankle of an adult of 1.70 m, in metres.
 #[cfg(feature = "formats")]
 pub(crate) const LEG: f64 = 0.83;
+/// Wrist to the tip of the middle finger of an adult, in metres.
+pub(crate) const HAND: f64 = 0.186;

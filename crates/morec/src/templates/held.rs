@@ -9,6 +9,7 @@ use crate::decode::TickDetection;
 use crate::features::{RowLayout, Rows};
 
 use super::early::OngoingMatch;
+use super::verifier::squared_distance;
 use super::{Metric, PackedSymmetric};
 
 /// Poses that are looked at for one distance.
@@ -71,11 +72,7 @@ impl HeldPoses {
                 self.reach
             ));
         }
-        let mut values = self.poses.values().iter().chain(self.others.values());
-        match values.find(|value| value.is_nan() || value.abs() > 1e4) {
-            Some(value) => Err(format!("held poses must be within 10000, found {value}")),
-            None => Ok(()),
-        }
+        Ok(())
     }
 
     /// The part for rows that keep the columns `keep` of rows of `layout`.
@@ -137,8 +134,7 @@ pub(crate) fn distance_from(pose: &[f32], poses: &Rows, counts: impl Fn(usize) -
 }
 
 fn apart(a: &[f32], b: &[f32]) -> f32 {
-    let squares = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b));
-    squares.sum::<f32>().sqrt()
+    squared_distance(a, b).sqrt()
 }
 
 /// A pose that is being held.
@@ -192,7 +188,7 @@ impl HoldDetector {
             others: metric.apply_all(&held.others),
             of_class: held.classes.iter().map(number).collect(),
             mapped: vec![0.0; metric.dim()],
-            nearest: vec![NearestFew::NONE; classes.len() + 1],
+            nearest: vec![NearestFew::NONE; classes.len()],
             recent: vec![[0.0; WINDOW]; classes.len() + 1],
             classes,
             reach: held.reach,
@@ -236,13 +232,11 @@ impl HoldDetector {
         for (pose, class) in self.poses.iter().zip(&self.of_class) {
             self.nearest[*class].take(apart(&self.mapped, pose));
         }
-        let others = self.classes.len();
-        for pose in self.others.iter() {
-            self.nearest[others].take(apart(&self.mapped, pose));
-        }
+        let others = distance_from(&self.mapped, &self.others, |_| true);
+        let distances = self.nearest.iter().map(NearestFew::mean);
         let slot = self.ticks as usize % WINDOW;
-        for (recent, nearest) in self.recent.iter_mut().zip(&self.nearest) {
-            recent[slot] = nearest.mean();
+        for (recent, distance) in self.recent.iter_mut().zip(distances.chain([others])) {
+            recent[slot] = distance;
         }
         self.ticks += 1;
         if self.ticks >= WINDOW as i64 {

@@ -143,9 +143,16 @@ impl TemplateModel {
             let value = values.find(|v| v.is_nan() || v.abs() > most)?;
             Some(format!("values must be within {most}, found {value}"))
         };
+        let held = self.held.as_ref();
         let rows = self.samples.iter().map(|sample| &sample.rows);
-        let mut rows = rows.chain(&self.negatives);
-        let mut tables = [&self.ridged, &self.total].into_iter();
+        let mut rows = rows.chain(&self.negatives).chain(
+            held.into_iter()
+                .flat_map(|held| [&held.poses, &held.others]),
+        );
+        let mut tables = [&self.ridged, &self.total].into_iter().chain(
+            held.into_iter()
+                .flat_map(|held| [&held.ridged, &held.total]),
+        );
         let of_rows = rows.find_map(|rows| beyond(rows.values(), LARGEST));
         let of_metric = || tables.find_map(|table| beyond(table.packed(), LARGEST * LARGEST));
         of_rows.or_else(of_metric).map_or(Ok(()), Err)

@@ -184,7 +184,7 @@ pub fn build_train_set(
     }
 }
 
-/// `params` for the rows of a profile: its own in place of those that nobody chose.
+/// `params` for the rows of a profile: its own in place of each that is as usual for bodies.
 fn features(params: &FeatureParams, profile: Profile, hipless: bool) -> FeatureParams {
     match profile {
         Profile::Body if hipless && params.heading == HeadingLine::Hips => FeatureParams {
@@ -192,11 +192,21 @@ fn features(params: &FeatureParams, profile: Profile, hipless: bool) -> FeatureP
             ..params.clone()
         },
         Profile::Body => params.clone(),
-        _ if *params == FeatureParams::default() => profile.features(),
-        _ => FeatureParams {
-            heading: HeadingLine::Sensor,
-            ..params.clone()
-        },
+        _ => {
+            let (usual, own) = (FeatureParams::default(), profile.features());
+            let choose =
+                |given: f64, usual: f64, own: f64| if given == usual { own } else { given };
+            FeatureParams {
+                heading: own.heading,
+                velocity_saturation: choose(
+                    params.velocity_saturation,
+                    usual.velocity_saturation,
+                    own.velocity_saturation,
+                ),
+                root_weight: choose(params.root_weight, usual.root_weight, own.root_weight),
+                ..params.clone()
+            }
+        }
     }
 }
 

@@ -25,10 +25,7 @@ pub(super) fn in_frame(frame: &Value, points_in: PointsIn) -> Option<NamedPoints
     gather(frame, DEEPEST, points_in, &mut found);
     let mut points: NamedPoints = Vec::new();
     for (hand, list) in found {
-        let side = match hand {
-            Hand::Left => "left",
-            Hand::Right => "right",
-        };
+        let side = hand.name();
         let known = points.iter().any(|(name, _)| name.starts_with(side));
         // Of two hands that have one name, the first is more certain.
         if !known {
@@ -93,12 +90,11 @@ fn world_first(fields: &Map<String, Value>) -> impl Iterator<Item = (String, &Va
 
 /// `{"left_hand_landmarks": […], "right_hand_landmarks": […]}`.
 fn by_field(fields: &Map<String, Value>, points_in: PointsIn) -> Vec<SidedPoints> {
-    let hands = [(Hand::Left, "left"), (Hand::Right, "right")];
-    let of = |(hand, side): (Hand, &str)| {
-        let mut named = world_first(fields).filter(|(key, _)| key.contains(side));
+    let of = |hand: Hand| {
+        let mut named = world_first(fields).filter(|(key, _)| key.contains(hand.name()));
         named.find_map(|(_, value)| Some((hand, hand_points(value, points_in)?)))
     };
-    hands.into_iter().filter_map(of).collect()
+    Hand::BOTH.into_iter().filter_map(of).collect()
 }
 
 /// `{"landmarks": [[…], […]], "handedness": ["Left", "Right"]}`.
@@ -138,8 +134,10 @@ fn by_label(fields: &Map<String, Value>, points_in: PointsIn) -> Option<SidedPoi
 /// The first word that is a side.
 fn side_in(value: &Value, depth: usize) -> Option<Hand> {
     match value {
-        Value::String(word) if word.eq_ignore_ascii_case("left") => Some(Hand::Left),
-        Value::String(word) if word.eq_ignore_ascii_case("right") => Some(Hand::Right),
+        Value::String(word) => {
+            let mut hands = Hand::BOTH.into_iter();
+            hands.find(|hand| word.eq_ignore_ascii_case(hand.name()))
+        }
         Value::Array(_) | Value::Object(_) if depth > 0 => {
             children(value).find_map(|child| side_in(child, depth - 1))
         }

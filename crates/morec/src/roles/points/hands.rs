@@ -1,5 +1,7 @@
 //! Points of hands: by names, or by their numbers in the order of a known model.
 
+use std::collections::BTreeMap;
+
 use super::names::{numbers, words};
 use crate::features::{Hand, KeyPose};
 use crate::math::Vec3;
@@ -37,6 +39,54 @@ pub fn numbered_hand(count: usize, hand: Hand) -> Option<Vec<Option<Role>>> {
     let (_, model) = numbered(count)?;
     let role = |number| Some(model(number)?.of(hand));
     Some((0..count).map(role).collect())
+}
+
+/// Points in the order of their numbers, as a line of JSON has them: of one performer, or of both hands.
+#[derive(Debug, serde::Deserialize)]
+#[serde(untagged)]
+pub enum NumberedPoints {
+    /// Of a performer, or of the hand that the line is about.
+    Of(Vec<OptionalPlace>),
+    /// Of each hand.
+    Hands(BTreeMap<Hand, Vec<OptionalPlace>>),
+}
+
+impl Default for NumberedPoints {
+    fn default() -> Self {
+        Self::Of(Vec::new())
+    }
+}
+
+/// A place that may be unknown.
+type OptionalPlace = Option<[f64; 3]>;
+
+/// A point of a known hand: what it is, and where.
+type PlacedPoint = (Role, OptionalPlace);
+
+impl NumberedPoints {
+    /// The points of known hands, and those of whom the line does not say what they are; `hand` is the one that it is about.
+    ///
+    /// # Errors
+    /// The number of points that should be a hand's, if no known model has so many.
+    pub fn by_hand(
+        self,
+        hand: Option<Hand>,
+    ) -> Result<(Vec<PlacedPoint>, Vec<OptionalPlace>), usize> {
+        let hands = match (self, hand) {
+            (Self::Hands(hands), _) => hands,
+            (Self::Of(points), Some(hand)) if !points.is_empty() => {
+                BTreeMap::from([(hand, points)])
+            }
+            (Self::Of(points), _) => return Ok((Vec::new(), points)),
+        };
+        let mut placed = Vec::new();
+        for (hand, points) in hands {
+            let roles = numbered_hand(points.len(), hand).ok_or(points.len())?;
+            let known = roles.into_iter().zip(points);
+            placed.extend(known.filter_map(|(role, place)| Some((role?, place))));
+        }
+        Ok((placed, Vec::new()))
+    }
 }
 
 /// The point of a hand of this name, and the side that the name says: of `hand` if it says none. `INDEX_FINGER_TIP`, `left_index_tip`,

@@ -13,7 +13,8 @@ mod place;
 mod set;
 
 pub use hands::{
-    NUMBERED_HANDS, SideVotes, hand_role, numbered_hand, recognise_hands, recognise_numbered_hand,
+    NUMBERED_HANDS, NumberedPoints, SideVotes, hand_role, numbered_hand, recognise_hands,
+    recognise_numbered_hand,
 };
 pub use place::PointJoint;
 pub(in crate::roles) use place::said;
