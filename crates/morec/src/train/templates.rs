@@ -36,7 +36,7 @@ pub enum TrainError {
     NoSamples,
     /// Labelled clips of which none shows a body.
     #[error(
-        "no body to learn from in {0}: no limb and no head is found among the joints (`morec inspect` shows what is); hands, faces \
+        "no body to learn from in {0}: no limb and no head is found among the joints (`morec inspect` shows what is); faces \
          and things alone cannot be learned"
     )]
     NoBody(String),
