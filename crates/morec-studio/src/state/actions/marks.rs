@@ -11,6 +11,7 @@ use crate::jobs::JobOutcome;
 use crate::jobs::teach::{Lesson, Meaning, Taught, teach};
 use crate::state::State;
 use crate::state::live::{LiveMark, labelled_there};
+use crate::store::Store;
 
 /// Margin kept before and after a marked stretch, seconds.
 const AROUND_SECS: f64 = 0.7;
@@ -155,9 +156,11 @@ impl State {
         self.live.retrain = false;
     }
 
-    /// Trains with what was marked, once it is in the database.
+    /// Trains with what was marked, once the snapshot has it: one that comes before the answer to the reload may show the clip
+    /// without its label.
     pub(in crate::state) fn teach_again(&mut self) {
-        if self.live.retrain && !self.live.teaching {
+        let is_there = !self.live.teaching && !self.store.as_ref().is_some_and(Store::is_busy);
+        if self.live.retrain && is_there {
             self.live.retrain = false;
             self.start_training();
         }
@@ -191,5 +194,30 @@ impl State {
         let line = self.record_line(&store);
         self.show_line(line);
         self.keep(store, lesson);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn training_waits_for_the_snapshot_that_was_asked_for_after_the_mark_was_kept() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut state = State::new(std::sync::Arc::new(|| {}), folder.path().to_owned());
+        state.open_store(&folder.path().join("moves.mdb"), false);
+        // The mark is kept, and the snapshot that has it is asked for; one from before the label arrives first.
+        state.live.retrain = true;
+        state.store.as_mut().unwrap().reload();
+        state.teach_again();
+        assert!(
+            state.live.retrain,
+            "the label is not in the snapshot that is there"
+        );
+        while state.is_busy() {
+            state.poll();
+            std::thread::sleep(std::time::Duration::from_millis(2));
+        }
+        assert!(!state.live.retrain, "the snapshot has arrived");
     }
 }

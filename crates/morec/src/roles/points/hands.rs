@@ -67,7 +67,7 @@ impl NumberedPoints {
     /// The points of known hands, and those of whom the line does not say what they are; `hand` is the one that it is about.
     ///
     /// # Errors
-    /// The number of points that should be a hand's, if no known model has that number.
+    /// The number of points found, if no known hand model has that number.
     pub fn by_hand(
         self,
         hand: Option<Hand>,
