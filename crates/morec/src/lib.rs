@@ -120,6 +120,8 @@
 
 pub mod classes;
 pub mod clip;
+mod coder;
+pub mod features;
 pub mod humanoid;
 pub mod kinematics;
 pub mod math;
@@ -130,11 +132,7 @@ pub mod rng;
 pub mod roles;
 
 #[cfg(any(feature = "formats", feature = "live"))]
-mod coder;
-#[cfg(any(feature = "formats", feature = "live"))]
 mod error;
-#[cfg(any(feature = "formats", feature = "live"))]
-pub mod features;
 
 #[cfg(feature = "files")]
 pub mod files;
@@ -205,7 +203,6 @@ pub use classes::{ClassId, ClassInfo};
 pub use clip::{Clip, Skeleton};
 #[cfg(any(feature = "formats", feature = "live"))]
 pub use error::Error;
-#[cfg(any(feature = "formats", feature = "live"))]
 pub use features::{BoneSet, KeyPose};
 #[cfg(feature = "formats")]
 pub use import::{ImportOptions, Take};

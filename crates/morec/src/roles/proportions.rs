@@ -20,4 +20,5 @@ pub(crate) const BETWEEN_SHOULDERS: f64 = 0.7;
 #[cfg(feature = "formats")]
 pub(crate) const LEG: f64 = 0.83;
 /// Wrist to the tip of the middle finger of an adult, in metres.
+#[cfg(any(feature = "formats", feature = "live"))]
 pub(crate) const HAND: f64 = 0.186;
