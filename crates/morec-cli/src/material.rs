@@ -53,8 +53,14 @@ pub struct MaterialArgs {
     #[arg(long, value_name = "DIR|CLIP", num_args = 1..)]
     pub background: Vec<PathBuf>,
     /// The method of recognition
-    #[arg(long, value_enum, default_value = "templates")]
+    #[arg(long, value_enum, default_value = "auto")]
     pub method: Method,
+    /// With --method auto: classes that are activities whatever their samples say, separated by commas
+    #[arg(long, value_delimiter = ',', value_name = "CLASSES")]
+    pub activities: Vec<String>,
+    /// With --method auto: classes that are gestures whatever their samples say, separated by commas
+    #[arg(long, value_delimiter = ',', value_name = "CLASSES")]
+    pub gestures: Vec<String>,
     /// With --method svrdm: the thesis' parameters, or parameters tuned to accept what was not seen
     #[arg(long, value_enum, default_value = "tuned")]
     pub svrdm: ThesisSetting,
@@ -159,7 +165,10 @@ fn nearest(name: &str, known: &[String]) -> String {
 /// Methods of recognition.
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
-    /// Gestures and cycles of up to about three seconds, matched elastically
+    /// Each class as its samples say: gestures matched elastically, activities (which go on for longer, like walking) by what a
+    /// window of them shows
+    Auto,
+    /// Every class as a gesture
     Templates,
     /// The method of the thesis of 2009: support vector machines over the directions of motion, in a tree
     Svrdm,
@@ -230,7 +239,9 @@ impl MaterialArgs {
     pub fn recipe(&self) -> Result<Recipe> {
         let unlabelled_is_background = self.unlabelled == Unlabelled::Background;
         match self.method {
-            Method::Templates => Ok(self.template_options(unlabelled_is_background)?.into()),
+            Method::Auto | Method::Templates => {
+                Ok(self.template_options(unlabelled_is_background)?.into())
+            }
             Method::Svrdm => {
                 let params =
                     with_settings(reproduce::Setting::from(self.svrdm).params(), &self.params)?;
@@ -261,7 +272,9 @@ impl MaterialArgs {
             EverydayArg::Always => Everyday::Always,
             EverydayArg::Never => Everyday::Never,
         };
-        let params = with_settings(TrainParams::default(), &self.params)?;
+        let mut params = with_settings(TrainParams::default(), &self.params)?;
+        params.activities &= self.method == Method::Auto;
+        params.set_kinds(&self.activities, &self.gestures);
         Ok(TrainOptions {
             unlabelled_is_background,
             everyday,

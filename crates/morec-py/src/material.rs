@@ -191,19 +191,28 @@ pub fn recipe(given: &Bound<'_, PyDict>) -> PyResult<Recipe> {
         "no" => Mirror::No,
         other => return Err(wrong("mirror", &["auto", "yes", "no"], other)),
     };
-    match word("method")?.as_str() {
-        "templates" => Ok(TrainOptions {
+    let names = |option: &str| -> PyResult<Vec<String>> {
+        match given.get_item(option)? {
+            Some(classes) => classes.extract(),
+            None => Ok(Vec::new()),
+        }
+    };
+    let method = word("method")?;
+    match method.as_str() {
+        "auto" | "templates" => Ok(TrainOptions {
             unlabelled_is_background,
             everyday,
             mirror,
-            one_sided: match given.get_item("one_sided")? {
-                Some(classes) => classes.extract()?,
-                None => Vec::new(),
-            },
+            one_sided: names("one_sided")?,
             bones: word("bones")?
                 .parse()
                 .map_err(|error| value_error(format!("bones: {error}")))?,
-            params: with_parameters(TrainParams::default(), &params)?,
+            params: {
+                let mut params = with_parameters(TrainParams::default(), &params)?;
+                params.activities &= method == "auto";
+                params.set_kinds(&names("activities")?, &names("gestures")?);
+                params
+            },
         }
         .into()),
         "svrdm" => Ok(SvrdmOptions {
@@ -211,7 +220,7 @@ pub fn recipe(given: &Bound<'_, PyDict>) -> PyResult<Recipe> {
             unlabelled_is_background,
         }
         .into()),
-        other => Err(wrong("method", &["templates", "svrdm"], other)),
+        other => Err(wrong("method", &["auto", "templates", "svrdm"], other)),
     }
 }
 

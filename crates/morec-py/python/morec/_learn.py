@@ -53,6 +53,8 @@ def _recipe(
     everyday: str,
     mirror: str,
     one_sided: Sequence[str],
+    activities: Sequence[str],
+    gestures: Sequence[str],
     bones: str | Sequence[str],
     params: Mapping[str, Any] | None,
 ) -> dict[str, Any]:
@@ -63,6 +65,8 @@ def _recipe(
         "everyday": everyday,
         "mirror": mirror,
         "one_sided": list(one_sided),
+        "activities": list(activities),
+        "gestures": list(gestures),
         "bones": bones if isinstance(bones, str) else ",".join(bones),
         "params": [(name, json.dumps(value)) for name, value in (params or {}).items()],
     }
@@ -76,12 +80,14 @@ def train(
     background: Background = None,
     classes: Sequence[str] = (),
     exclude: Sequence[str] = (),
-    method: str = "templates",
+    method: str = "auto",
     svrdm: str = "tuned",
     unlabelled: str = "background",
     everyday: str = "always",
     mirror: str = "auto",
     one_sided: Sequence[str] = (),
+    activities: Sequence[str] = (),
+    gestures: Sequence[str] = (),
     bones: str | Sequence[str] = "all",
     params: Mapping[str, Any] | None = None,
     progress: Progress = None,
@@ -103,8 +109,9 @@ def train(
         Learn only these, in this order.
     exclude : sequence of str
         Leave these clips out, by name.
-    method : {"templates", "svrdm"}
-        Gestures and cycles matched elastically, or the method of the thesis of 2009.
+    method : {"auto", "templates", "svrdm"}
+        Each class as its samples say, gestures matched elastically and activities, which go on for longer, by what a window of them
+        shows; every class as a gesture; or the method of the thesis of 2009.
     svrdm : {"tuned", "faithful"}
         The parameters of the method svrdm.
     unlabelled : {"background", "ignore"}
@@ -117,6 +124,8 @@ def train(
         classes named as two sides of one motion, as wave_left and wave_right, teach each other.
     one_sided : sequence of str
         With mirror yes: classes whose mirror image is another motion; it then teaches what the class is not.
+    activities, gestures : sequence of str
+        With method auto: classes that are one or the other whatever their samples say.
     bones : str or sequence of str
         Which parts count (templates only): all (of clips without a body: their hands), upper, arms, hand, left_hand, hands,
         body_and_hands, points3, or names of bones.
@@ -142,7 +151,7 @@ def train(
         For labels that were cut or left out, and clips that are not used.
     """
     material = _material(clips, labels, people, background, exclude)
-    recipe = _recipe(method, svrdm, unlabelled, everyday, mirror, one_sided, bones, params)
+    recipe = _recipe(method, svrdm, unlabelled, everyday, mirror, one_sided, activities, gestures, bones, params)
     return _morec.train(material, list(classes), recipe, listener(progress))
 
 
@@ -160,12 +169,14 @@ def crossval(
     perturb: Sequence[str] = (),
     sensitivities: Sequence[float] = (),
     seed: int = 1,
-    method: str = "templates",
+    method: str = "auto",
     svrdm: str = "tuned",
     unlabelled: str = "background",
     everyday: str = "always",
     mirror: str = "auto",
     one_sided: Sequence[str] = (),
+    activities: Sequence[str] = (),
+    gestures: Sequence[str] = (),
     bones: str | Sequence[str] = "all",
     params: Mapping[str, Any] | None = None,
     progress: Progress = None,
@@ -195,7 +206,7 @@ def crossval(
     """
     material = _material(clips, labels, people, background, exclude)
     material["unknown"] = _aside(unknown, material["clips"])
-    recipe = _recipe(method, svrdm, unlabelled, everyday, mirror, one_sided, bones, params)
+    recipe = _recipe(method, svrdm, unlabelled, everyday, mirror, one_sided, activities, gestures, bones, params)
     how: dict[str, Any] = {
         "by": by,
         "samples": samples,

@@ -14,11 +14,12 @@ use std::ops::Range;
 use crate::classes::ClassId;
 use crate::clip::{Clip, Span};
 use crate::decode::FAR;
-use crate::features::{Rows, all_bones_of_clip, rows_of_clip};
+use crate::features::{RowLayout, Rows, all_bones_of_clip, rows_of_clip};
 use crate::live::{Detection, Model};
 use crate::roles::RoleMap;
 use crate::templates::{
-    Nearest, OperatingPoint, PerformerKind, PerformerLevel, StrangerGate, TemplateModel, Trace,
+    Activities, Nearest, OperatingPoint, PerformerKind, PerformerLevel, StrangerGate,
+    TemplateModel, Trace,
 };
 use crate::train::overlap_share;
 
@@ -139,6 +140,13 @@ impl<'a> ComparedStream<'a> {
         };
         let class = ClassId(class as u16);
         let ticks = self.ticks_of(sought);
+        if let Some(activities) = self.model.activities.as_ref().filter(|a| a.holds(class)) {
+            let kept_out = self.activity(activities, &ticks, class);
+            return (
+                kept_out.unwrap_or_else(|| self.neighbour(sought, class)),
+                None,
+            );
+        }
         self.open = self.open_gate(sought);
         let Some((_, any)) = self.best(&ticks, |t| self.trace.nearest(t, class)) else {
             return (Reason::NoMatch, None);
@@ -164,6 +172,28 @@ impl<'a> ComparedStream<'a> {
                 .unwrap_or_else(|| self.neighbour(sought, class)),
         };
         (reason, None)
+    }
+
+    /// What kept an activity from being recognised in `ticks`.
+    fn activity(
+        &self,
+        activities: &Activities,
+        ticks: &Range<usize>,
+        class: ClassId,
+    ) -> Option<Reason> {
+        let hz = self.model.features.tick_hz();
+        let (secs, least_secs) = (ticks.len() as f64 / hz, Activities::LEAST_TICKS as f64 / hz);
+        if secs < least_secs {
+            return Some(Reason::Short { secs, least_secs });
+        }
+        let rows = self.rows.slice(ticks.clone());
+        let shares = activities.shares(RowLayout::of(self.model.bones), &rows);
+        let own = shares.iter().find(|(of, _)| *of == class)?.1;
+        let nearest = shares.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
+        let name = |of: ClassId| self.model.classes[of.index()].name.clone();
+        let nearer = (nearest.0 != class).then(|| (name(nearest.0), nearest.1));
+        let unlike = own >= 1.0 || nearer.is_some();
+        unlike.then_some(Reason::GoesOnUnlike { share: own, nearer })
     }
 
     /// The sample would have been near enough under the wider gate, which was closed.

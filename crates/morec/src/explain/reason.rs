@@ -53,6 +53,21 @@ pub enum Reason {
         /// Distance of the other class.
         other: f32,
     },
+    /// An activity that goes on unlike its samples: the mean of its windows' distances, as shares of their distances from what is no
+    /// activity.
+    GoesOnUnlike {
+        /// Its share; below 1 counts.
+        share: f64,
+        /// The nearest other activity and its share, if that is nearer.
+        nearer: Option<(String, f64)>,
+    },
+    /// An activity that does not go on for long enough.
+    Short {
+        /// Its length in seconds.
+        secs: f64,
+        /// An activity is recognised from this length on.
+        least_secs: f64,
+    },
     /// The verifier refused it.
     Refused {
         /// Its score; above 0 is accepted.
@@ -98,6 +113,8 @@ impl Reason {
             Self::Unlike { .. } => "unlike the teacher",
             Self::Background { .. } => "background is nearer",
             Self::OtherClass { .. } => "another class is as near or nearer",
+            Self::GoesOnUnlike { .. } => "goes on unlike the samples",
+            Self::Short { .. } => "too short",
             Self::Refused { .. } => "refused by the verifier",
             Self::Neighbour { .. } => "taken by a neighbour",
             Self::Elsewhere => "ends elsewhere",
@@ -151,6 +168,20 @@ impl fmt::Display for Reason {
                 };
                 write!(f, "{class} is {near}: {other:.2} against {distance:.2}")
             }
+            Self::GoesOnUnlike { share, nearer } => match nearer {
+                Some((class, other)) => write!(
+                    f,
+                    "{class} is nearer, which goes on as well: {other:.2} against {share:.2} of the distance from anything else"
+                ),
+                None => write!(
+                    f,
+                    "goes on unlike its samples: {share:.2} of the distance from anything else, below 1 counts"
+                ),
+            },
+            Self::Short { secs, least_secs } => write!(
+                f,
+                "lasts {secs:.1} s: an activity is recognised from {least_secs:.1} s on"
+            ),
             Self::Refused {
                 score,
                 other,

@@ -55,6 +55,9 @@ pub struct Manifest {
     /// The held poses without their tables, if there are any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub held: Option<HeldWords>,
+    /// The activities without their tables, if there are any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub activities: Option<ActivityWords>,
     /// Joints of the training clips, by role.
     pub roles: BTreeMap<Role, String>,
     /// Origin of the index.
@@ -68,6 +71,15 @@ pub struct HeldWords {
     pub reach: f32,
     /// Ticks for which a pose must be held.
     pub least_ticks: usize,
+}
+
+/// Activities without their tables.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct ActivityWords {
+    /// Ticks of a window.
+    pub window_ticks: usize,
+    /// See [`Activities::share`](crate::templates::Activities::share).
+    pub share: f32,
 }
 
 /// A verifier without its exemplars.

@@ -2,12 +2,14 @@
 
 use std::collections::BTreeMap;
 
+use crate::classes::ClassId;
 use crate::features::{RowLayout, Rows};
 use crate::templates::{
-    Exemplars, HeldPoses, PackedSymmetric, SHAPE_ROWS, TemplateModel, TemplateSample, Verifier,
+    Activities, Exemplars, HeldPoses, PackedSymmetric, SHAPE_ROWS, TemplateModel, TemplateSample,
+    Verifier,
 };
 
-use super::manifest::{FORMAT, HeldWords, Manifest, VerifierWords};
+use super::manifest::{ActivityWords, FORMAT, HeldWords, Manifest, VerifierWords};
 use super::tensors::{Tables, Tensor, class_id};
 use super::{INDEX_VERSION, IndexError, MotionIndex};
 
@@ -36,6 +38,10 @@ pub(super) fn manifest(model: &TemplateModel, index: &MotionIndex) -> Manifest {
         held: model.held.as_ref().map(|held| HeldWords {
             reach: held.reach,
             least_ticks: held.least_ticks,
+        }),
+        activities: (model.activities.as_ref()).map(|activities| ActivityWords {
+            window_ticks: activities.window_ticks,
+            share: activities.share,
         }),
         roles: index.roles.clone(),
         provenance: index.provenance.clone(),
@@ -75,29 +81,44 @@ pub(super) fn tensors(model: &TemplateModel) -> BTreeMap<String, Tensor> {
         tensors.extend(exemplars(&verifier.classes, dim, step));
     }
     if let Some(held) = &model.held {
-        tensors.extend(held_tensors(held));
+        let tables = [&held.poses, &held.others];
+        tensors.extend(compared(
+            "held",
+            &held.classes,
+            tables,
+            [&held.ridged, &held.total],
+        ));
+    }
+    if let Some(activities) = &model.activities {
+        let Activities { means, others, .. } = activities;
+        let matrices = [&activities.ridged, &activities.total];
+        tensors.extend(compared(
+            "activities",
+            &activities.classes,
+            [means, others],
+            matrices,
+        ));
     }
     tensors
 }
 
-/// Poses of held classes and of anything else.
-fn held_tensors(held: &HeldPoses) -> [(String, Tensor); 5] {
-    let tables = [&held.poses, &held.others];
+/// What a stream is compared with under a metric of its own: rows of `classes`, and rows of anything else.
+fn compared(
+    name: &str,
+    classes: &[ClassId],
+    tables: [&Rows; 2],
+    [ridged, total]: [&PackedSymmetric; 2],
+) -> [(String, Tensor); 5] {
     let rows = tables.iter().flat_map(|rows| rows.iter());
     let lengths = tables.iter().map(|rows| rows.len() as u32);
-    let classes = held.classes.iter().map(|class| u32::from(class.0));
+    let classes = classes.iter().map(|class| u32::from(class.0));
+    let rows = Tensor::of_rows(rows, ridged.dim(), None);
     [
-        ("held.classes".to_owned(), Tensor::of_u32(classes)),
-        ("held.lengths".to_owned(), Tensor::of_u32(lengths)),
-        (
-            "held.rows".to_owned(),
-            Tensor::of_rows(rows, held.poses.dim(), None),
-        ),
-        (
-            "held.ridged".to_owned(),
-            Tensor::of_f32(held.ridged.packed()),
-        ),
-        ("held.total".to_owned(), Tensor::of_f32(held.total.packed())),
+        (format!("{name}.classes"), Tensor::of_u32(classes)),
+        (format!("{name}.lengths"), Tensor::of_u32(lengths)),
+        (format!("{name}.rows"), rows),
+        (format!("{name}.ridged"), Tensor::of_f32(ridged.packed())),
+        (format!("{name}.total"), Tensor::of_f32(total.packed())),
     ]
 }
 
@@ -174,6 +195,7 @@ pub(super) fn read(manifest: &Manifest, tables: &Tables) -> Result<TemplateModel
         stranger: manifest.stranger.clone(),
         verifier: verifier(manifest, tables, dim, step.as_deref())?,
         held: held(manifest, tables)?,
+        activities: activities(manifest, tables)?,
         step,
     };
     model
@@ -247,24 +269,72 @@ fn held(manifest: &Manifest, tables: &Tables) -> Result<Option<HeldPoses>, Index
         return Ok(None);
     };
     let dim = RowLayout::of(manifest.bones).directions().len();
-    let lengths = tables.u32s("held.lengths")?;
-    let rows = tables.pieces("held.rows", dim, &lengths, None)?;
-    let [poses, others] = <[Rows; 2]>::try_from(rows).map_err(|rows| {
-        IndexError::Content(format!(
-            "held.lengths: expected 2 lengths, found {}",
-            rows.len()
-        ))
-    })?;
-    let classes = tables.u32s("held.classes")?.into_iter().map(class_id);
+    let Compared {
+        classes,
+        rows: [poses, others],
+        matrices: [ridged, total],
+    } = Compared::read("held", tables, dim)?;
     Ok(Some(HeldPoses {
         poses,
-        classes: classes.collect::<Result<_, _>>()?,
+        classes,
         others,
-        ridged: symmetric(tables, "held.ridged", dim)?,
-        total: symmetric(tables, "held.total", dim)?,
+        ridged,
+        total,
         reach,
         least_ticks,
     }))
+}
+
+fn activities(manifest: &Manifest, tables: &Tables) -> Result<Option<Activities>, IndexError> {
+    let Some(words) = &manifest.activities else {
+        return Ok(None);
+    };
+    let dim = Activities::statistics(RowLayout::of(manifest.bones));
+    let Compared {
+        classes,
+        rows: [means, others],
+        matrices: [ridged, total],
+    } = Compared::read("activities", tables, dim)?;
+    Ok(Some(Activities {
+        means,
+        classes,
+        others,
+        ridged,
+        total,
+        window_ticks: words.window_ticks,
+        share: words.share,
+    }))
+}
+
+/// The tables that [`compared`] writes.
+struct Compared {
+    classes: Vec<ClassId>,
+    rows: [Rows; 2],
+    matrices: [PackedSymmetric; 2],
+}
+
+impl Compared {
+    fn read(name: &str, tables: &Tables, dim: usize) -> Result<Self, IndexError> {
+        let lengths_name = format!("{name}.lengths");
+        let lengths = tables.u32s(&lengths_name)?;
+        let rows = tables.pieces(&format!("{name}.rows"), dim, &lengths, None)?;
+        let rows = <[Rows; 2]>::try_from(rows).map_err(|rows| {
+            let found = rows.len();
+            IndexError::Content(format!("{lengths_name}: expected 2 lengths, found {found}"))
+        })?;
+        let classes = tables.u32s(&format!("{name}.classes"))?;
+        Ok(Self {
+            classes: classes
+                .into_iter()
+                .map(class_id)
+                .collect::<Result<_, _>>()?,
+            rows,
+            matrices: [
+                symmetric(tables, &format!("{name}.ridged"), dim)?,
+                symmetric(tables, &format!("{name}.total"), dim)?,
+            ],
+        })
+    }
 }
 
 fn symmetric(tables: &Tables, name: &str, dim: usize) -> Result<PackedSymmetric, IndexError> {

@@ -1,7 +1,9 @@
 //! Feature rows in, detections in ticks out.
 
 use crate::decode::{Candidate, Decoder, TickDetection};
+use crate::features::RowLayout;
 
+use super::activities::ActivityDetector;
 use super::class_matches::{ClassMatches, MatchReplay};
 use super::early::{EarlyDetectionParams, OngoingMatch};
 use super::held::HoldDetector;
@@ -24,6 +26,7 @@ pub struct TemplateEngine {
     calibration: Option<Calibration>,
     stranger: Option<Box<PerformerAdaptation>>,
     held: Option<Box<HoldDetector>>,
+    activities: Option<Box<ActivityDetector>>,
 }
 
 /// The wider gate and what is known of the performer.
@@ -168,6 +171,10 @@ impl TemplateEngine {
             calibration: model.calibration_in_use(),
             stranger,
             held: (model.held.as_ref()).map(|held| Box::new(HoldDetector::new(held))),
+            activities: (model.activities.as_ref()).map(|activities| {
+                let layout = RowLayout::of(model.bones);
+                Box::new(ActivityDetector::new(activities, layout))
+            }),
             metric,
         };
         engine.apply_rules();
@@ -199,6 +206,9 @@ impl TemplateEngine {
         if let Some(held) = &mut self.held {
             held.reset();
         }
+        if let Some(activities) = &mut self.activities {
+            activities.reset();
+        }
         self.decoder.reset();
         self.recent.pushed = 0;
     }
@@ -217,6 +227,9 @@ impl TemplateEngine {
         if let Some(held) = &mut self.held {
             held.push(row);
         }
+        if let Some(activities) = &mut self.activities {
+            activities.push(row);
+        }
         let (near, negative) = match &mut self.matches {
             Matches::Computed(matcher) => {
                 self.metric.apply(row, &mut self.mapped);
@@ -232,7 +245,8 @@ impl TemplateEngine {
 
     fn found(&self) -> impl Iterator<Item = &TickDetection> {
         let held = self.held.as_ref().and_then(|held| held.found());
-        self.decoder.found().iter().chain(held)
+        let activities = self.activities.iter().flat_map(|a| a.found());
+        self.decoder.found().iter().chain(held).chain(activities)
     }
 
     /// Decides the ticks that are due, and reports.
@@ -268,8 +282,11 @@ impl TemplateEngine {
     pub fn underway(&self, params: &EarlyDetectionParams) -> Option<OngoingMatch> {
         let farthest = params.reach * self.threshold;
         let held = self.held.as_ref().and_then(|held| held.underway(farthest));
+        // What begins within an activity is reported at its end: one tentative motion at a time.
+        let activity = (self.activities.as_ref()).and_then(|a| a.underway(farthest));
+        let motion = |matcher: &ClassMatcher| matcher.underway(params, self.threshold).or(held);
         match &self.matches {
-            Matches::Computed(matcher) => matcher.underway(params, self.threshold).or(held),
+            Matches::Computed(matcher) => activity.or_else(|| motion(matcher)),
             Matches::Given(_) => None,
         }
     }
@@ -284,6 +301,9 @@ impl TemplateEngine {
         self.decode(true);
         if let Some(held) = &mut self.held {
             held.finish();
+        }
+        if let Some(activities) = &mut self.activities {
+            activities.finish();
         }
         self.reset();
         self.found()

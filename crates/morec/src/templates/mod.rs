@@ -1,5 +1,6 @@
 //! Matching a stream against labelled samples, elastically in time.
 
+mod activities;
 mod bank;
 mod class_matcher;
 mod class_matches;
@@ -17,6 +18,9 @@ mod stretches;
 mod trace;
 mod verifier;
 
+pub use activities::Activities;
+#[cfg(feature = "train")]
+pub(crate) use activities::{STEP_TICKS, windows_of};
 pub use bank::{Match, PartialMatch, TemplateBank};
 pub use class_matcher::ClassMatcher;
 pub use class_matches::{ClassMatches, ClassMatchesError, reach_of};

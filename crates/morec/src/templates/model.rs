@@ -5,7 +5,7 @@ use crate::decode::{CandidatePolicy, DecodeParams};
 use crate::features::{BoneSet, FeatureParams, RowLayout, Rows};
 
 use super::{
-    Calibration, Exemplars, HeldPoses, OperatingPoint, PackedSymmetric, PerformerKind,
+    Activities, Calibration, Exemplars, HeldPoses, OperatingPoint, PackedSymmetric, PerformerKind,
     StrangerGate, Verifier, threshold_at,
 };
 
@@ -51,6 +51,8 @@ pub struct TemplateModel {
     pub verifier: Option<Verifier>,
     /// Poses of classes that are held, which have no templates; none in older indexes, and of bodies.
     pub held: Option<HeldPoses>,
+    /// Windows of classes that are activities, which have no templates; none in older indexes.
+    pub activities: Option<Activities>,
     /// If template rows are whole multiples of a step, column by column: the steps. Files then hold bytes.
     pub step: Option<Vec<f32>>,
 }
@@ -125,6 +127,11 @@ impl TemplateModel {
             held.check(RowLayout::of(self.bones), self.classes.len())
                 .map_err(TemplateModelError::Value)?;
         }
+        if let Some(activities) = &self.activities {
+            activities
+                .check(RowLayout::of(self.bones), self.classes.len())
+                .map_err(TemplateModelError::Value)?;
+        }
         if !(self.threshold.is_finite() && self.threshold > 0.0) {
             let message = format!("the threshold must be above 0, found {}", self.threshold);
             return Err(TemplateModelError::Value(message));
@@ -143,16 +150,14 @@ impl TemplateModel {
             let value = values.find(|v| v.is_nan() || v.abs() > most)?;
             Some(format!("values must be within {most}, found {value}"))
         };
-        let held = self.held.as_ref();
+        let (held, activities) = (self.held.iter(), self.activities.iter());
         let rows = self.samples.iter().map(|sample| &sample.rows);
-        let mut rows = rows.chain(&self.negatives).chain(
-            held.into_iter()
-                .flat_map(|held| [&held.poses, &held.others]),
-        );
-        let mut tables = [&self.ridged, &self.total].into_iter().chain(
-            held.into_iter()
-                .flat_map(|held| [&held.ridged, &held.total]),
-        );
+        let rows = rows.chain(&self.negatives);
+        let rows = rows.chain(held.clone().flat_map(|h| [&h.poses, &h.others]));
+        let mut rows = rows.chain(activities.clone().flat_map(|a| [&a.means, &a.others]));
+        let tables = [&self.ridged, &self.total].into_iter();
+        let tables = tables.chain(held.flat_map(|h| [&h.ridged, &h.total]));
+        let mut tables = tables.chain(activities.flat_map(|a| [&a.ridged, &a.total]));
         let of_rows = rows.find_map(|rows| beyond(rows.values(), LARGEST));
         let of_metric = || tables.find_map(|table| beyond(table.packed(), LARGEST * LARGEST));
         of_rows.or_else(of_metric).map_or(Ok(()), Err)
@@ -193,6 +198,8 @@ impl TemplateModel {
         if alarms_per_minute.is_nan() || alarms_per_minute <= 0.0 {
             return None;
         }
+        let activities = self.activities.as_ref();
+        let activities = activities.map(|a| a.with_sensitivity(alarms_per_minute));
         if let Some(verifier) = &self.verifier {
             let bar = threshold_at(&verifier.operating, alarms_per_minute)?;
             let verifier = Some(Verifier {
@@ -201,6 +208,7 @@ impl TemplateModel {
             });
             return Some(Self {
                 verifier,
+                activities,
                 ..self.clone()
             });
         }
@@ -211,6 +219,7 @@ impl TemplateModel {
             threshold,
             class_thresholds: class_thresholds.collect(),
             stranger: (self.stranger.as_ref()).map(|s| s.with_sensitivity(alarms_per_minute)),
+            activities,
             ..self.clone()
         })
     }
@@ -297,6 +306,8 @@ impl TemplateModel {
                 .map(|v| restricted_verifier(v, share as f32, pick)),
             held: (self.held.as_ref())
                 .map(|held| held.restricted(RowLayout::of(self.bones), &keep)),
+            activities: (self.activities.as_ref())
+                .map(|activities| activities.restricted(RowLayout::of(self.bones), &keep)),
             total,
             step: self
                 .step

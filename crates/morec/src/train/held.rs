@@ -7,8 +7,8 @@ use crate::features::{BoneSet, FeatureParams, Profile, RowLayout, Rows};
 use crate::templates::{HeldPoses, Metric, distance_from};
 
 use super::params::TrainParams;
-use super::scatter::{covariance, ridged};
-use super::set::{StreamKind, TrainSample, TrainSet};
+use super::scatter::{covariance, ridged, within_groups};
+use super::set::{StreamKind, TrainSample, TrainSet, evenly};
 
 /// Bones of a hand that is held move slower than this together, weighted and a second; those of a gesture ten times as fast.
 const STILL: f32 = 1.0;
@@ -54,7 +54,7 @@ pub(super) fn learn(
         }
     }
     let total = covariance([&poses, &others].into_iter(), others.dim());
-    let ridged = ridged(&within(&poses, &classes), &total, RIDGE);
+    let ridged = ridged(&within_groups(&poses, &classes), &total, RIDGE);
     let total = crate::templates::PackedSymmetric::pack(&total);
     let mapped = Metric::new(&ridged, &total).apply_all(&poses);
     Some(HeldPoses {
@@ -110,49 +110,19 @@ fn others(
     held: &BTreeSet<ClassId>,
     layout: RowLayout,
 ) -> Rows {
-    let mut found: Vec<&[f32]> = Vec::new();
-    for stream in &set.streams {
-        if !stream.rest_is_background || stream.source == StreamKind::Everyday {
-            continue;
-        }
-        let mut known = vec![false; stream.rows.len()];
-        for span in &stream.known {
-            let stop = span.ticks.end.min(known.len());
-            known[span.ticks.start.min(stop)..stop].fill(true);
-        }
-        let rows = stream.rows.iter().zip(known);
-        found.extend(rows.filter(|(_, known)| !known).map(|(row, _)| row));
-    }
-    for sample in samples.iter().filter(|s| !held.contains(&s.class)) {
-        found.extend(sample.rows.iter());
-    }
+    let background = set.background().filter(|(_, stream)| {
+        // Made motion is a body's.
+        stream.source != StreamKind::Everyday
+    });
+    let parts = background.map(|(ticks, stream)| stream.rows.slice(ticks));
+    let of_others = samples.iter().filter(|s| !held.contains(&s.class));
+    let found: Vec<Rows> = parts.chain(of_others.map(|s| s.rows.clone())).collect();
+    let found: Vec<&[f32]> = found.iter().flat_map(Rows::iter).collect();
     let mut rows = Rows::new(layout.directions().len());
-    let kept = found.len().min(MOST_OTHERS);
-    for i in 0..kept {
-        rows.push(&found[i * found.len() / kept][layout.directions()]);
+    for row in evenly(&found, MOST_OTHERS) {
+        rows.push(&row[layout.directions()]);
     }
     rows
-}
-
-/// Covariance of the poses about the means of their classes.
-fn within(poses: &Rows, classes: &[ClassId]) -> nalgebra::DMatrix<f64> {
-    let mut centred = Rows::new(poses.dim());
-    let mut means = std::collections::BTreeMap::<ClassId, (Vec<f32>, f32)>::new();
-    for (pose, class) in poses.iter().zip(classes) {
-        let (sum, count) = means
-            .entry(*class)
-            .or_insert_with(|| (vec![0.0; poses.dim()], 0.0));
-        sum.iter_mut()
-            .zip(pose)
-            .for_each(|(sum, value)| *sum += value);
-        *count += 1.0;
-    }
-    for (pose, class) in poses.iter().zip(classes) {
-        let (sum, count) = &means[class];
-        let row: Vec<f32> = pose.iter().zip(sum).map(|(v, s)| v - s / count).collect();
-        centred.push(&row);
-    }
-    covariance(std::iter::once(&centred), poses.dim())
 }
 
 /// Nine in ten poses are nearer to those of other samples of their class; unbounded where no class has two samples.

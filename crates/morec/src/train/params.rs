@@ -1,5 +1,7 @@
 //! The parameters of training.
 
+use std::collections::BTreeMap;
+
 use crate::decode::DecodeParams;
 use crate::features::FeatureParams;
 
@@ -85,6 +87,22 @@ pub struct TrainParams {
     pub compact: bool,
     /// Bounds of the score above which a candidate is accepted.
     pub bar_range: (f64, f64),
+    /// True if classes that go on are recognised as activities.
+    #[serde(default)]
+    pub activities: bool,
+    /// Kinds of classes by name, for those whose samples do not say it.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub kinds: BTreeMap<String, MotionKind>,
+}
+
+/// How a class is recognised.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum MotionKind {
+    /// By templates of its samples: it has a beginning and an end.
+    Gesture,
+    /// By what a window of a few seconds shows: it goes on.
+    Activity,
 }
 
 /// Parameters of the wider gate, see [`StrangerGate`](crate::templates::StrangerGate).
@@ -141,6 +159,7 @@ impl Default for TrainParams {
             calibrate: true,
             verify: true,
             compact: true,
+            activities: true,
             stranger: StrangerParams::default(),
             ..Self::reference()
         }
@@ -148,6 +167,15 @@ impl Default for TrainParams {
 }
 
 impl TrainParams {
+    /// Says which classes are activities and which gestures, whatever their samples say.
+    pub fn set_kinds(&mut self, activities: &[String], gestures: &[String]) {
+        let named = |names: &[String], kind| -> Vec<(String, MotionKind)> {
+            names.iter().map(|name| (name.clone(), kind)).collect()
+        };
+        self.kinds.extend(named(activities, MotionKind::Activity));
+        self.kinds.extend(named(gestures, MotionKind::Gesture));
+    }
+
     /// The values of the reference prototype.
     pub fn reference() -> Self {
         Self {
@@ -188,6 +216,8 @@ impl TrainParams {
             verifier_ridge: 0.03,
             compact: false,
             bar_range: (0.1, 0.3),
+            activities: false,
+            kinds: BTreeMap::new(),
         }
     }
 }

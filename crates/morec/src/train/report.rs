@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::classes::ClassInfo;
+use crate::classes::{ClassId, ClassInfo};
 use crate::features::Profile;
 use crate::templates::OperatingPoint;
 
@@ -12,6 +12,16 @@ use super::notes::class_notes;
 use super::set::{StreamKind, TrainSample, TrainStream};
 use super::templates::TrainedTemplates;
 use super::thesis::SvrdmReport;
+
+/// Names of classes, each once.
+fn class_names(of: &[ClassId], classes: &[ClassInfo]) -> String {
+    let of: BTreeSet<ClassId> = of.iter().copied().collect();
+    let names: Vec<&str> = of
+        .iter()
+        .map(|c| classes[c.index()].name.as_str())
+        .collect();
+    names.join(", ")
+}
 
 /// Report of a training run.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -89,16 +99,17 @@ impl TrainingReport {
             ));
         }
         if let Some(held) = &trained.model.held {
-            let mut classes = held.classes.clone();
-            classes.sort_unstable();
-            classes.dedup();
-            let names = classes
-                .iter()
-                .map(|class| trained.model.classes[class.index()].name.as_str());
             notes.push(format!(
                 "recognised by a pose that is held for {:.1} s or longer, and reported when it is left: {}",
                 held.least_ticks as f64 / tick_hz,
-                names.collect::<Vec<_>>().join(", ")
+                class_names(&held.classes, &classes)
+            ));
+        }
+        if let Some(activities) = &trained.model.activities {
+            notes.push(format!(
+                "recognised as an activity, by what {:.1} s of it show, and reported when it ends: {}",
+                activities.window_ticks as f64 / tick_hz,
+                class_names(&activities.classes, &classes)
             ));
         }
         if !prepared.lacking.is_empty() {

@@ -1,5 +1,7 @@
 //! Scatter of samples within a class, and of rows at all.
 
+use std::collections::BTreeMap;
+
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
@@ -101,4 +103,33 @@ pub fn ridged(within: &DMatrix<f64>, total: &DMatrix<f64>, rho: f64) -> PackedSy
     // A stream that never moves has no variance; any positive ridge then gives a usable metric.
     let ridge = (rho * total.trace() / dim.max(1) as f64).max(1e-9);
     PackedSymmetric::pack(&(within + DMatrix::identity(dim, dim) * ridge))
+}
+
+/// Covariance of rows about the means of their groups.
+pub fn within_groups<G: Ord + Copy>(rows: &Rows, groups: &[G]) -> DMatrix<f64> {
+    let means = means_of_groups(rows, groups);
+    let mut centred = Rows::new(rows.dim());
+    for (row, group) in rows.iter().zip(groups) {
+        let apart: Vec<f32> = row.iter().zip(&means[group]).map(|(v, m)| v - m).collect();
+        centred.push(&apart);
+    }
+    covariance(std::iter::once(&centred), rows.dim())
+}
+
+/// The mean row of each group.
+pub fn means_of_groups<G: Ord + Copy>(rows: &Rows, groups: &[G]) -> BTreeMap<G, Vec<f32>> {
+    let mut means = BTreeMap::<G, (Vec<f32>, f32)>::new();
+    for (row, group) in rows.iter().zip(groups) {
+        let start = || (vec![0.0; rows.dim()], 0.0);
+        let (sum, count) = means.entry(*group).or_insert_with(start);
+        sum.iter_mut()
+            .zip(row)
+            .for_each(|(sum, value)| *sum += value);
+        *count += 1.0;
+    }
+    let mean = |(sum, count): (Vec<f32>, f32)| sum.iter().map(|sum| sum / count).collect();
+    means
+        .into_iter()
+        .map(|(group, sum)| (group, mean(sum)))
+        .collect()
 }

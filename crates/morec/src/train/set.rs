@@ -54,6 +54,24 @@ impl TrainStream {
             .iter()
             .any(|k| overlap_share(ticks, &k.ticks) > share)
     }
+
+    /// What lies between the known stretches.
+    pub fn unknown(&self) -> Vec<Range<usize>> {
+        let mut known: Vec<&Range<usize>> = self.known.iter().map(|k| &k.ticks).collect();
+        known.sort_by_key(|ticks| ticks.start);
+        let mut parts = Vec::new();
+        let mut free = 0;
+        for ticks in known {
+            if free < ticks.start.min(self.rows.len()) {
+                parts.push(free..ticks.start.min(self.rows.len()));
+            }
+            free = free.max(ticks.end);
+        }
+        if free < self.rows.len() {
+            parts.push(free..self.rows.len());
+        }
+        parts
+    }
 }
 
 /// A labelled sample cut out of its stream.
@@ -113,6 +131,33 @@ impl TrainSet {
         }
         samples
     }
+
+    /// The set without the labels of some classes.
+    #[must_use]
+    pub fn without(&self, class: impl Fn(ClassId) -> bool) -> Self {
+        let mut set = self.clone();
+        for stream in &mut set.streams {
+            stream
+                .known
+                .retain(|known| !known.class.is_some_and(&class));
+        }
+        set
+    }
+
+    /// The parts that hold none of the classes, in ticks of their streams.
+    pub fn background(&self) -> impl Iterator<Item = (Range<usize>, &TrainStream)> {
+        let streams = self.streams.iter().filter(|s| s.rest_is_background);
+        streams.flat_map(|stream| {
+            let unknown = stream.unknown().into_iter();
+            unknown.map(move |ticks| (ticks, stream))
+        })
+    }
+}
+
+/// At most `most` of `all`, evenly spaced.
+pub fn evenly<T>(all: &[T], most: usize) -> impl Iterator<Item = &T> {
+    let count = all.len().min(most);
+    (0..count).map(move |i| &all[i * all.len() / count])
 }
 
 /// Ticks in both ranges.

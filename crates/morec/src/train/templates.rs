@@ -15,6 +15,7 @@ use crate::templates::{
     mean_and_spread,
 };
 
+use super::activities;
 use super::alike::{AlikeClasses, alike_classes};
 use super::examples::{self, CandidateFinder, LeaveOneOutView, VerifierExample};
 use super::faster::{faster_copies, without_early};
@@ -142,11 +143,19 @@ pub fn train(
     let metric = Metric::new(&ridged, &total);
     let classes = class_infos(set, &samples);
     let held = held::learn(set, &samples, bones, params);
-    let is_held = |sample: &TrainSample| {
-        let held = held.as_ref().map(|held| &held.classes);
-        held.is_some_and(|classes| classes.contains(&sample.class))
+    let activities = activities::learn(set, &samples, bones, params);
+    let has_templates = |sample: &TrainSample| {
+        let held = held.as_ref();
+        let is_held = held.is_some_and(|held| held.classes.contains(&sample.class));
+        let activities = activities.as_ref();
+        !is_held && !activities.is_some_and(|a| a.holds(sample.class))
     };
-    let samples = samples.into_iter().filter(|s| !is_held(s)).collect();
+    let samples = samples.into_iter().filter(has_templates).collect();
+    // To gestures, an activity is motion like any other that is none of them.
+    let unlabelled = activities
+        .as_ref()
+        .map(|a| set.without(|class| a.holds(class)));
+    let set = unlabelled.as_ref().unwrap_or(set);
     let (samples, quiet) = moving(samples, &metric, params);
     let mut samples = templates_of(samples, set.classes.len(), params.max_templates);
     let params = &of_profile(params, bones, &samples, &metric);
@@ -251,6 +260,7 @@ pub fn train(
         stranger: stranger.filter(|_| verifier.is_none()),
         verifier,
         held,
+        activities,
         step: None,
     };
     let model = if params.compact {

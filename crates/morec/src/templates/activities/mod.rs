@@ -1,0 +1,130 @@
+//! Activities: motions that go on, as walking or an exercise, without a beginning and an end that matter.
+//!
+//! A template says in which order a motion's poses come; an activity can be met anywhere in its cycle, and each repetition at its own
+//! pace. What keeps are the statistics of a window of a few seconds: which poses, how far about them, how fast. Ten times a second a
+//! window is compared with the mean window of each class (linear discriminants: a within-class metric and distances from means; Hastie,
+//! Tibshirani and Friedman, *The Elements of Statistical Learning*, §4.3) and with the nearest window of anything else, and the best path
+//! through classes and *none of them* is decoded with a cost for every change and a fixed lag (Viterbi 1967).
+
+mod detector;
+mod windows;
+
+use crate::classes::ClassId;
+use crate::features::{RowLayout, Rows};
+
+use super::PackedSymmetric;
+
+pub(super) use detector::ActivityDetector;
+pub(crate) use windows::{STEP_TICKS, windows_of};
+
+/// An activity of fewer windows than this is none.
+const LEAST_WINDOWS: usize = 8;
+/// Shares of others' distance for other rates of false alarms follow the rate with this exponent: on motion of other clips, 1.1 times as
+/// wide in squared distance raised five times as many reports.
+const SHARE_EXPONENT: f64 = 0.05;
+/// The rate, a minute, that a share of 1 stands for.
+const USUAL_RATE: f64 = 0.3;
+
+/// What windows of activities are compared with, before the metric.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Activities {
+    /// Mean windows, a row of `9 b + 8` statistics each.
+    pub means: Rows,
+    /// The class of each; a class has one, and another of mirrored copies.
+    pub classes: Vec<ClassId>,
+    /// Windows of anything else.
+    pub others: Rows,
+    /// As [`TemplateModel::ridged`](super::TemplateModel::ridged), of windows.
+    pub ridged: PackedSymmetric,
+    /// As [`TemplateModel::total`](super::TemplateModel::total), of windows.
+    pub total: PackedSymmetric,
+    /// Ticks of a window, odd.
+    pub window_ticks: usize,
+    /// A window is of a class while it is nearer to it than this share of its distance from anything else.
+    pub share: f32,
+}
+
+impl Activities {
+    /// An activity of fewer ticks than this is none.
+    pub const LEAST_TICKS: usize = LEAST_WINDOWS * STEP_TICKS;
+
+    /// Longest window, in ticks.
+    const MOST_TICKS: usize = 1 << 12;
+
+    /// Checks that all parts fit together, for rows of `layout` and `classes` classes.
+    ///
+    /// # Errors
+    /// A sentence about the first part that does not fit.
+    pub fn check(&self, layout: RowLayout, classes: usize) -> Result<(), String> {
+        let expected = Self::statistics(layout);
+        let widths = [
+            self.means.dim(),
+            self.others.dim(),
+            self.ridged.dim(),
+            self.total.dim(),
+        ];
+        if let Some(found) = widths.iter().find(|width| **width != expected) {
+            return Err(format!(
+                "windows of activities have {found} values, the bones give {expected}"
+            ));
+        }
+        if self.means.is_empty() || self.means.len() != self.classes.len() {
+            return Err(format!(
+                "{} activities, classes for {}",
+                self.means.len(),
+                self.classes.len()
+            ));
+        }
+        if let Some(class) = self.classes.iter().find(|class| class.index() >= classes) {
+            return Err(format!("an activity of class {}, of {classes}", class.0));
+        }
+        if self.others.is_empty() {
+            return Err("activities, but no window of anything else".to_owned());
+        }
+        if !(1..=Self::MOST_TICKS).contains(&self.window_ticks) {
+            return Err(format!(
+                "a window of activities must be 1 to {} ticks long, found {}",
+                Self::MOST_TICKS,
+                self.window_ticks
+            ));
+        }
+        if !(self.share.is_finite() && self.share > 0.0) {
+            return Err(format!(
+                "the share of activities must be above 0, found {}",
+                self.share
+            ));
+        }
+        Ok(())
+    }
+
+    /// Statistics of a window over rows of `layout`.
+    pub fn statistics(layout: RowLayout) -> usize {
+        windows::statistics(layout)
+    }
+
+    /// True if `class` is an activity.
+    pub fn holds(&self, class: ClassId) -> bool {
+        self.classes.contains(&class)
+    }
+
+    /// For a rate of false alarms a minute.
+    pub(super) fn with_sensitivity(&self, alarms_per_minute: f64) -> Self {
+        let share = (alarms_per_minute / USUAL_RATE).powf(SHARE_EXPONENT) as f32;
+        Self {
+            share,
+            ..self.clone()
+        }
+    }
+
+    /// The part for rows that keep the columns `keep` of rows of `layout`.
+    pub(super) fn restricted(&self, layout: RowLayout, keep: &[usize]) -> Self {
+        let kept = windows::kept_statistics(layout, keep);
+        Self {
+            means: self.means.columns(&kept),
+            others: self.others.columns(&kept),
+            ridged: self.ridged.restricted(&kept),
+            total: self.total.restricted(&kept),
+            ..self.clone()
+        }
+    }
+}

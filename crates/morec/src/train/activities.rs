@@ -1,0 +1,299 @@
+//! Which classes are activities, and what windows they are known by.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::classes::ClassId;
+use crate::features::{BoneSet, FeatureParams, Profile, RowLayout, Rows};
+use crate::templates::{
+    Activities, Metric, PackedSymmetric, STEP_TICKS, squared_distance, windows_of,
+};
+
+use super::params::{MotionKind, TrainParams};
+use super::scatter::{covariance, means_of_groups, ridged, within_groups};
+use super::set::{StreamKind, TrainSample, TrainSet, evenly};
+
+/// Length of a window, seconds; 2 to 3 are alike.
+const WINDOW_SECS: f64 = 2.5;
+/// A class whose longest sample lasts this long goes on.
+const LONG_SECS: f64 = 6.0;
+/// One whose longest sample lasts this long does, if its samples are [`EVEN`].
+const EVEN_SECS: f64 = 4.0;
+/// The second half of an even sample is like its first: the squared difference of their mean directions is below this share of the
+/// directions' variance.
+const EVEN: f64 = 0.45;
+/// Windows of anything else at most, of made everyday motion and of all other sources each.
+const MOST_OTHERS: usize = 500;
+/// Fewer windows of anything else say little of what is none of the classes.
+const LEAST_OTHERS: usize = 50;
+/// What nobody named as background and lies nearer to a class than this share of the class's own windows is probably the class.
+const OWN_SHARE: f64 = 0.9;
+
+/// The activities of `samples`; `None` where there is none, and nothing to tell them from. O(windows · statistics²).
+pub(super) fn learn(
+    set: &TrainSet,
+    samples: &[TrainSample],
+    bones: BoneSet,
+    params: &TrainParams,
+) -> Option<Activities> {
+    if !params.activities || Profile::of(bones) != Profile::Body {
+        return None;
+    }
+    let layout = RowLayout::of(bones);
+    let classes = activity_classes(set, samples, layout, params);
+    if classes.is_empty() {
+        return None;
+    }
+    let window_ticks = (WINDOW_SECS * params.features.tick_hz()).round() as usize | 1;
+    let windows = |rows: &Rows| windows_of(rows, layout, window_ticks);
+    let dim = Activities::statistics(layout);
+    // The mean of a motion and its mirror image would be neither.
+    let (mut shown, mut groups) = (Rows::new(dim), Vec::new());
+    for sample in samples.iter().filter(|s| classes.contains(&s.class)) {
+        for window in windows(&sample.rows).iter() {
+            shown.push(window);
+            groups.push((sample.class, set.streams[sample.stream].is_copy));
+        }
+    }
+    let total = covariance(std::iter::once(&shown), dim);
+    let ridged = ridged(&within_groups(&shown, &groups), &total, params.rho);
+    let total = PackedSymmetric::pack(&total);
+    let metric = Metric::new(&ridged, &total);
+    let means = means_of_groups(&shown, &groups);
+    let own = OwnWindows::new(&metric, &means, &shown, &groups);
+    let others = others(set, samples, &classes, windows, &own);
+    (others.len() >= LEAST_OTHERS).then(|| Activities {
+        means: Rows::from_values(dim, means.values().flatten().copied().collect()),
+        classes: means.keys().map(|(class, _)| *class).collect(),
+        others,
+        ridged,
+        total,
+        window_ticks,
+        share: 1.0,
+    })
+}
+
+/// Classes that go on, by what is said of them or else by their samples.
+fn activity_classes(
+    set: &TrainSet,
+    samples: &[TrainSample],
+    layout: RowLayout,
+    params: &TrainParams,
+) -> BTreeSet<ClassId> {
+    let goes_on = |class: &ClassId| {
+        let name = &set.classes[class.index()];
+        if let Some(kind) = params.kinds.get(name) {
+            return *kind == MotionKind::Activity;
+        }
+        let of_class = samples.iter().filter(|s| s.class == *class);
+        let shown: Vec<&TrainSample> = of_class
+            .filter(|s| !set.streams[s.stream].is_copy)
+            .collect();
+        keep_on(&shown, layout, &params.features)
+    };
+    let taught: BTreeSet<ClassId> = samples.iter().map(|s| s.class).collect();
+    taught.into_iter().filter(goes_on).collect()
+}
+
+/// True if samples of a class are those of an activity: long, or rather long and even.
+fn keep_on(samples: &[&TrainSample], layout: RowLayout, features: &FeatureParams) -> bool {
+    let longest = samples.iter().map(|s| s.rows.len()).max().unwrap_or(0);
+    let secs = longest as f64 / features.tick_hz();
+    let mut uneven: Vec<f64> = samples
+        .iter()
+        .map(|s| unevenness(&s.rows, layout))
+        .collect();
+    uneven.sort_by(f64::total_cmp);
+    let is_even = uneven.get(uneven.len() / 2).is_some_and(|h| *h < EVEN);
+    secs >= LONG_SECS || (secs >= EVEN_SECS && is_even)
+}
+
+/// Squared difference of the mean directions of the first half and the second, as a share of the directions' variance.
+fn unevenness(rows: &Rows, layout: RowLayout) -> f64 {
+    let half = rows.len() / 2;
+    let mean = |ticks: std::ops::Range<usize>, column: usize| {
+        let count = ticks.len().max(1) as f64;
+        let values = ticks.map(|t| f64::from(rows.row(t)[column]));
+        values.sum::<f64>() / count
+    };
+    let (mut apart, mut variance) = (0.0, 1e-9);
+    for column in layout.directions() {
+        let all = mean(0..rows.len(), column);
+        let square = |row: &[f32]| (f64::from(row[column]) - all).powi(2);
+        variance += rows.iter().map(square).sum::<f64>() / rows.len() as f64;
+        apart += (mean(0..half, column) - mean(half..rows.len(), column)).powi(2);
+    }
+    apart / variance
+}
+
+/// How near the windows of each group are to its mean.
+struct OwnWindows<'a> {
+    metric: &'a Metric,
+    /// Mapped means, and the squared distance within which most of the group's windows are.
+    reaches: Vec<(Vec<f32>, f32)>,
+}
+
+impl<'a> OwnWindows<'a> {
+    fn new<G: Ord + Copy>(
+        metric: &'a Metric,
+        means: &BTreeMap<G, Vec<f32>>,
+        shown: &Rows,
+        groups: &[G],
+    ) -> Self {
+        let mapped = metric.apply_all(shown);
+        let reach = |(group, mean): (&G, &Vec<f32>)| {
+            let mut at = vec![0.0; metric.dim()];
+            metric.apply(mean, &mut at);
+            let of_group = mapped.iter().zip(groups).filter(|(_, g)| *g == group);
+            let mut distances: Vec<f32> = of_group
+                .map(|(window, _)| squared_distance(window, &at))
+                .collect();
+            distances.sort_by(f32::total_cmp);
+            let most = (distances.len() as f64 * OWN_SHARE) as usize;
+            let reach = distances[most.min(distances.len() - 1)];
+            (at, reach)
+        };
+        Self {
+            metric,
+            reaches: means.iter().map(reach).collect(),
+        }
+    }
+
+    fn includes(&self, window: &[f32]) -> bool {
+        let mut mapped = vec![0.0; self.metric.dim()];
+        self.metric.apply(window, &mut mapped);
+        let near = |(mean, reach): &(Vec<f32>, f32)| squared_distance(&mapped, mean) < *reach;
+        self.reaches.iter().any(near)
+    }
+}
+
+/// Windows of background, of unlabelled parts and of samples of other classes.
+fn others(
+    set: &TrainSet,
+    samples: &[TrainSample],
+    activities: &BTreeSet<ClassId>,
+    windows: impl Fn(&Rows) -> Rows,
+    own: &OwnWindows<'_>,
+) -> Rows {
+    let (mut real, mut made) = (Vec::new(), Vec::new());
+    for (ticks, stream) in set
+        .background()
+        .filter(|(ticks, _)| ticks.len() >= STEP_TICKS)
+    {
+        let named = stream.source == StreamKind::Background;
+        let into = match stream.source {
+            StreamKind::Everyday => &mut made,
+            _ => &mut real,
+        };
+        let found = windows(&stream.rows.slice(ticks));
+        let found = found.iter().filter(|window| named || !own.includes(window));
+        into.extend(found.map(<[f32]>::to_vec));
+    }
+    for sample in samples.iter().filter(|s| !activities.contains(&s.class)) {
+        real.extend(windows(&sample.rows).iter().map(<[f32]>::to_vec));
+    }
+    let kept = evenly(&real, MOST_OTHERS).chain(evenly(&made, MOST_OTHERS));
+    Rows::from_values(own.metric.dim(), kept.flatten().copied().collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::train::{LabelledSpan, TrainStream};
+
+    const TICK_SECS: f64 = 1.0 / 30.0;
+
+    fn layout() -> RowLayout {
+        RowLayout::of(BoneSet::BODY)
+    }
+
+    /// One bone swings, at any pace; another points the way of the motion.
+    fn swing(secs: f64, hz: f64, way: f32) -> Rows {
+        let mut rows = Rows::new(layout().dim());
+        for tick in 0..(secs / TICK_SECS) as usize {
+            let mut row = vec![0.0; layout().dim()];
+            row[0] = (std::f64::consts::TAU * hz * tick as f64 * TICK_SECS).sin() as f32;
+            row[4] = way;
+            rows.push(&row);
+        }
+        rows
+    }
+
+    /// One way up and down again.
+    fn raise(secs: f64) -> Rows {
+        let mut rows = Rows::new(layout().dim());
+        let ticks = (secs / TICK_SECS) as usize;
+        for tick in 0..ticks {
+            let mut row = vec![0.0; layout().dim()];
+            row[7] = tick as f32 / ticks as f32;
+            rows.push(&row);
+        }
+        rows
+    }
+
+    fn stream(rows: Rows, class: Option<u16>) -> TrainStream {
+        let known = class.map(|class| LabelledSpan {
+            ticks: 0..rows.len(),
+            class: Some(ClassId(class)),
+        });
+        TrainStream {
+            name: String::new(),
+            group: String::new(),
+            person: None,
+            source: match class {
+                Some(_) => StreamKind::Labelled,
+                None => StreamKind::Background,
+            },
+            rest_is_background: true,
+            is_copy: false,
+            known: known.into_iter().collect(),
+            rows,
+        }
+    }
+
+    fn learned(params: &TrainParams) -> Option<Activities> {
+        let classes = ["saw", "raise", "pump", "slow raise"];
+        let set = TrainSet {
+            classes: classes.map(str::to_owned).to_vec(),
+            streams: vec![
+                stream(swing(5.0, 1.0, 1.0), Some(0)),
+                stream(swing(4.5, 1.4, 1.0), Some(0)),
+                stream(raise(1.5), Some(1)),
+                stream(raise(1.2), Some(1)),
+                stream(swing(8.0, 0.8, -1.0), Some(2)),
+                stream(raise(5.0), Some(3)),
+                stream(swing(30.0, 0.1, 0.0), None),
+            ],
+        };
+        learn(&set, &set.samples(), BoneSet::BODY, params)
+    }
+
+    #[test]
+    fn what_goes_on_is_an_activity_and_what_was_said_holds() {
+        let names = |params: &TrainParams| -> Vec<u16> {
+            let found = learned(params);
+            found.map_or_else(Vec::new, |a| a.classes.iter().map(|c| c.0).collect())
+        };
+        let mut params = TrainParams::default();
+        assert_eq!(names(&params), [0, 2]);
+        params.set_kinds(&["slow raise".to_owned()], &["saw".to_owned()]);
+        assert_eq!(names(&params), [2, 3]);
+        params.activities = false;
+        assert_eq!(names(&params), [] as [u16; 0]);
+    }
+
+    #[test]
+    fn another_pace_is_the_same_activity_and_other_motion_is_none() {
+        let activities = learned(&TrainParams::default()).unwrap();
+        let nearest = |rows: &Rows| {
+            let shares = activities.shares(layout(), rows);
+            shares
+                .into_iter()
+                .min_by(|a, b| a.1.total_cmp(&b.1))
+                .unwrap()
+        };
+        let (class, share) = nearest(&swing(6.0, 1.2, 0.9));
+        assert!(class == ClassId(0) && share < 0.7, "{share}");
+        assert!(nearest(&swing(6.0, 0.1, 0.05)).1 > 1.0);
+        assert!(nearest(&raise(1.4)).1 > 1.0);
+    }
+}
