@@ -88,6 +88,7 @@ impl ClassMatcher {
                     distance: found.distance,
                     age: found.age,
                     spread: found.spread,
+                    rest_share: found.rest_share,
                 };
             }
         }

@@ -247,11 +247,13 @@ impl TemplateEngine {
             self.decoder.decide();
         }
         let was_open = self.is_open();
+        let wide = self.stranger.as_ref().filter(|s| s.level.is_open());
+        let calibration = wide.and_then(|s| s.gate.calibration).or(self.calibration);
         for detection in self.decoder.report(ended) {
             if let Some(stranger) = &mut self.stranger {
                 stranger.note(detection);
             }
-            *detection = calibrated(self.calibration, *detection);
+            *detection = calibrated(calibration, *detection);
         }
         if self.is_open() != was_open {
             self.apply_rules();
@@ -294,7 +296,7 @@ impl TemplateEngine {
 fn calibrated(calibration: Option<Calibration>, found: TickDetection) -> TickDetection {
     match calibration {
         Some(calibration) => TickDetection {
-            score: calibration.probability(found.score, found.separation),
+            score: calibration.probability(found.score, found.separation, found.rest_share),
             ..found
         },
         None => found,
