@@ -55,6 +55,11 @@ impl ClassMatcher {
         self.gate = gate;
     }
 
+    /// See [`Stretches::set_noise_gain`].
+    pub fn set_noise_gain(&mut self, gain: f32) {
+        self.stretches.set_noise_gain(gain);
+    }
+
     /// Takes the next tick's row, mapped. O(template rows · d), no allocation.
     pub fn step(&mut self, mapped: &[f32]) {
         self.matcher.step(mapped);

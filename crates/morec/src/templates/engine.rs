@@ -211,6 +211,13 @@ impl TemplateEngine {
         self.apply_rules();
     }
 
+    /// Says how much of noise the rows that come hold: [`FeatureStream::noise_gain`](crate::features::FeatureStream::noise_gain).
+    pub fn set_noise_gain(&mut self, gain: f32) {
+        if let Matches::Computed(matcher) = &mut self.matches {
+            matcher.set_noise_gain(gain);
+        }
+    }
+
     /// Takes the next tick's row and returns the detections that are now certain. No allocation.
     pub fn push(&mut self, row: &[f32]) -> impl Iterator<Item = &TickDetection> {
         self.recent.push(row);
