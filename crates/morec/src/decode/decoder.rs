@@ -28,6 +28,7 @@ struct Ending {
     score: f64,
     spread: f32,
     separation: f32,
+    rest_share: f32,
 }
 
 /// The last report of a class.
@@ -78,6 +79,7 @@ pub struct ScoredCandidate {
     /// Its score, above 0 and to 1.
     pub score: f64,
     spread: f32,
+    rest_share: f32,
 }
 
 impl Clone for Decoder {
@@ -193,7 +195,12 @@ impl Decoder {
         let tick = self.decided;
         self.candidates.clear();
         for class in 0..self.classes {
-            let ClassDistance { age, spread, .. } = self.near(tick, class);
+            let ClassDistance {
+                age,
+                spread,
+                rest_share,
+                ..
+            } = self.near(tick, class);
             let start = tick - age as i64;
             if start < self.reported - self.slack(age)
                 || self.repeats(class, start)
@@ -211,6 +218,7 @@ impl Decoder {
                     candidate,
                     score,
                     spread,
+                    rest_share,
                 });
             }
         }
@@ -230,6 +238,7 @@ impl Decoder {
                 candidate,
                 score,
                 spread,
+                rest_share,
             } = *scored;
             let Candidate { class, age, .. } = candidate;
             if verifies && score <= 0.0 {
@@ -245,6 +254,7 @@ impl Decoder {
                         score,
                         spread,
                         separation: candidate.separation(),
+                        rest_share,
                     });
                     cell = PathCell {
                         total,
@@ -432,6 +442,7 @@ impl Decoder {
                 stop: tick,
                 score: ending.score,
                 separation: ending.separation,
+                rest_share: ending.rest_share,
             });
             // What begins before the oldest tick that is kept has nothing before it that could still be reported.
             tick = if start > oldest {

@@ -23,6 +23,8 @@ pub struct ClassDistance {
     pub age: usize,
     /// Spread of the matched stretch about its mean.
     pub spread: f32,
+    /// Distance as a share of that of a body at rest: see [`NormalizedMatch`](crate::templates::NormalizedMatch).
+    pub rest_share: f32,
 }
 
 impl ClassDistance {
@@ -31,6 +33,7 @@ impl ClassDistance {
         distance: FAR,
         age: 0,
         spread: 0.0,
+        rest_share: 0.0,
     };
 }
 
@@ -75,6 +78,8 @@ pub struct TickDetection {
     /// (as near) to 1 (e times as far, or farther), as the nearest neighbour distance ratio of Mendes Júnior et al., *Nearest neighbors
     /// distance ratio open-set classifier*, 2017.
     pub separation: f32,
+    /// See [`ClassDistance::rest_share`].
+    pub rest_share: f32,
 }
 
 /// A stretch of fewer ticks than this after its first is no motion.

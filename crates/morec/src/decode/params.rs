@@ -44,6 +44,10 @@ pub struct DecodeParams {
     /// standing still alone.
     #[serde(default)]
     pub rest_spread: f32,
+    /// At most this share of a distance is taken for noise, which is measured in the stream: see
+    /// [`Matcher`](crate::templates::Matcher). 0: none is.
+    #[serde(default)]
+    pub noise_share: f32,
     /// True if a candidate may reach only [`overlap_ticks`](Self::overlap_ticks) into the last detection of its own
     /// class, so that a motion out and the same motion out and back are not two detections.
     #[serde(default)]
@@ -91,6 +95,7 @@ impl Default for DecodeParams {
             rest_gate: 0.60,
             rest_gate_verified: 0.85,
             rest_spread: 0.5,
+            noise_share: 0.5,
             once: true,
             rival_share: 1.05,
             rival_ticks: 15,
@@ -118,6 +123,7 @@ impl DecodeParams {
             rest_gate: 0.0,
             rest_gate_verified: 0.0,
             rest_spread: 0.0,
+            noise_share: 0.0,
             once: false,
             rival_share: 0.0,
             rival_ticks: 0,
@@ -173,6 +179,7 @@ impl DecodeParams {
             ("rest_gate", self.rest_gate, 2.0),
             ("rest_gate_verified", self.rest_gate_verified, 2.0),
             ("rest_spread", self.rest_spread, 1.0),
+            ("noise_share", self.noise_share, 0.99),
             ("rival_share", self.rival_share, 2.0),
             ("rival_overlap", self.rival_overlap, 1.0),
             ("tail_spread", self.tail_spread, 1.0),

@@ -20,6 +20,7 @@ fn spans(distances: &[f32], negatives: &[f32], params: &DecodeParams) -> Vec<(i6
             distance: *d,
             age: t.min(3),
             spread: 1.0,
+            rest_share: 0.0,
         }];
         decoder.push(&near, negative);
         found.extend(decided(&mut decoder, false));
@@ -86,6 +87,7 @@ fn reports(ticks: &[Vec<(f32, usize)>], params: &DecodeParams) -> Vec<(u16, i64,
                 distance,
                 age: age.min(t),
                 spread: 1.0,
+                rest_share: 0.0,
             })
             .collect();
         decoder.push(&near, FAR);
@@ -205,6 +207,7 @@ fn the_last_partial_repetition_is_not_one_more() {
                         distance: 0.5 + (t - end as i64).abs() as f32,
                         age: 10,
                         spread,
+                        rest_share: 0.0,
                     };
                 }
             }
@@ -253,6 +256,7 @@ fn classes_may_have_thresholds_of_their_own() {
             distance: d,
             age: 4,
             spread: 1.0,
+            rest_share: 0.0,
         }; 2];
         decoder.push(&near, FAR);
         let now = decided(&mut decoder, false);

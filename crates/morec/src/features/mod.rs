@@ -34,6 +34,7 @@ pub use hand::{Hand, HandPoints, PalmFrame};
 pub use key_pose::KeyPose;
 pub use layout::RowLayout;
 pub use mirror::{mirrored_rows, opposite_bone, reflected_direction};
+pub(crate) use noise::USUAL_NOISE_GAIN;
 pub use observe::{Observation, Observer};
 pub use of_clip::{all_bones_of_clip, bones_of_clip, for_each_pose, rows_of_clip, shows_hips};
 pub use params::{FeatureParams, HeadingLine};

@@ -36,6 +36,12 @@ const STEPS: [(f64, Filter); 3] = [
     ),
 ];
 
+/// [`FeatureStream::noise_gain`](super::FeatureStream::noise_gain) under each filter, the shortest first. Of white noise on the frames of a
+/// camera of 30 Hz for the first two, as faster sources of little noise leave next to none under these; at 120 Hz for the others.
+pub(super) const NOISE_GAINS: [f32; STEPS.len() + 1] = [USUAL_NOISE_GAIN, 3.6, 5.3, 7.3];
+/// The first of them.
+pub(crate) const USUAL_NOISE_GAIN: f32 = 22.0;
+
 /// The filter whose residual is noise.
 pub(super) const PROBE: Filter = Filter {
     sigma_frames: 2.0,

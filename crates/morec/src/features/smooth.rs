@@ -8,7 +8,7 @@ use crate::math::Vec3;
 
 use super::bones::{ALL_BONES, BONES, BoneSet};
 use super::layout::RowLayout;
-use super::noise::{Filter, NoiseMeter, PROBE, WIDEST_FRAMES, filters};
+use super::noise::{Filter, NOISE_GAINS, NoiseMeter, PROBE, WIDEST_FRAMES, filters};
 use super::observe::{Observation, heading_from_world};
 use super::params::FeatureParams;
 
@@ -144,6 +144,11 @@ impl Smoother {
     /// Noise of the last second or so: see [`FeatureStream::noise`](super::FeatureStream::noise).
     pub fn noise(&self) -> Option<f64> {
         self.noise.level()
+    }
+
+    /// See [`FeatureStream::noise_gain`](super::FeatureStream::noise_gain).
+    pub fn noise_gain(&self) -> f32 {
+        NOISE_GAINS[self.noise.step()]
     }
 
     /// Takes the next frame; rows that are now complete come from [`next_row`](Self::next_row): one, or a few where a

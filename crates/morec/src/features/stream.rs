@@ -71,6 +71,12 @@ impl FeatureStream {
         self.smoother.noise()
     }
 
+    /// The squared fourth difference of the velocities in rows that the stream's noise leaves, over its variance there, under the filter
+    /// in use: see [`Stretches`](crate::templates::Stretches).
+    pub fn noise_gain(&self) -> f32 {
+        self.smoother.noise_gain()
+    }
+
     /// True if a pose at `time_secs` would begin a new stretch, so that the caller can
     /// [`finish`](FeatureStream::finish) the old one first.
     pub fn breaks_at(&self, time_secs: f64) -> bool {

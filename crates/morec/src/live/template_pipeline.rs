@@ -71,7 +71,11 @@ impl TemplatePipeline {
     /// Detections of the rows that are complete.
     fn recognise_rows(&mut self, found: &mut DetectionBuffer) {
         let steps = self.steps();
-        while let Some(row) = self.features.next_row() {
+        loop {
+            self.engine.set_noise_gain(self.features.noise_gain());
+            let Some(row) = self.features.next_row() else {
+                break;
+            };
             for d in self.engine.push(row) {
                 found.add(d.class, steps, d.start, d.stop, d.score);
             }

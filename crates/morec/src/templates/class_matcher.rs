@@ -55,6 +55,11 @@ impl ClassMatcher {
         self.gate = gate;
     }
 
+    /// See [`Stretches::set_noise_gain`].
+    pub fn set_noise_gain(&mut self, gain: f32) {
+        self.stretches.set_noise_gain(gain);
+    }
+
     /// Takes the next tick's row, mapped. O(template rows · d), no allocation.
     pub fn step(&mut self, mapped: &[f32]) {
         self.matcher.step(mapped);
@@ -88,6 +93,7 @@ impl ClassMatcher {
                     distance: found.distance,
                     age: found.age,
                     spread: found.spread,
+                    rest_share: found.rest_share,
                 };
             }
         }

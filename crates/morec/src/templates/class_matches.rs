@@ -85,7 +85,11 @@ impl ClassMatches {
             .map(|(class, found)| ClassMatch {
                 tick,
                 class: class as u16,
-                found: *found,
+                // Only the wider gate asks for it, and that one needs every match.
+                found: ClassDistance {
+                    rest_share: 0.0,
+                    ..*found
+                },
             });
         self.matches.extend(kept);
     }
@@ -186,6 +190,7 @@ fn read_match(bytes: &[u8; MATCH_BYTES]) -> ClassMatch {
             distance: f32::from_le_bytes(four(6)),
             age: u32::from_le_bytes(four(10)) as usize,
             spread: f32::from_le_bytes(four(14)),
+            ..ClassDistance::NONE
         },
     }
 }
@@ -237,6 +242,7 @@ mod tests {
             distance,
             age,
             spread: 0.5,
+            rest_share: 0.0,
         }
     }
 

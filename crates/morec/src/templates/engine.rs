@@ -221,6 +221,13 @@ impl TemplateEngine {
         self.apply_rules();
     }
 
+    /// Says how much of noise the rows that come hold: [`FeatureStream::noise_gain`](crate::features::FeatureStream::noise_gain).
+    pub fn set_noise_gain(&mut self, gain: f32) {
+        if let Matches::Computed(matcher) = &mut self.matches {
+            matcher.set_noise_gain(gain);
+        }
+    }
+
     /// Takes the next tick's row and returns the detections that are now certain. No allocation.
     pub fn push(&mut self, row: &[f32]) -> impl Iterator<Item = &TickDetection> {
         self.recent.push(row);
@@ -261,11 +268,13 @@ impl TemplateEngine {
             self.decoder.decide();
         }
         let was_open = self.is_open();
+        let wide = self.stranger.as_ref().filter(|s| s.level.is_open());
+        let calibration = wide.and_then(|s| s.gate.calibration).or(self.calibration);
         for detection in self.decoder.report(ended) {
             if let Some(stranger) = &mut self.stranger {
                 stranger.note(detection);
             }
-            *detection = calibrated(self.calibration, *detection);
+            *detection = calibrated(calibration, *detection);
         }
         if self.is_open() != was_open {
             self.apply_rules();
@@ -314,7 +323,7 @@ impl TemplateEngine {
 fn calibrated(calibration: Option<Calibration>, found: TickDetection) -> TickDetection {
     match calibration {
         Some(calibration) => TickDetection {
-            score: calibration.probability(found.score, found.separation),
+            score: calibration.probability(found.score, found.separation, found.rest_share),
             ..found
         },
         None => found,

@@ -23,6 +23,9 @@ use super::stretches::Stretches;
 /// [`DecodeParams::typical_spread`], which keeps their scale: a small gesture must be met more exactly than a large one. All are
 /// multiplied by [`TYPICAL_SPREAD`]` / V_0`, so that a threshold means the same whatever rows are made of.
 ///
+/// Noise of the stream adds to `D` and `V_S` alike. What the stretches [measured](Stretches::noise) beyond the template's own noise is taken
+/// off both, at most a [share](DecodeParams::noise_share) of `D`; up to 0.2 of the usual spread counts as none.
+///
 /// For performers unlike the teacher, a share `a` of the squared difference of means is taken as their stance and not as part of the motion
 /// ([`NormalizedMatch::discounted`]): `D' = D − a |m_T − m_S|²`, held against a body at rest without it, too.
 ///
@@ -33,6 +36,9 @@ pub struct Matcher {
     norm: SpreadNorm,
     rest_spread: f32,
     spreads: Arc<[f32]>,
+    /// Noise of each template's rows.
+    noises: Arc<[f32]>,
+    noise_share: f32,
     norm_bounds: Arc<[NormBound]>,
     /// `m_T` of each template.
     means: Arc<Rows>,
@@ -68,6 +74,9 @@ impl NormBound {
         self.at_zero + self.slope * spread
     }
 }
+
+/// Noise up to this share of the typical spread is none: fast motion leaves as much.
+const LEAST_NOISE: f32 = 0.2;
 
 /// Smaller spreads, as shares of the typical one, count as this.
 const LEAST_SPREAD: f32 = 1e-3;
@@ -172,6 +181,8 @@ impl Matcher {
                 .map(|spread| NormBound::new(norm, *spread))
                 .collect(),
             spreads: spreads.into(),
+            noises: templates.iter().map(Stretches::noise_of).collect(),
+            noise_share: decode.noise_share,
             means: Arc::new(means),
         }
     }
@@ -209,8 +220,26 @@ impl Matcher {
         matched: Match,
         stretches: &mut Stretches,
     ) -> NormalizedMatch {
-        let near = self.nearness(index, matched, stretches);
+        let (matched, noise) = self.without_noise(index, matched, stretches);
+        let near = self.nearness(index, matched, noise, stretches);
         self.held_against_rest(index, matched, near, stretches)
+    }
+
+    /// A match of template `index` without what noise adds to it, and that noise.
+    fn without_noise(&self, index: usize, matched: Match, stretches: &Stretches) -> (Match, f32) {
+        let least = self.noises[index] + LEAST_NOISE * self.norm.typical;
+        let noise = stretches.noise() - least;
+        if self.noise_share == 0.0 || noise <= 0.0 || matched.distance >= FAR {
+            return (matched, 0.0);
+        }
+        let distance = matched.distance - noise.min(self.noise_share * matched.distance);
+        (
+            Match {
+                distance,
+                ..matched
+            },
+            noise,
+        )
     }
 
     /// The match of template `index` if it passes `gate` and is nearer than `distance`. O(1) for most templates that are not
@@ -226,12 +255,13 @@ impl Matcher {
         if matched.distance >= FAR {
             return None;
         }
+        let (matched, noise) = self.without_noise(index, matched, stretches);
         // Most templates end here, before a power is taken.
         let bound = self.norm_bounds[index].at(stretches.spread(matched.age));
         if matched.distance * (1.0 - gate.discount) >= distance * bound {
             return None;
         }
-        let near = self.nearness(index, matched, stretches);
+        let near = self.nearness(index, matched, noise, stretches);
         if near.distance * (1.0 - gate.discount) >= distance {
             return None;
         }
@@ -245,6 +275,7 @@ impl Matcher {
         &self,
         index: usize,
         Match { distance, age }: Match,
+        noise: f32,
         stretches: &mut Stretches,
     ) -> NormalizedMatch {
         let mut found = NormalizedMatch {
@@ -255,7 +286,7 @@ impl Matcher {
             offset_share: 0.0,
         };
         if distance < FAR {
-            found.spread = stretches.spread(age);
+            found.spread = (stretches.spread(age) - noise).max(0.0);
             found.distance = distance / self.norm.at((self.spreads[index] + found.spread) / 2.0);
         }
         found
@@ -314,6 +345,7 @@ pub fn mean_and_spread(rows: &Rows, dim: usize) -> (Vec<f32>, f32) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rng::Rng;
     use proptest::prelude::*;
 
     fn by_half() -> DecodeParams {
@@ -327,6 +359,36 @@ mod tests {
     fn rows(len: std::ops::Range<usize>) -> impl Strategy<Value = Rows> {
         len.prop_flat_map(|n| prop::collection::vec(-3.0f32..3.0, 3 * n))
             .prop_map(|v| Rows::from_values(3, v))
+    }
+
+    /// The match of a swing with this noise on the stream.
+    fn of_noisy_swing(deviation: f64, noise_share: f32) -> NormalizedMatch {
+        let mut rng = Rng::new(5);
+        let swing = |tick: usize| (tick as f32 * std::f32::consts::TAU / 15.0).sin();
+        let template = Rows::from_values(3, (0..30).flat_map(|t| [swing(t); 3]).collect());
+        let params = DecodeParams {
+            noise_share,
+            ..by_half()
+        };
+        let mut matcher = Matcher::new(&[template], 3, &params);
+        let mut stretches = Stretches::new(3, matcher.longest_match());
+        stretches.set_noise_gain(70.0);
+        for tick in 0..120 {
+            let row = [0; 3].map(|_| swing(tick) + (deviation * rng.normal()) as f32);
+            matcher.step(&row);
+            stretches.push(&row);
+        }
+        matcher.compare(0, &mut stretches)
+    }
+
+    #[test]
+    fn noise_of_the_stream_is_taken_off_and_a_clean_stream_is_as_it_was() {
+        assert_eq!(of_noisy_swing(0.05, 0.5), of_noisy_swing(0.05, 0.0));
+        let [clean, noisy, freed] =
+            [(0.0, 0.0), (0.6, 0.0), (0.6, 0.5)].map(|(noise, share)| of_noisy_swing(noise, share));
+        assert!(freed.distance < noisy.distance && freed.distance >= 0.4 * noisy.distance);
+        assert!(freed.rest_share < noisy.rest_share && freed.rest_share > clean.rest_share);
+        assert!(freed.spread < noisy.spread);
     }
 
     proptest! {

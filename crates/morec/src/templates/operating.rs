@@ -31,8 +31,8 @@ pub fn threshold_at(points: &[OperatingPoint], alarms_per_minute: f64) -> Option
 }
 
 /// Turns the margin of a detection and its [separation](crate::decode::TickDetection::separation) from other classes into
-/// the probability that it is right: `σ(slope · logit(margin) + separation_weight · separation + offset)` (Platt 1999, on the
-/// logit of the margin and one more covariate).
+/// the probability that it is right: `σ(slope · logit(margin) + separation_weight · separation − rest_weight · rest_share +
+/// offset)` (Platt 1999, on the logit of the margin and two more covariates).
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Calibration {
     /// Weight of the margin's logit.
@@ -42,6 +42,10 @@ pub struct Calibration {
     /// Weight of the separation; 0 in indexes that were written before it was measured.
     #[serde(default)]
     pub separation_weight: f64,
+    /// Weight of the [share of a body at rest](crate::decode::TickDetection::rest_share), which lowers the probability; 0 but for
+    /// strangers.
+    #[serde(default)]
+    pub rest_weight: f64,
 }
 
 impl Calibration {
@@ -51,6 +55,16 @@ impl Calibration {
         slope: 0.15,
         offset: 0.8,
         separation_weight: 1.5,
+        rest_weight: 0.0,
+    };
+
+    /// While the wider gate is open, where margins and separations no longer tell right from wrong. Fitted on one teacher's reports
+    /// on others, of referee signals and of actions before a Kinect.
+    pub const OF_STRANGERS: Self = Self {
+        slope: 0.0,
+        offset: 14.9,
+        separation_weight: 0.0,
+        rest_weight: 23.6,
     };
 
     /// The map of distances alone that indexes hold which were trained before separations were measured.
@@ -58,6 +72,7 @@ impl Calibration {
         slope: 0.33,
         offset: 1.9,
         separation_weight: 0.0,
+        rest_weight: 0.0,
     };
 
     /// The same where candidates are verified, on the verifier's scores: gestures by person, and Kinect sessions by others
@@ -66,14 +81,17 @@ impl Calibration {
         slope: 0.6,
         offset: 1.5,
         separation_weight: 0.0,
+        rest_weight: 0.0,
     };
 
-    /// The probability for a margin from 0 (just accepted) to 1 (identical), and a separation from 0 to 1.
-    pub fn probability(&self, margin: f64, separation: f32) -> f64 {
+    /// The probability for a margin from 0 (just accepted) to 1 (identical), a separation from 0 to 1, and a share of a body
+    /// at rest.
+    pub fn probability(&self, margin: f64, separation: f32, rest_share: f32) -> f64 {
         let margin = margin.clamp(1e-3, 1.0 - 1e-3);
         let logit = (margin / (1.0 - margin)).ln();
         let clear = self.separation_weight * f64::from(separation);
-        1.0 / (1.0 + (-(self.slope * logit + clear + self.offset)).exp())
+        let at_rest = self.rest_weight * f64::from(rest_share);
+        1.0 / (1.0 + (-(self.slope * logit + clear - at_rest + self.offset)).exp())
     }
 }
 
@@ -97,8 +115,20 @@ mod tests {
 
     #[test]
     fn probability_grows_with_margin_and_separation_and_stays_inside_0_and_1() {
-        let p = |margin, separation| Calibration::MEASURED.probability(margin, separation);
+        let p = |margin, separation| Calibration::MEASURED.probability(margin, separation, 0.3);
         assert!(0.0 < p(0.0, 0.0) && p(0.0, 0.0) < p(0.5, 0.0) && p(0.5, 0.0) < p(1.0, 0.0));
         assert!(p(0.5, 0.0) < p(0.5, 1.0) && p(1.0, 1.0) < 1.0);
+    }
+
+    #[test]
+    fn of_strangers_only_the_share_of_a_body_at_rest_counts() {
+        let p = |margin, separation, rest_share| {
+            Calibration::OF_STRANGERS.probability(margin, separation, rest_share)
+        };
+        assert_eq!(p(0.1, 0.0, 0.5), p(0.9, 1.0, 0.5));
+        assert!(p(0.5, 0.5, 0.4) > 0.99 && p(0.5, 0.5, 0.7) < 0.2);
+        let written = r#"{"slope":0.33,"offset":1.9,"separation_weight":0.5}"#;
+        let older: Calibration = serde_json::from_str(written).unwrap();
+        assert_eq!(older.rest_weight, 0.0);
     }
 }

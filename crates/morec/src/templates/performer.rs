@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::matcher::MatchGate;
-use super::{OperatingPoint, threshold_at};
+use super::{Calibration, OperatingPoint, threshold_at};
 
 /// Who is expected before a recogniser.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -40,6 +40,9 @@ pub struct StrangerGate {
     pub open_at: f32,
     /// It closes where the level is below this.
     pub close_at: f32,
+    /// Meaning of scores while it is open; older indexes have none, and the [model's](super::TemplateModel::calibration) holds.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub calibration: Option<Calibration>,
 }
 
 impl StrangerGate {
@@ -164,6 +167,7 @@ mod tests {
             operating: Vec::new(),
             open_at: 1.1,
             close_at: 1.0,
+            calibration: None,
         }
     }
 

@@ -1,9 +1,23 @@
-//! Means and spreads of the stretches of a stream that end now.
+//! Means and spreads of the stretches of a stream that end now, and its noise.
+
+use crate::features::{Rows, USUAL_NOISE_GAIN};
 
 use super::kernel;
 
+/// Noise is measured at every fourth tick, over the last 64 times: eight seconds, of which motion fills less than half.
+const NOISE_STEP: usize = 4;
+const NOISE_TIMES: usize = 64;
+/// Fewer say nothing.
+const LEAST_NOISE_TIMES: usize = 16;
+/// Weights of sums of rows in the fourth difference of rows, 1 −4 6 −4 1.
+const DIFFERENCE: [f64; 6] = [1.0, -5.0, 10.0, -10.0, 5.0, -1.0];
+
 /// Sums of a stream's rows at each of its last ticks, from which the mean and the spread of any stretch that ends now
 /// follow. Two sets of templates that are matched against the same stream share one.
+///
+/// Noise is the median of the squared fourth differences of the last rows, over what noise of variance 1 leaves in them
+/// ([`set_noise_gain`](Self::set_noise_gain)): motion of a few hertz vanishes in them (Rice, Ann. Statist. 12, 1984, has differences as
+/// estimators of variance), and the median does not see single jumps.
 ///
 /// Nothing is allocated after construction.
 #[derive(Debug, Clone)]
@@ -17,18 +31,33 @@ pub struct Stretches {
     /// Spread of the stretch of each age, and the tick at which it was computed: many templates' matches begin at the
     /// same tick.
     spreads: Vec<(usize, f32)>,
+    noise_gain: f32,
+    /// Squared fourth differences of the last rows over the gain.
+    jitter: [f32; NOISE_TIMES],
+    /// Times that noise was measured.
+    times: usize,
+    noise: f32,
+}
+
+fn median(values: &mut [f32]) -> f32 {
+    let middle = values.len() / 2;
+    *values.select_nth_unstable_by(middle, f32::total_cmp).1
 }
 
 impl Stretches {
     /// For rows of `dim` values and stretches of at most `longest` ticks.
     pub fn new(dim: usize, longest: usize) -> Self {
-        let capacity = (longest + 2).next_power_of_two();
+        let capacity = (longest + 2).max(DIFFERENCE.len()).next_power_of_two();
         Self {
             width: dim + 1,
             mask: capacity - 1,
             sums: vec![0.0; (dim + 1) * capacity],
             ticks: 0,
             spreads: vec![(0, 0.0); capacity],
+            noise_gain: USUAL_NOISE_GAIN,
+            jitter: [0.0; NOISE_TIMES],
+            times: 0,
+            noise: 0.0,
         }
     }
 
@@ -37,6 +66,7 @@ impl Stretches {
         self.ticks = 0;
         self.sums[..self.width].fill(0.0);
         self.spreads.fill((0, 0.0));
+        (self.times, self.noise) = (0, 0.0);
     }
 
     /// Takes the next row. O(d).
@@ -52,6 +82,60 @@ impl Stretches {
         }
         let last = self.width - 1;
         self.sums[to + last] = self.sums[from + last] + square;
+        self.measure_noise();
+    }
+
+    fn measure_noise(&mut self) {
+        if !self.ticks.is_multiple_of(NOISE_STEP) {
+            return;
+        }
+        let Some(square) = self.squared_difference() else {
+            return;
+        };
+        self.jitter[self.times % NOISE_TIMES] = square / self.noise_gain;
+        self.times += 1;
+        let mut known = self.jitter;
+        let known = &mut known[..self.times.min(NOISE_TIMES)];
+        if known.len() >= LEAST_NOISE_TIMES {
+            self.noise = median(known);
+        }
+    }
+
+    /// Square of the fourth difference of the last five rows.
+    fn squared_difference(&self) -> Option<f32> {
+        if self.ticks + 1 < DIFFERENCE.len() {
+            return None;
+        }
+        let dim = self.width - 1;
+        let at = |back: usize| &self.sums[((self.ticks - back) & self.mask) * self.width..][..dim];
+        let sums = [0, 1, 2, 3, 4, 5].map(at);
+        let fourth = |i: usize| -> f64 { DIFFERENCE.iter().zip(sums).map(|(w, s)| w * s[i]).sum() };
+        Some((0..dim).map(|i| fourth(i).powi(2)).sum::<f64>() as f32)
+    }
+
+    /// The squared fourth difference that noise of variance 1 leaves in the rows that come:
+    /// [`FeatureStream::noise_gain`](crate::features::FeatureStream::noise_gain).
+    pub fn set_noise_gain(&mut self, gain: f32) {
+        self.noise_gain = gain;
+    }
+
+    /// The squared distance that noise adds to a row; 0 in the first two seconds.
+    pub fn noise(&self) -> f32 {
+        self.noise
+    }
+
+    /// The same of all `rows`, under the shortest filter.
+    pub(super) fn noise_of(rows: &Rows) -> f32 {
+        let mut stretches = Self::new(rows.dim(), 0);
+        let mut difference = |row| {
+            stretches.push(row);
+            stretches.squared_difference()
+        };
+        let mut squares: Vec<f32> = rows.iter().filter_map(&mut difference).collect();
+        match squares.is_empty() {
+            true => 0.0,
+            false => median(&mut squares) / USUAL_NOISE_GAIN,
+        }
     }
 
     /// Spread of the last `age + 1` rows about their mean. O(d), O(1) when asked for again.
@@ -84,5 +168,51 @@ impl Stretches {
         let start = self.ticks.saturating_sub(age + 1);
         let share = 1.0 / (self.ticks - start).max(1) as f64;
         (at(self.ticks), at(start), share)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rng::Rng;
+
+    /// The noise of two values that swing, with white noise of this deviation on each, and jumps.
+    fn noise(deviation: f64, swings_hz: f64) -> f32 {
+        let mut rng = Rng::new(1);
+        let mut stretches = Stretches::new(2, 10);
+        // White from row to row: the squares of 1 −4 6 −4 1.
+        stretches.set_noise_gain(70.0);
+        for tick in 0..200 {
+            let swing = (std::f64::consts::TAU * swings_hz * f64::from(tick) / 30.0).sin();
+            let jump = if tick % 40 == 0 { 5.0 } else { 0.0 };
+            let mut value = |swing: f64| (swing + jump + deviation * rng.normal()) as f32;
+            stretches.push(&[value(swing), value(-swing)]);
+        }
+        stretches.noise()
+    }
+
+    #[test]
+    fn noise_is_what_it_adds_to_a_row_and_motion_is_none() {
+        assert!(noise(0.0, 2.0) < 1e-3);
+        // The variances of both values add up to 0.5; a median of 64 squares varies.
+        assert!(
+            (0.25..0.75).contains(&noise(0.5, 2.0)),
+            "{}",
+            noise(0.5, 2.0)
+        );
+        assert!((noise(0.5, 0.0) - noise(0.5, 2.0)).abs() < 0.05);
+    }
+
+    #[test]
+    fn a_new_stretch_knows_nothing_of_the_noise_before() {
+        let mut stretches = Stretches::new(1, 4);
+        (0..80).for_each(|tick| stretches.push(&[(tick % 3) as f32]));
+        assert!(stretches.noise() > 0.1);
+        stretches.reset();
+        assert_eq!(stretches.noise(), 0.0);
+        assert_eq!(
+            Stretches::noise_of(&Rows::from_values(1, vec![0.5; 30])),
+            0.0
+        );
     }
 }

@@ -497,6 +497,7 @@ impl TrainingContext<'_> {
             operating: operating.points,
             open_at: params.open_at,
             close_at: params.close_at,
+            calibration: self.params.calibrate.then_some(Calibration::OF_STRANGERS),
         }
     }
 

@@ -1,9 +1,9 @@
 //! What one person taught, performed by others.
 
 use morec::index::{Model, MotionIndex, PerformerError};
-use morec::live::{Recognizer, recognize_poses};
+use morec::live::{Detection, Recognizer, recognize_poses};
 use morec::synth::{DatabaseSpec, database};
-use morec::templates::{PerformerKind, TemplateModel};
+use morec::templates::{Calibration, PerformerKind, TemplateModel};
 use morec::train::{StrangerParams, TrainParams};
 
 use crate::made;
@@ -32,6 +32,7 @@ fn only_few_teachers_get_a_wider_gate_and_files_keep_it() {
                 .operating
                 .is_sorted_by(|a, b| a.threshold <= b.threshold)
     );
+    assert_eq!(gate.calibration, Some(Calibration::OF_STRANGERS));
     let index = MotionIndex {
         model: model.into(),
         roles: Default::default(),
@@ -80,6 +81,28 @@ fn for_anyone_no_fewer_motions_are_found_and_the_recogniser_says_so() {
         found.sum::<usize>()
     };
     assert!(count(PerformerKind::Anyone) >= count(PerformerKind::Teacher));
+}
+
+#[test]
+fn scores_of_strangers_have_a_meaning_of_their_own_and_older_indexes_keep_theirs() {
+    let model = taught_by_one();
+    let mut older = model.clone();
+    older.stranger.as_mut().unwrap().calibration = None;
+    let (_, poses) = made::poses(&database(72, &spec(3))[1]);
+    let found = |model: &TemplateModel, performer: PerformerKind| {
+        let model = Model::from(model.with_performer(performer).unwrap());
+        recognize_poses(&model, &poses).unwrap()
+    };
+    let teacher = PerformerKind::Teacher;
+    assert_eq!(found(&model, teacher), found(&older, teacher));
+    let [new, old] = [&model, &older].map(|model| found(model, PerformerKind::Anyone));
+    let when = |d: &Detection| (d.class, d.start_secs, d.stop_secs);
+    assert!(new.iter().map(when).eq(old.iter().map(when)));
+    assert!(
+        new.iter()
+            .zip(&old)
+            .any(|(new, old)| new.score != old.score)
+    );
 }
 
 #[test]
