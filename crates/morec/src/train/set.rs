@@ -132,18 +132,6 @@ impl TrainSet {
         samples
     }
 
-    /// The set without the labels of some classes.
-    #[must_use]
-    pub fn without(&self, class: impl Fn(ClassId) -> bool) -> Self {
-        let mut set = self.clone();
-        for stream in &mut set.streams {
-            stream
-                .known
-                .retain(|known| !known.class.is_some_and(&class));
-        }
-        set
-    }
-
     /// The parts that hold none of the classes, in ticks of their streams.
     pub fn background(&self) -> impl Iterator<Item = (Range<usize>, &TrainStream)> {
         let streams = self.streams.iter().filter(|s| s.rest_is_background);

@@ -151,11 +151,6 @@ pub fn train(
         !is_held && !activities.is_some_and(|a| a.holds(sample.class))
     };
     let samples = samples.into_iter().filter(has_templates).collect();
-    // To gestures, an activity is motion like any other that is none of them.
-    let unlabelled = activities
-        .as_ref()
-        .map(|a| set.without(|class| a.holds(class)));
-    let set = unlabelled.as_ref().unwrap_or(set);
     let (samples, quiet) = moving(samples, &metric, params);
     let mut samples = templates_of(samples, set.classes.len(), params.max_templates);
     let params = &of_profile(params, bones, &samples, &metric);

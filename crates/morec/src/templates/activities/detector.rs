@@ -213,6 +213,7 @@ impl ActivityDetector {
                 // Halfway where anything else was as near.
                 score: 1.0 - share / 2.0,
                 separation: -(share.max(1e-3).ln()).clamp(0.0, 1.0) as f32,
+                rest_share: 0.0,
             }
         }));
     }
