@@ -91,7 +91,7 @@ pub struct TrainParams {
     #[serde(default)]
     pub activities: bool,
     /// Kinds of classes by name, for those whose samples do not say it.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    #[serde(default)]
     pub kinds: BTreeMap<String, MotionKind>,
 }
 
