@@ -269,11 +269,11 @@ fn held(manifest: &Manifest, tables: &Tables) -> Result<Option<HeldPoses>, Index
         return Ok(None);
     };
     let dim = RowLayout::of(manifest.bones).directions().len();
-    let Compared {
+    let ComparedTables {
         classes,
         rows: [poses, others],
         matrices: [ridged, total],
-    } = Compared::read("held", tables, dim)?;
+    } = ComparedTables::read("held", tables, dim)?;
     Ok(Some(HeldPoses {
         poses,
         classes,
@@ -290,11 +290,11 @@ fn activities(manifest: &Manifest, tables: &Tables) -> Result<Option<Activities>
         return Ok(None);
     };
     let dim = Activities::statistics(RowLayout::of(manifest.bones));
-    let Compared {
+    let ComparedTables {
         classes,
         rows: [means, others],
         matrices: [ridged, total],
-    } = Compared::read("activities", tables, dim)?;
+    } = ComparedTables::read("activities", tables, dim)?;
     Ok(Some(Activities {
         means,
         classes,
@@ -307,13 +307,13 @@ fn activities(manifest: &Manifest, tables: &Tables) -> Result<Option<Activities>
 }
 
 /// The tables that [`compared`] writes.
-struct Compared {
+struct ComparedTables {
     classes: Vec<ClassId>,
     rows: [Rows; 2],
     matrices: [PackedSymmetric; 2],
 }
 
-impl Compared {
+impl ComparedTables {
     fn read(name: &str, tables: &Tables, dim: usize) -> Result<Self, IndexError> {
         let lengths_name = format!("{name}.lengths");
         let lengths = tables.u32s(&lengths_name)?;

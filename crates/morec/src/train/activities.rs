@@ -8,7 +8,7 @@ use crate::templates::{
     Activities, Metric, PackedSymmetric, STEP_TICKS, squared_distance, windows_of,
 };
 
-use super::params::{MotionKind, TrainParams};
+use super::params::{ClassKind, TrainParams};
 use super::scatter::{covariance, means_of_groups, ridged, within_groups};
 use super::set::{StreamKind, TrainSample, TrainSet, evenly};
 
@@ -82,7 +82,7 @@ fn activity_classes(
     let goes_on = |class: &ClassId| {
         let name = &set.classes[class.index()];
         if let Some(kind) = params.kinds.get(name) {
-            return *kind == MotionKind::Activity;
+            return *kind == ClassKind::Activity;
         }
         let of_class = samples.iter().filter(|s| s.class == *class);
         let shown: Vec<&TrainSample> = of_class

@@ -35,7 +35,7 @@ pub use from_clips::{LabelSet, Prepared, TrainClip, build_train_set};
 pub use mirror::{Mirror, add_mirrored};
 pub(crate) use notes::class_notes;
 pub use options::{ENOUGH_BACKGROUND_SECS, EVERYDAY_SEED, Everyday, TrainOptions};
-pub use params::{MotionKind, StrangerParams, TrainParams};
+pub use params::{ClassKind, StrangerParams, TrainParams};
 pub use recipe::{Recipe, train_model};
 pub use report::TrainingReport;
 pub use set::{LabelledSpan, StreamKind, TrainSample, TrainSet, TrainStream, overlap_share};

@@ -92,13 +92,13 @@ pub struct TrainParams {
     pub activities: bool,
     /// Kinds of classes by name, for those whose samples do not say it.
     #[serde(default)]
-    pub kinds: BTreeMap<String, MotionKind>,
+    pub kinds: BTreeMap<String, ClassKind>,
 }
 
 /// How a class is recognised.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum MotionKind {
+pub enum ClassKind {
     /// By templates of its samples: it has a beginning and an end.
     Gesture,
     /// By what a window of a few seconds shows: it goes on.
@@ -169,11 +169,11 @@ impl Default for TrainParams {
 impl TrainParams {
     /// Says which classes are activities and which gestures, whatever their samples say.
     pub fn set_kinds(&mut self, activities: &[String], gestures: &[String]) {
-        let named = |names: &[String], kind| -> Vec<(String, MotionKind)> {
+        let named = |names: &[String], kind| -> Vec<(String, ClassKind)> {
             names.iter().map(|name| (name.clone(), kind)).collect()
         };
-        self.kinds.extend(named(activities, MotionKind::Activity));
-        self.kinds.extend(named(gestures, MotionKind::Gesture));
+        self.kinds.extend(named(activities, ClassKind::Activity));
+        self.kinds.extend(named(gestures, ClassKind::Gesture));
     }
 
     /// The values of the reference prototype.

@@ -6,7 +6,7 @@ use crate::classes::ClassId;
 use crate::decode::TickDetection;
 use crate::features::{RowLayout, Rows};
 
-use super::windows::{STEP_TICKS, Window, windows_of};
+use super::windows::{STEP_TICKS, SlidingWindow, windows_of};
 use super::{Activities, LEAST_WINDOWS};
 use crate::templates::Metric;
 use crate::templates::early::OngoingMatch;
@@ -29,19 +29,19 @@ pub(in crate::templates) struct ActivityDetector {
     classes: Vec<ClassId>,
     others: WindowTable,
     share: f32,
-    window: Window,
+    window: SlidingWindow,
     half: usize,
     statistics: Vec<f32>,
     mapped: Vec<f32>,
     ticks: usize,
     path: BestPath,
-    run: Option<Run>,
+    run: Option<ActivityRun>,
     found: Vec<TickDetection>,
 }
 
 /// An activity that goes on.
 #[derive(Debug, Clone, Copy)]
-struct Run {
+struct ActivityRun {
     class: usize,
     /// Its first window, and the number of its windows.
     first: usize,
@@ -50,7 +50,7 @@ struct Run {
     shares: f64,
 }
 
-impl Run {
+impl ActivityRun {
     fn share(&self) -> f64 {
         (self.shares / self.count as f64).min(1.0)
     }
@@ -89,7 +89,7 @@ impl ActivityDetector {
             others: WindowTable::new(&metric.apply_all(&activities.others)),
             of_class: activities.classes.iter().map(number).collect(),
             share: activities.share,
-            window: Window::new(layout, 2 * half + 1),
+            window: SlidingWindow::new(layout, 2 * half + 1),
             half,
             statistics: vec![0.0; metric.dim()],
             mapped: vec![0.0; metric.dim()],
@@ -191,7 +191,7 @@ impl ActivityDetector {
             }
             _ => {
                 self.end_run();
-                self.run = class.map(|class| Run {
+                self.run = class.map(|class| ActivityRun {
                     class,
                     first: window,
                     count: 1,

@@ -46,7 +46,7 @@ pub(super) fn kept_statistics(layout: RowLayout, keep: &[usize]) -> Vec<usize> {
 
 /// The last rows of a stream, and their sums.
 #[derive(Debug, Clone)]
-pub(super) struct Window {
+pub(super) struct SlidingWindow {
     layout: RowLayout,
     /// A ring of `most` rows.
     rows: Vec<f32>,
@@ -58,7 +58,7 @@ pub(super) struct Window {
     squares: Vec<f64>,
 }
 
-impl Window {
+impl SlidingWindow {
     /// Of at most `most` rows.
     pub fn new(layout: RowLayout, most: usize) -> Self {
         let dim = layout.dim();
@@ -132,7 +132,7 @@ impl Window {
 /// off. O(rows · values).
 pub(crate) fn windows_of(rows: &Rows, layout: RowLayout, window_ticks: usize) -> Rows {
     let half = window_ticks / 2;
-    let mut window = Window::new(layout, 2 * half + 1);
+    let mut window = SlidingWindow::new(layout, 2 * half + 1);
     let mut out = Rows::new(statistics(layout));
     let mut written = vec![0.0; out.dim()];
     let mut taken = 0;
