@@ -2,11 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use crate::classes::ClassId;
 use crate::features::{RowLayout, Rows};
 use crate::templates::{
-    Activities, Exemplars, HeldPoses, PackedSymmetric, SHAPE_ROWS, TemplateModel, TemplateSample,
-    Verifier,
+    Activities, Exemplars, HeldPoses, PackedSymmetric, ReferenceRows, SHAPE_ROWS, TemplateModel,
+    TemplateSample, Verifier,
 };
 
 use super::manifest::{ActivityWords, FORMAT, HeldWords, Manifest, VerifierWords};
@@ -81,38 +80,22 @@ pub(super) fn tensors(model: &TemplateModel) -> BTreeMap<String, Tensor> {
         tensors.extend(exemplars(&verifier.classes, dim, step));
     }
     if let Some(held) = &model.held {
-        let tables = [&held.poses, &held.others];
-        tensors.extend(compared(
-            "held",
-            &held.classes,
-            tables,
-            [&held.ridged, &held.total],
-        ));
+        tensors.extend(reference_tensors("held", &held.poses));
     }
     if let Some(activities) = &model.activities {
-        let Activities { means, others, .. } = activities;
-        let matrices = [&activities.ridged, &activities.total];
-        tensors.extend(compared(
-            "activities",
-            &activities.classes,
-            [means, others],
-            matrices,
-        ));
+        tensors.extend(reference_tensors("activities", &activities.windows));
     }
     tensors
 }
 
-/// What a stream is compared with under a metric of its own: rows of `classes`, and rows of anything else.
-fn compared(
-    name: &str,
-    classes: &[ClassId],
-    tables: [&Rows; 2],
-    [ridged, total]: [&PackedSymmetric; 2],
-) -> [(String, Tensor); 5] {
+/// Rows of classes and of anything else, and their metric.
+fn reference_tensors(name: &str, reference: &ReferenceRows) -> [(String, Tensor); 5] {
+    let ReferenceRows { ridged, total, .. } = reference;
+    let tables = [&reference.rows, &reference.others];
     let rows = tables.iter().flat_map(|rows| rows.iter());
-    let lengths = tables.iter().map(|rows| rows.len() as u32);
-    let classes = classes.iter().map(|class| u32::from(class.0));
     let rows = Tensor::of_rows(rows, ridged.dim(), None);
+    let lengths = tables.iter().map(|rows| rows.len() as u32);
+    let classes = reference.classes.iter().map(|class| u32::from(class.0));
     [
         (format!("{name}.classes"), Tensor::of_u32(classes)),
         (format!("{name}.lengths"), Tensor::of_u32(lengths)),
@@ -269,17 +252,8 @@ fn held(manifest: &Manifest, tables: &Tables) -> Result<Option<HeldPoses>, Index
         return Ok(None);
     };
     let dim = RowLayout::of(manifest.bones).directions().len();
-    let ComparedTables {
-        classes,
-        rows: [poses, others],
-        matrices: [ridged, total],
-    } = ComparedTables::read("held", tables, dim)?;
     Ok(Some(HeldPoses {
-        poses,
-        classes,
-        others,
-        ridged,
-        total,
+        poses: reference(tables, "held", dim)?,
         reach,
         least_ticks,
     }))
@@ -290,51 +264,30 @@ fn activities(manifest: &Manifest, tables: &Tables) -> Result<Option<Activities>
         return Ok(None);
     };
     let dim = Activities::statistics(RowLayout::of(manifest.bones));
-    let ComparedTables {
-        classes,
-        rows: [means, others],
-        matrices: [ridged, total],
-    } = ComparedTables::read("activities", tables, dim)?;
     Ok(Some(Activities {
-        means,
-        classes,
-        others,
-        ridged,
-        total,
+        windows: reference(tables, "activities", dim)?,
         window_ticks: words.window_ticks,
         share: words.share,
     }))
 }
 
-/// The tables that [`compared`] writes.
-struct ComparedTables {
-    classes: Vec<ClassId>,
-    rows: [Rows; 2],
-    matrices: [PackedSymmetric; 2],
-}
-
-impl ComparedTables {
-    fn read(name: &str, tables: &Tables, dim: usize) -> Result<Self, IndexError> {
-        let lengths_name = format!("{name}.lengths");
-        let lengths = tables.u32s(&lengths_name)?;
-        let rows = tables.pieces(&format!("{name}.rows"), dim, &lengths, None)?;
-        let rows = <[Rows; 2]>::try_from(rows).map_err(|rows| {
-            let found = rows.len();
-            IndexError::Content(format!("{lengths_name}: expected 2 lengths, found {found}"))
-        })?;
-        let classes = tables.u32s(&format!("{name}.classes"))?;
-        Ok(Self {
-            classes: classes
-                .into_iter()
-                .map(class_id)
-                .collect::<Result<_, _>>()?,
-            rows,
-            matrices: [
-                symmetric(tables, &format!("{name}.ridged"), dim)?,
-                symmetric(tables, &format!("{name}.total"), dim)?,
-            ],
-        })
-    }
+/// What [`reference_tensors`] writes.
+fn reference(tables: &Tables, name: &str, dim: usize) -> Result<ReferenceRows, IndexError> {
+    let lengths_name = format!("{name}.lengths");
+    let lengths = tables.u32s(&lengths_name)?;
+    let rows = tables.pieces(&format!("{name}.rows"), dim, &lengths, None)?;
+    let [rows, others] = <[Rows; 2]>::try_from(rows).map_err(|rows| {
+        let found = rows.len();
+        IndexError::Content(format!("{lengths_name}: expected 2 lengths, found {found}"))
+    })?;
+    let classes = tables.u32s(&format!("{name}.classes"))?.into_iter();
+    Ok(ReferenceRows {
+        rows,
+        classes: classes.map(class_id).collect::<Result<_, _>>()?,
+        others,
+        ridged: symmetric(tables, &format!("{name}.ridged"), dim)?,
+        total: symmetric(tables, &format!("{name}.total"), dim)?,
+    })
 }
 
 fn symmetric(tables: &Tables, name: &str, dim: usize) -> Result<PackedSymmetric, IndexError> {

@@ -10,7 +10,7 @@ use crate::features::{RowLayout, Rows};
 
 use super::early::OngoingMatch;
 use super::verifier::squared_distance;
-use super::{Metric, PackedSymmetric};
+use super::{Metric, ReferenceRows};
 
 /// Poses that are looked at for one distance.
 const NEIGHBOURS: usize = 3;
@@ -22,16 +22,8 @@ const PAUSE: usize = 6;
 /// Poses of held classes and of what is none of them, before the metric.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HeldPoses {
-    /// Poses of the classes: the directions of their rows, `3 b` values.
-    pub poses: Rows,
-    /// The class of each.
-    pub classes: Vec<ClassId>,
-    /// Poses of anything else.
-    pub others: Rows,
-    /// As [`TemplateModel::ridged`](super::TemplateModel::ridged), of poses.
-    pub ridged: PackedSymmetric,
-    /// As [`TemplateModel::total`](super::TemplateModel::total), of poses.
-    pub total: PackedSymmetric,
+    /// The poses: directions of rows, `3 b` values.
+    pub poses: ReferenceRows,
     /// Poses that are farther than this from those of a class are none of it.
     pub reach: f32,
     /// Ticks for which a pose must be held.
@@ -44,28 +36,8 @@ impl HeldPoses {
     /// # Errors
     /// A sentence about the first part that does not fit.
     pub fn check(&self, layout: RowLayout, classes: usize) -> Result<(), String> {
-        let expected = layout.directions().len();
-        let widths = [
-            self.poses.dim(),
-            self.others.dim(),
-            self.ridged.dim(),
-            self.total.dim(),
-        ];
-        if let Some(found) = widths.iter().find(|width| **width != expected) {
-            return Err(format!(
-                "held poses have {found} values, the bones give {expected}"
-            ));
-        }
-        if self.poses.len() != self.classes.len() {
-            return Err(format!(
-                "{} held poses, classes for {}",
-                self.poses.len(),
-                self.classes.len()
-            ));
-        }
-        if let Some(class) = self.classes.iter().find(|class| class.index() >= classes) {
-            return Err(format!("a held pose of class {}, of {classes}", class.0));
-        }
+        let dim = layout.directions().len();
+        self.poses.check("held poses", dim, classes)?;
         if self.reach.is_nan() || self.reach <= 0.0 {
             return Err(format!(
                 "the reach of held poses must be above 0, found {}",
@@ -82,10 +54,7 @@ impl HeldPoses {
             .filter(|column| directions.contains(column))
             .collect();
         Self {
-            poses: self.poses.columns(&kept),
-            others: self.others.columns(&kept),
-            ridged: self.ridged.restricted(&kept),
-            total: self.total.restricted(&kept),
+            poses: self.poses.restricted(&kept),
             ..self.clone()
         }
     }
@@ -178,15 +147,12 @@ pub(super) struct HoldDetector {
 
 impl HoldDetector {
     pub fn new(held: &HeldPoses) -> Self {
-        let metric = Metric::new(&held.ridged, &held.total);
-        let mut classes = held.classes.clone();
-        classes.sort_unstable();
-        classes.dedup();
-        let number = |class: &ClassId| classes.partition_point(|known| known < class);
+        let metric = held.poses.metric();
+        let (classes, of_class) = held.poses.numbered();
         Self {
-            poses: metric.apply_all(&held.poses),
-            others: metric.apply_all(&held.others),
-            of_class: held.classes.iter().map(number).collect(),
+            poses: metric.apply_all(&held.poses.rows),
+            others: metric.apply_all(&held.poses.others),
+            of_class,
             mapped: vec![0.0; metric.dim()],
             nearest: vec![NearestFew::NONE; classes.len()],
             recent: vec![[0.0; WINDOW]; classes.len() + 1],
@@ -304,16 +270,20 @@ impl HoldDetector {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::templates::PackedSymmetric;
     use nalgebra::DMatrix;
 
     fn held() -> HeldPoses {
         let eye = PackedSymmetric::pack(&DMatrix::identity(3, 3));
-        HeldPoses {
-            poses: Rows::from_values(3, vec![1.0, 0.0, 0.0, 0.0, 1.0, 0.0]),
+        let poses = ReferenceRows {
+            rows: Rows::from_values(3, vec![1.0, 0.0, 0.0, 0.0, 1.0, 0.0]),
             classes: vec![ClassId(4), ClassId(7)],
             others: Rows::from_values(3, vec![0.0, 0.0, 1.0]),
             ridged: eye.clone(),
             total: eye,
+        };
+        HeldPoses {
+            poses,
             reach: 0.8,
             least_ticks: 20,
         }

@@ -14,6 +14,7 @@ mod metric;
 mod model;
 mod operating;
 mod performer;
+mod reference;
 mod stretches;
 mod trace;
 mod verifier;
@@ -34,6 +35,7 @@ pub use metric::{Metric, PackedSymmetric};
 pub use model::{TemplateModel, TemplateModelError, TemplateSample};
 pub use operating::{ALARM_RATES, Calibration, OperatingPoint, threshold_at};
 pub use performer::{PerformerKind, PerformerLevel, StrangerGate};
+pub use reference::ReferenceRows;
 pub use stretches::Stretches;
 pub use trace::{Nearest, Trace};
 pub use verifier::{

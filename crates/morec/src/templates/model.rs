@@ -150,14 +150,14 @@ impl TemplateModel {
             let value = values.find(|v| v.is_nan() || v.abs() > most)?;
             Some(format!("values must be within {most}, found {value}"))
         };
-        let (held, activities) = (self.held.iter(), self.activities.iter());
+        let held = self.held.iter().map(|held| &held.poses);
+        let activities = self.activities.iter().map(|a| &a.windows);
+        let references = held.chain(activities);
         let rows = self.samples.iter().map(|sample| &sample.rows);
         let rows = rows.chain(&self.negatives);
-        let rows = rows.chain(held.clone().flat_map(|h| [&h.poses, &h.others]));
-        let mut rows = rows.chain(activities.clone().flat_map(|a| [&a.means, &a.others]));
+        let mut rows = rows.chain(references.clone().flat_map(|r| [&r.rows, &r.others]));
         let tables = [&self.ridged, &self.total].into_iter();
-        let tables = tables.chain(held.flat_map(|h| [&h.ridged, &h.total]));
-        let mut tables = tables.chain(activities.flat_map(|a| [&a.ridged, &a.total]));
+        let mut tables = tables.chain(references.flat_map(|r| [&r.ridged, &r.total]));
         let of_rows = rows.find_map(|rows| beyond(rows.values(), LARGEST));
         let of_metric = || tables.find_map(|table| beyond(table.packed(), LARGEST * LARGEST));
         of_rows.or_else(of_metric).map_or(Ok(()), Err)

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::classes::ClassId;
 use crate::features::{BoneSet, FeatureParams, Profile, RowLayout, Rows};
 use crate::templates::{
-    Activities, Metric, PackedSymmetric, STEP_TICKS, squared_distance, windows_of,
+    Activities, Metric, PackedSymmetric, ReferenceRows, STEP_TICKS, squared_distance, windows_of,
 };
 
 use super::params::{ClassKind, TrainParams};
@@ -62,11 +62,13 @@ pub(super) fn learn(
     let own = OwnWindows::new(&metric, &means, &shown, &groups);
     let others = others(set, samples, &classes, windows, &own);
     (others.len() >= LEAST_OTHERS).then(|| Activities {
-        means: Rows::from_values(dim, means.values().flatten().copied().collect()),
-        classes: means.keys().map(|(class, _)| *class).collect(),
-        others,
-        ridged,
-        total,
+        windows: ReferenceRows {
+            rows: Rows::from_values(dim, means.values().flatten().copied().collect()),
+            classes: means.keys().map(|(class, _)| *class).collect(),
+            others,
+            ridged,
+            total,
+        },
         window_ticks,
         share: 1.0,
     })
@@ -175,10 +177,7 @@ fn others(
     own: &OwnWindows<'_>,
 ) -> Rows {
     let (mut real, mut made) = (Vec::new(), Vec::new());
-    for (ticks, stream) in set
-        .background()
-        .filter(|(ticks, _)| ticks.len() >= STEP_TICKS)
-    {
+    for (ticks, stream) in set.background(STEP_TICKS) {
         let named = stream.source == StreamKind::Background;
         let into = match stream.source {
             StreamKind::Everyday => &mut made,
@@ -271,7 +270,9 @@ mod tests {
     fn what_goes_on_is_an_activity_and_what_was_said_holds() {
         let names = |params: &TrainParams| -> Vec<u16> {
             let found = learned(params);
-            found.map_or_else(Vec::new, |a| a.classes.iter().map(|c| c.0).collect())
+            found.map_or_else(Vec::new, |a| {
+                a.windows.classes.iter().map(|c| c.0).collect()
+            })
         };
         let mut params = TrainParams::default();
         assert_eq!(names(&params), [0, 2]);

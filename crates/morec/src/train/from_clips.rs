@@ -232,21 +232,13 @@ fn unlabelled_as_background(streams: &mut Vec<TrainStream>, params: &FeaturePara
         if stream.source != StreamKind::Labelled || !stream.rest_is_background {
             continue;
         }
-        let mut start = 0;
-        let len = stream.rows.len();
-        let spans = stream.known.iter().map(|known| known.ticks.clone());
-        for span in spans.chain(std::iter::once(len..len)) {
-            let stop = span.start.min(len);
-            if stop >= start + least {
-                found.push(TrainStream {
-                    source: StreamKind::Background,
-                    rows: stream.rows.slice(start..stop),
-                    known: Vec::new(),
-                    ..stream.clone()
-                });
-            }
-            start = start.max(span.end.min(len));
-        }
+        let unlabelled = stream.unknown(least).into_iter();
+        found.extend(unlabelled.map(|ticks| TrainStream {
+            source: StreamKind::Background,
+            rows: stream.rows.slice(ticks),
+            known: Vec::new(),
+            ..stream.clone()
+        }));
         stream.rest_is_background = false;
     }
     streams.extend(found);

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use crate::classes::ClassId;
 use crate::features::{BoneSet, FeatureParams, Profile, RowLayout, Rows};
-use crate::templates::{HeldPoses, Metric, distance_from};
+use crate::templates::{HeldPoses, PackedSymmetric, ReferenceRows, distance_from};
 
 use super::params::TrainParams;
 use super::scatter::{covariance, ridged, within_groups};
@@ -55,16 +55,19 @@ pub(super) fn learn(
     }
     let total = covariance([&poses, &others].into_iter(), others.dim());
     let ridged = ridged(&within_groups(&poses, &classes), &total, RIDGE);
-    let total = crate::templates::PackedSymmetric::pack(&total);
-    let mapped = Metric::new(&ridged, &total).apply_all(&poses);
-    Some(HeldPoses {
-        reach: REACH * usual_distance(&mapped, &classes, &sample_of),
-        least_ticks: least_ticks(&of_held, &params.features),
-        poses,
+    let total = PackedSymmetric::pack(&total);
+    let poses = ReferenceRows {
+        rows: poses,
         classes,
         others,
         ridged,
         total,
+    };
+    let mapped = poses.metric().apply_all(&poses.rows);
+    Some(HeldPoses {
+        reach: REACH * usual_distance(&mapped, &poses.classes, &sample_of),
+        least_ticks: least_ticks(&of_held, &params.features),
+        poses,
     })
 }
 
@@ -110,7 +113,7 @@ fn others(
     held: &BTreeSet<ClassId>,
     layout: RowLayout,
 ) -> Rows {
-    let background = set.background().filter(|(_, stream)| {
+    let background = set.background(1).filter(|(_, stream)| {
         // Made motion is a body's.
         stream.source != StreamKind::Everyday
     });

@@ -2,9 +2,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::classes::{ClassId, ClassInfo};
+use crate::classes::ClassInfo;
 use crate::features::Profile;
-use crate::templates::OperatingPoint;
+use crate::templates::{OperatingPoint, ReferenceRows};
 
 use super::alike::AlikeClasses;
 use super::from_clips::Prepared;
@@ -13,14 +13,11 @@ use super::set::{StreamKind, TrainSample, TrainStream};
 use super::templates::TrainedTemplates;
 use super::thesis::SvrdmReport;
 
-/// Names of classes, each once.
-fn class_names(of: &[ClassId], classes: &[ClassInfo]) -> String {
-    let of: BTreeSet<ClassId> = of.iter().copied().collect();
-    let names: Vec<&str> = of
-        .iter()
-        .map(|c| classes[c.index()].name.as_str())
-        .collect();
-    names.join(", ")
+/// Names of the classes of `reference`, each once.
+fn class_names(reference: &ReferenceRows, classes: &[ClassInfo]) -> String {
+    let distinct = reference.distinct_classes();
+    let names = distinct.iter().map(|c| classes[c.index()].name.as_str());
+    names.collect::<Vec<_>>().join(", ")
 }
 
 /// Report of a training run.
@@ -102,14 +99,14 @@ impl TrainingReport {
             notes.push(format!(
                 "recognised by a pose that is held for {:.1} s or longer, and reported when it is left: {}",
                 held.least_ticks as f64 / tick_hz,
-                class_names(&held.classes, &classes)
+                class_names(&held.poses, &classes)
             ));
         }
         if let Some(activities) = &trained.model.activities {
             notes.push(format!(
-                "recognised as an activity, by what {:.1} s of it show, and reported when it ends: {}",
+                "recognised as an activity, from windows of {:.1} s, and reported when it ends: {}",
                 activities.window_ticks as f64 / tick_hz,
-                class_names(&activities.classes, &classes)
+                class_names(&activities.windows, &classes)
             ));
         }
         if !prepared.lacking.is_empty() {

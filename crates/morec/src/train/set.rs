@@ -55,20 +55,18 @@ impl TrainStream {
             .any(|k| overlap_share(ticks, &k.ticks) > share)
     }
 
-    /// What lies between the known stretches.
-    pub fn unknown(&self) -> Vec<Range<usize>> {
-        let mut known: Vec<&Range<usize>> = self.known.iter().map(|k| &k.ticks).collect();
-        known.sort_by_key(|ticks| ticks.start);
+    /// What lies between the known stretches, of `least` ticks and more.
+    pub fn unknown(&self, least: usize) -> Vec<Range<usize>> {
+        let len = self.rows.len();
         let mut parts = Vec::new();
         let mut free = 0;
-        for ticks in known {
-            if free < ticks.start.min(self.rows.len()) {
-                parts.push(free..ticks.start.min(self.rows.len()));
+        let known = self.known.iter().map(|known| known.ticks.clone());
+        for ticks in known.chain(std::iter::once(len..len)) {
+            let stop = ticks.start.min(len);
+            if stop >= free + least {
+                parts.push(free..stop);
             }
-            free = free.max(ticks.end);
-        }
-        if free < self.rows.len() {
-            parts.push(free..self.rows.len());
+            free = free.max(ticks.end.min(len));
         }
         parts
     }
@@ -132,11 +130,11 @@ impl TrainSet {
         samples
     }
 
-    /// The parts that hold none of the classes, in ticks of their streams.
-    pub fn background(&self) -> impl Iterator<Item = (Range<usize>, &TrainStream)> {
+    /// The parts of `least` ticks and more that hold none of the classes, in ticks of their streams.
+    pub fn background(&self, least: usize) -> impl Iterator<Item = (Range<usize>, &TrainStream)> {
         let streams = self.streams.iter().filter(|s| s.rest_is_background);
-        streams.flat_map(|stream| {
-            let unknown = stream.unknown().into_iter();
+        streams.flat_map(move |stream| {
+            let unknown = stream.unknown(least).into_iter();
             unknown.map(move |ticks| (ticks, stream))
         })
     }

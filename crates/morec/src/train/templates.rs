@@ -146,7 +146,7 @@ pub fn train(
     let activities = activities::learn(set, &samples, bones, params);
     let has_templates = |sample: &TrainSample| {
         let held = held.as_ref();
-        let is_held = held.is_some_and(|held| held.classes.contains(&sample.class));
+        let is_held = held.is_some_and(|held| held.poses.classes.contains(&sample.class));
         let activities = activities.as_ref();
         !is_held && !activities.is_some_and(|a| a.holds(sample.class))
     };

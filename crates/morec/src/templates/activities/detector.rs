@@ -78,16 +78,14 @@ impl Activities {
 impl ActivityDetector {
     /// Of rows of `layout`.
     pub fn new(activities: &Activities, layout: RowLayout) -> Self {
-        let metric = Metric::new(&activities.ridged, &activities.total);
-        let mut classes = activities.classes.clone();
-        classes.sort_unstable();
-        classes.dedup();
-        let number = |class: &ClassId| classes.partition_point(|known| known < class);
+        let windows = &activities.windows;
+        let metric = windows.metric();
+        let (classes, of_class) = windows.numbered();
         let half = activities.window_ticks / 2;
         Self {
-            means: WindowTable::new(&metric.apply_all(&activities.means)),
-            others: WindowTable::new(&metric.apply_all(&activities.others)),
-            of_class: activities.classes.iter().map(number).collect(),
+            means: WindowTable::new(&metric.apply_all(&windows.rows)),
+            others: WindowTable::new(&metric.apply_all(&windows.others)),
+            of_class,
             share: activities.share,
             window: SlidingWindow::new(layout, 2 * half + 1),
             half,
@@ -295,12 +293,18 @@ impl BestPath {
         distances
     }
 
+    /// The class, or none, that the best path ends with; the first of equals.
+    fn best(&self) -> usize {
+        let total = |state: &usize| self.totals[*state];
+        let states = 0..self.totals.len();
+        let best = states.max_by(|a, b| total(a).total_cmp(&total(b)).then(b.cmp(a)));
+        best.unwrap_or(0)
+    }
+
     /// Goes one window further.
     fn take_step(&mut self) {
         let slot = self.slot(self.steps);
-        let best = (0..self.totals.len())
-            .max_by(|a, b| self.totals[*a].total_cmp(&self.totals[*b]).then(b.cmp(a)))
-            .unwrap_or(0);
+        let best = self.best();
         let changed = self.totals[best] - if self.steps == 0 { 0.0 } else { CHANGE_COST };
         let (distances, before) = (&self.distances[slot.clone()], &mut self.before[slot]);
         for (state, total) in self.totals.iter_mut().enumerate() {
@@ -315,8 +319,7 @@ impl BestPath {
 
     /// The class of one of the last windows on the best path; `None` if it is none.
     fn class_at(&self, window: usize) -> Option<usize> {
-        let mut state = (0..self.totals.len())
-            .max_by(|a, b| self.totals[*a].total_cmp(&self.totals[*b]).then(b.cmp(a)))?;
+        let mut state = self.best();
         for later in (window + 1..self.steps).rev() {
             state = usize::from(self.before[self.slot(later)][state]);
         }
@@ -334,8 +337,7 @@ impl BestPath {
 mod tests {
     use super::*;
     use crate::features::BoneSet;
-    use crate::templates::PackedSymmetric;
-    use crate::templates::activities::windows::windows_of;
+    use crate::templates::{PackedSymmetric, ReferenceRows};
     use nalgebra::DMatrix;
 
     const WINDOW: usize = 31;
@@ -376,20 +378,23 @@ mod tests {
             }
             mean
         };
-        let dim = crate::templates::activities::windows::statistics(layout());
+        let dim = Activities::statistics(layout());
         let eye = PackedSymmetric::pack(&DMatrix::identity(dim, dim));
-        let mut means = Rows::new(dim);
-        means.push(&mean_of(&swing(200, 20.0, 1.0, 0.0)));
-        means.push(&mean_of(&swing(200, 20.0, 1.0, 2.0)));
+        let mut rows = Rows::new(dim);
+        rows.push(&mean_of(&swing(200, 20.0, 1.0, 0.0)));
+        rows.push(&mean_of(&swing(200, 20.0, 1.0, 2.0)));
         let mut others = Rows::new(dim);
         others.push(&mean_of(&swing(200, 20.0, 0.0, 1.0)));
         others.push(&mean_of(&swing(200, 20.0, 3.0, 1.0)));
-        Activities {
-            means,
+        let windows = ReferenceRows {
+            rows,
             classes: vec![ClassId(3), ClassId(1)],
             others,
             ridged: eye.clone(),
             total: eye,
+        };
+        Activities {
+            windows,
             window_ticks: WINDOW,
             share: 1.0,
         }

@@ -10,16 +10,16 @@ mod detector;
 mod windows;
 
 use crate::classes::ClassId;
-use crate::features::{RowLayout, Rows};
+use crate::features::RowLayout;
 
-use super::PackedSymmetric;
+use super::ReferenceRows;
 
 pub(super) use detector::ActivityDetector;
 pub(crate) use windows::{STEP_TICKS, windows_of};
 
 /// An activity of fewer windows than this is none.
 const LEAST_WINDOWS: usize = 8;
-/// Shares of others' distance for other rates of false alarms follow the rate with this exponent: on motion of other clips, 1.1 times as
+/// Shares of others' distance for other rates of false alarms follow the rate with this exponent: on motion of other clips, 1.2 times as
 /// wide in squared distance raised five times as many reports.
 const SHARE_EXPONENT: f64 = 0.05;
 /// The rate, a minute, that a share of 1 stands for.
@@ -28,16 +28,9 @@ const USUAL_RATE: f64 = 0.3;
 /// What windows of activities are compared with, before the metric.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Activities {
-    /// Mean windows, a row of `9 b + 8` statistics each.
-    pub means: Rows,
-    /// The class of each; a class has one, and another of mirrored copies.
-    pub classes: Vec<ClassId>,
-    /// Windows of anything else.
-    pub others: Rows,
-    /// As [`TemplateModel::ridged`](super::TemplateModel::ridged), of windows.
-    pub ridged: PackedSymmetric,
-    /// As [`TemplateModel::total`](super::TemplateModel::total), of windows.
-    pub total: PackedSymmetric,
+    /// Mean windows of the classes, `9 b + 8` statistics each (a class has one, and another of mirrored copies), and windows of anything
+    /// else.
+    pub windows: ReferenceRows,
     /// Ticks of a window, odd.
     pub window_ticks: usize,
     /// A window is of a class while it is nearer to it than this share of its distance from anything else.
@@ -56,30 +49,11 @@ impl Activities {
     /// # Errors
     /// A sentence about the first part that does not fit.
     pub fn check(&self, layout: RowLayout, classes: usize) -> Result<(), String> {
-        let expected = Self::statistics(layout);
-        let widths = [
-            self.means.dim(),
-            self.others.dim(),
-            self.ridged.dim(),
-            self.total.dim(),
-        ];
-        if let Some(found) = widths.iter().find(|width| **width != expected) {
-            return Err(format!(
-                "windows of activities have {found} values, the bones give {expected}"
-            ));
-        }
-        if self.means.is_empty() || self.means.len() != self.classes.len() {
-            return Err(format!(
-                "{} activities, classes for {}",
-                self.means.len(),
-                self.classes.len()
-            ));
-        }
-        if let Some(class) = self.classes.iter().find(|class| class.index() >= classes) {
-            return Err(format!("an activity of class {}, of {classes}", class.0));
-        }
-        if self.others.is_empty() {
-            return Err("activities, but no window of anything else".to_owned());
+        let what = "windows of activities";
+        self.windows
+            .check(what, Self::statistics(layout), classes)?;
+        if self.windows.rows.is_empty() || self.windows.others.is_empty() {
+            return Err("activities without windows, or without any of anything else".to_owned());
         }
         if !(1..=Self::MOST_TICKS).contains(&self.window_ticks) {
             return Err(format!(
@@ -104,7 +78,7 @@ impl Activities {
 
     /// True if `class` is an activity.
     pub fn holds(&self, class: ClassId) -> bool {
-        self.classes.contains(&class)
+        self.windows.classes.contains(&class)
     }
 
     /// For a rate of false alarms a minute.
@@ -120,10 +94,7 @@ impl Activities {
     pub(super) fn restricted(&self, layout: RowLayout, keep: &[usize]) -> Self {
         let kept = windows::kept_statistics(layout, keep);
         Self {
-            means: self.means.columns(&kept),
-            others: self.others.columns(&kept),
-            ridged: self.ridged.restricted(&kept),
-            total: self.total.restricted(&kept),
+            windows: self.windows.restricted(&kept),
             ..self.clone()
         }
     }
