@@ -67,11 +67,11 @@ pub struct MaterialArgs {
     /// Use of the unlabelled parts of labelled clips: motion that is none of the classes, or nothing to go by
     #[arg(long, value_enum, default_value = "background")]
     pub unlabelled: Unlabelled,
-    /// Synthetic everyday motion as background, too (templates only); auto: if --background holds less than a
+    /// Synthetic everyday motion as background, too (not with --method svrdm); auto: if --background holds less than a
     /// minute
     #[arg(long, value_enum, default_value = "always")]
     pub everyday: EverydayArg,
-    /// Training on mirrored copies of samples, too (templates only). yes: every class is the same on both sides; auto:
+    /// Training on mirrored copies of samples, too (not with --method svrdm). yes: every class is the same on both sides; auto:
     /// only classes named as two sides of one motion, as wave_left and wave_right, teach each other
     #[arg(long, value_enum, default_value = "auto")]
     pub mirror: MirrorArg,
@@ -79,7 +79,7 @@ pub struct MaterialArgs {
     /// class is not
     #[arg(long, value_delimiter = ',', value_name = "CLASSES")]
     pub one_sided: Vec<String>,
-    /// Parts that count (templates only): all (of clips without a body: their hands), upper (nothing below the hips: for
+    /// Parts that count (not with --method svrdm): all (of clips without a body: their hands), upper (nothing below the hips: for
     /// seated performers), arms, hand (left ones as in a mirror), left_hand, hands, body_and_hands, points3 (head and hands
     /// as tracked points), or names of bones, separated by commas, as the report of training lists them
     #[arg(long, value_name = "PARTS", default_value = "all")]

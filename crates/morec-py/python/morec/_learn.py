@@ -117,17 +117,17 @@ def train(
     unlabelled : {"background", "ignore"}
         What the unlabelled parts of labelled clips are: motion that is none of the classes, or nothing to go by.
     everyday : {"auto", "always", "never"}
-        Whether synthetic everyday motion is background too (templates only); auto: if background holds less than a
+        Whether synthetic everyday motion is background too (not with method svrdm); auto: if background holds less than a
         minute.
     mirror : {"auto", "yes", "no"}
-        Whether mirrored copies of samples teach too (templates only). yes: every class is the same on both sides; auto: only
+        Whether mirrored copies of samples teach too (not with method svrdm). yes: every class is the same on both sides; auto: only
         classes named as two sides of one motion, as wave_left and wave_right, teach each other.
     one_sided : sequence of str
         With mirror yes: classes whose mirror image is another motion; it then teaches what the class is not.
     activities, gestures : sequence of str
         With method auto: classes that are one or the other whatever their samples say.
     bones : str or sequence of str
-        Which parts count (templates only): all (of clips without a body: their hands), upper, arms, hand, left_hand, hands,
+        Which parts count (not with method svrdm): all (of clips without a body: their hands), upper, arms, hand, left_hand, hands,
         body_and_hands, points3, or names of bones.
     params : dict, optional
         Parameters of the method by their path, as ``{"rho": 0.4, "decode.lag_ticks": 2}``.
