@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::classes::ClassId;
-use crate::features::{BoneSet, FeatureParams, Profile, RowLayout, Rows};
+use crate::features::{BoneSet, Profile, RowLayout, Rows};
 use crate::templates::{
     Activities, Metric, PackedSymmetric, ReferenceRows, STEP_TICKS, squared_distance, windows_of,
 };
@@ -14,13 +14,9 @@ use super::set::{StreamKind, TrainSample, TrainSet, evenly};
 
 /// Length of a window, seconds; 2 to 3 are alike.
 const WINDOW_SECS: f64 = 2.5;
-/// A class whose longest sample lasts this long goes on.
+/// A class whose longest sample lasts this long goes on. Gestures with a pause or with repetitions, which templates recognise better, last up
+/// to five.
 const LONG_SECS: f64 = 6.0;
-/// One whose longest sample lasts this long does, if its samples are [`EVEN`].
-const EVEN_SECS: f64 = 4.0;
-/// The second half of an even sample is like its first: the squared difference of their mean directions is below this share of the
-/// directions' variance.
-const EVEN: f64 = 0.45;
 /// Windows of anything else at most, of made everyday motion and of all other sources each.
 const MOST_OTHERS: usize = 500;
 /// Fewer windows of anything else say little of what is none of the classes.
@@ -39,7 +35,7 @@ pub(super) fn learn(
         return None;
     }
     let layout = RowLayout::of(bones);
-    let classes = activity_classes(set, samples, layout, params);
+    let classes = activity_classes(set, samples, params);
     if classes.is_empty() {
         return None;
     }
@@ -78,7 +74,6 @@ pub(super) fn learn(
 fn activity_classes(
     set: &TrainSet,
     samples: &[TrainSample],
-    layout: RowLayout,
     params: &TrainParams,
 ) -> BTreeSet<ClassId> {
     let goes_on = |class: &ClassId| {
@@ -87,44 +82,11 @@ fn activity_classes(
             return *kind == ClassKind::Activity;
         }
         let of_class = samples.iter().filter(|s| s.class == *class);
-        let shown: Vec<&TrainSample> = of_class
-            .filter(|s| !set.streams[s.stream].is_copy)
-            .collect();
-        keep_on(&shown, layout, &params.features)
+        let longest = of_class.map(|s| s.rows.len()).max().unwrap_or(0);
+        longest as f64 >= LONG_SECS * params.features.tick_hz()
     };
     let taught: BTreeSet<ClassId> = samples.iter().map(|s| s.class).collect();
     taught.into_iter().filter(goes_on).collect()
-}
-
-/// True if samples of a class are those of an activity: long, or rather long and even.
-fn keep_on(samples: &[&TrainSample], layout: RowLayout, features: &FeatureParams) -> bool {
-    let longest = samples.iter().map(|s| s.rows.len()).max().unwrap_or(0);
-    let secs = longest as f64 / features.tick_hz();
-    let mut uneven: Vec<f64> = samples
-        .iter()
-        .map(|s| unevenness(&s.rows, layout))
-        .collect();
-    uneven.sort_by(f64::total_cmp);
-    let is_even = uneven.get(uneven.len() / 2).is_some_and(|h| *h < EVEN);
-    secs >= LONG_SECS || (secs >= EVEN_SECS && is_even)
-}
-
-/// Squared difference of the mean directions of the first half and the second, as a share of the directions' variance.
-fn unevenness(rows: &Rows, layout: RowLayout) -> f64 {
-    let half = rows.len() / 2;
-    let mean = |ticks: std::ops::Range<usize>, column: usize| {
-        let count = ticks.len().max(1) as f64;
-        let values = ticks.map(|t| f64::from(rows.row(t)[column]));
-        values.sum::<f64>() / count
-    };
-    let (mut apart, mut variance) = (0.0, 1e-9);
-    for column in layout.directions() {
-        let all = mean(0..rows.len(), column);
-        let square = |row: &[f32]| (f64::from(row[column]) - all).powi(2);
-        variance += rows.iter().map(square).sum::<f64>() / rows.len() as f64;
-        apart += (mean(0..half, column) - mean(half..rows.len(), column)).powi(2);
-    }
-    apart / variance
 }
 
 /// How near the windows of each group are to its mean.
@@ -254,7 +216,7 @@ mod tests {
         let set = TrainSet {
             classes: classes.map(str::to_owned).to_vec(),
             streams: vec![
-                stream(swing(5.0, 1.0, 1.0), Some(0)),
+                stream(swing(6.5, 1.0, 1.0), Some(0)),
                 stream(swing(4.5, 1.4, 1.0), Some(0)),
                 stream(raise(1.5), Some(1)),
                 stream(raise(1.2), Some(1)),
