@@ -238,6 +238,10 @@ impl MaterialArgs {
     /// The method of training and its parameters.
     pub fn recipe(&self) -> Result<Recipe> {
         let unlabelled_is_background = self.unlabelled == Unlabelled::Background;
+        let names_kinds = !self.activities.is_empty() || !self.gestures.is_empty();
+        if names_kinds && self.method != Method::Auto {
+            bail!("--activities and --gestures are for --method auto");
+        }
         match self.method {
             Method::Auto | Method::Templates => {
                 Ok(self.template_options(unlabelled_is_background)?.into())

@@ -198,6 +198,12 @@ pub fn recipe(given: &Bound<'_, PyDict>) -> PyResult<Recipe> {
         }
     };
     let method = word("method")?;
+    let kinds = (names("activities")?, names("gestures")?);
+    if method != "auto" && !(kinds.0.is_empty() && kinds.1.is_empty()) {
+        return Err(value_error(
+            "activities and gestures are for method \"auto\"",
+        ));
+    }
     match method.as_str() {
         "auto" | "templates" => Ok(TrainOptions {
             unlabelled_is_background,
@@ -210,7 +216,7 @@ pub fn recipe(given: &Bound<'_, PyDict>) -> PyResult<Recipe> {
             params: {
                 let mut params = with_parameters(TrainParams::default(), &params)?;
                 params.activities &= method == "auto";
-                params.set_kinds(&names("activities")?, &names("gestures")?);
+                params.set_kinds(&kinds.0, &kinds.1);
                 params
             },
         }

@@ -186,6 +186,26 @@ fn a_wrong_parameter_names_the_nearest() {
     }
 }
 
+#[test]
+fn kinds_of_classes_are_of_classes_that_there_are() {
+    let (folder, _) = labelled();
+    let train = |options: &[&str]| {
+        let command = ["train", "--db", "m.mdb", "-o", "i.index"];
+        folder.morec(&[&command, options].concat())
+    };
+    for (options, says) in [
+        (&["--activities", "jump"][..], "no class is called \"jump\""),
+        (&["--one-sided", "jump"], "no class is called \"jump\""),
+        (
+            &["--method", "templates", "--gestures", "wave"],
+            "are for --method auto",
+        ),
+    ] {
+        let ran = train(options);
+        assert!(ran.code == Some(1) && ran.err.contains(says), "{ran:?}");
+    }
+}
+
 /// Training and measuring read every form of labels that `db label` reads.
 #[test]
 fn every_form_of_labels_teaches() {

@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
-use crate::decode::{DecodeParams, FAR, TYPICAL_SPREAD};
+use crate::decode::{DecodeParams, FAR};
 use crate::features::Rows;
 
 use super::bank::{Match, PartialMatch, TemplateBank};
+use super::spread_norm::{NormBound, SpreadNorm};
 use super::stretches::Stretches;
 
 /// A [`TemplateBank`] that also knows how far from each template a motionless body would be.
@@ -21,7 +22,7 @@ use super::stretches::Stretches;
 /// Distances `D` are normalised to `D / ((V_T + V_S) / 2 V_0)^b` with an exponent `b`
 /// ([`DecodeParams::spread_exponent`]) from 0 (plain) to 1 (a share of the motion that is not explained) and `V_0` =
 /// [`DecodeParams::typical_spread`], which keeps their scale: a small gesture must be met more exactly than a large one. All are
-/// multiplied by [`TYPICAL_SPREAD`]` / V_0`, so that a threshold means the same whatever rows are made of.
+/// multiplied by [`TYPICAL_SPREAD`](crate::decode::TYPICAL_SPREAD)` / V_0`, so that a threshold means the same whatever rows are made of.
 ///
 /// Noise of the stream adds to `D` and `V_S` alike. What the stretches [measured](Stretches::noise) beyond the template's own noise is taken
 /// off both, at most a [share](DecodeParams::noise_share) of `D`; up to 0.2 of the usual spread counts as none.
@@ -44,65 +45,8 @@ pub struct Matcher {
     means: Arc<Rows>,
 }
 
-/// A line above a template's divisor of distances, as a function of the spread of the stretch.
-#[derive(Debug, Clone, Copy)]
-struct NormBound {
-    at_zero: f32,
-    slope: f32,
-}
-
-impl NormBound {
-    /// The tangent where both spreads are `spread`: a power of at most 1 is concave, so its tangents lie above it. A margin covers
-    /// rounding.
-    fn new(norm: SpreadNorm, spread: f32) -> Self {
-        const MARGIN: f32 = 1.0 + 1e-4;
-        let exponent = norm.exponent;
-        if spread < LEAST_SPREAD * norm.typical || exponent > 1.0 {
-            return Self {
-                at_zero: f32::INFINITY,
-                slope: 0.0,
-            };
-        }
-        let at_tangent = MARGIN * norm.at(spread);
-        Self {
-            at_zero: (at_tangent * (1.0 - exponent / 2.0)).max(MARGIN * norm.at(0.0)),
-            slope: at_tangent * exponent / (2.0 * spread),
-        }
-    }
-
-    fn at(self, spread: f32) -> f32 {
-        self.at_zero + self.slope * spread
-    }
-}
-
 /// Noise up to this share of the typical spread is none: fast motion leaves as much.
 const LEAST_NOISE: f32 = 0.2;
-
-/// Smaller spreads, as shares of the typical one, count as this.
-const LEAST_SPREAD: f32 = 1e-3;
-
-/// Divisors of distances.
-#[derive(Debug, Clone, Copy)]
-struct SpreadNorm {
-    exponent: f32,
-    /// `V_0`.
-    typical: f32,
-}
-
-impl SpreadNorm {
-    /// Divisor of a distance where the mean spread is `spread`.
-    fn at(self, spread: f32) -> f32 {
-        let scale = self.typical / TYPICAL_SPREAD;
-        if self.exponent == 0.0 {
-            scale
-        } else {
-            scale
-                * (spread / self.typical)
-                    .max(LEAST_SPREAD)
-                    .powf(self.exponent)
-        }
-    }
-}
 
 /// A template's match, held against a body at rest and normalised.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -423,15 +367,6 @@ mod tests {
                 prop_assert!((nearer.distance - left * scale).abs() < 1e-3 * (1.0 + nearer.distance));
                 prop_assert!((nearer.rest_share * (other - 0.5 * offset) - left).abs() < 1e-2 * (1.0 + nearer.rest_share));
             }
-        }
-
-        #[test]
-        fn the_line_lies_above_the_divisor(
-            exponent in 0.0f32..=1.0, typical in 0.1f32..5.0, template in 0.0f32..20.0, stretch in 0.0f32..60.0,
-        ) {
-            let norm = SpreadNorm { exponent, typical };
-            let line = NormBound::new(norm, template).at(stretch);
-            prop_assert!(line >= norm.at((template + stretch) / 2.0));
         }
 
         #[test]

@@ -15,6 +15,7 @@ mod model;
 mod operating;
 mod performer;
 mod reference;
+mod spread_norm;
 mod stretches;
 mod trace;
 mod verifier;

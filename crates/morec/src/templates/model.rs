@@ -39,7 +39,7 @@ pub struct TemplateModel {
     pub total: PackedSymmetric,
     /// Distances at or above this are never reported.
     pub threshold: f32,
-    /// The same for each class by itself, where there is no verifier; empty if the one holds for all.
+    /// The same for each class by itself, of older indexes; empty if the one holds for all.
     pub class_thresholds: Vec<f32>,
     /// Thresholds for other rates of false alarms, ascending; empty in older indexes.
     pub operating: Vec<OperatingPoint>,

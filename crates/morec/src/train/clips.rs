@@ -23,6 +23,9 @@ pub fn train_clips(
     options: &TrainOptions,
     progress: &dyn Progress,
 ) -> Result<(TemplateModel, TrainingReport), TrainError> {
+    options
+        .check_names(labelling.classes)
+        .map_err(TrainError::Params)?;
     let mut all = clips.to_vec();
     if adds_everyday(clips, options.everyday) {
         all.extend(everyday_clips(EVERYDAY_SEED));
@@ -35,7 +38,7 @@ pub fn train_clips(
     add_mirrored(&mut prepared.set, bones, mirror, &options.one_sided);
     let params = prepared.params(&options.params);
     let trained = train(&prepared.set, prepared.bones, &params, progress)?;
-    let report = TrainingReport::of(&prepared, &trained, params.features.tick_hz());
+    let report = TrainingReport::of(&prepared, &trained, &params);
     Ok((trained.model, report))
 }
 

@@ -47,6 +47,21 @@ impl Default for TrainOptions {
     }
 }
 
+impl TrainOptions {
+    /// What the options say of motions that are none of `classes`, in words.
+    pub(super) fn check_names(&self, classes: &[String]) -> Result<(), String> {
+        let kinds = self.params.kinds.keys();
+        let mut named = kinds.chain(&self.one_sided);
+        match named.find(|name| !classes.contains(name)) {
+            None => Ok(()),
+            Some(name) => Err(format!(
+                "no class is called {name:?}; there are {}",
+                classes.join(", ")
+            )),
+        }
+    }
+}
+
 /// Seed of the everyday motion that indexes are trained with.
 pub const EVERYDAY_SEED: u64 = 2009;
 

@@ -25,10 +25,6 @@ pub struct TrainParams {
     pub max_pairs: usize,
     /// The threshold is this times the smallest distance from a template to background motion.
     pub background_share: f64,
-    /// A class's own threshold is this times the smallest distance to motion that is not the class; 0: none has one.
-    pub class_share: f64,
-    /// A class's own threshold is at least the common one and at most this times it.
-    pub class_range: f64,
     /// Share of everyday clips that may come nearer than what sets the threshold.
     pub everyday_may_pass: f64,
     /// The threshold lies where background motion would be reported this often a minute; 0: by
@@ -148,7 +144,6 @@ impl Default for TrainParams {
         Self {
             features: FeatureParams::default(),
             decode: DecodeParams::default(),
-            class_share: 0.0,
             faster_copies: 2,
             alarms_per_minute: 0.3,
             max_threshold: 2.8,
@@ -187,8 +182,6 @@ impl TrainParams {
             faster_people: 2,
             max_pairs: 200,
             background_share: 0.85,
-            class_share: 0.0,
-            class_range: 1.5,
             everyday_may_pass: 0.1,
             alarms_per_minute: 0.0,
             max_threshold: f64::MAX,

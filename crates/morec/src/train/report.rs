@@ -2,13 +2,14 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::classes::ClassInfo;
+use crate::classes::{ClassId, ClassInfo};
 use crate::features::Profile;
 use crate::templates::{OperatingPoint, ReferenceRows};
 
 use super::alike::AlikeClasses;
 use super::from_clips::Prepared;
 use super::notes::class_notes;
+use super::params::{ClassKind, TrainParams};
 use super::set::{StreamKind, TrainSample, TrainStream};
 use super::templates::TrainedTemplates;
 use super::thesis::SvrdmReport;
@@ -18,6 +19,26 @@ fn class_names(reference: &ReferenceRows, classes: &[ClassInfo]) -> String {
     let distinct = reference.distinct_classes();
     let names = distinct.iter().map(|c| classes[c.index()].name.as_str());
     names.collect::<Vec<_>>().join(", ")
+}
+
+/// A note about classes that were named activities and are none.
+fn no_activity_note(trained: &TrainedTemplates, params: &TrainParams) -> Option<String> {
+    let activities = trained.model.activities.as_ref();
+    let is_none = |name: &str| {
+        let number = (trained.model.classes.iter()).position(|class| class.name == name);
+        let class = number.map(|number| ClassId(number as u16));
+        class.is_some_and(|class| !activities.is_some_and(|a| a.holds(class)))
+    };
+    let named = params.kinds.iter();
+    let named = named.filter(|(name, kind)| **kind == ClassKind::Activity && is_none(name));
+    let names: Vec<&str> = named.map(|(name, _)| name.as_str()).collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "recognised as a gesture, though named an activity: {}; an activity takes a body and other motion to tell it from: \
+             unlabelled parts, background, made everyday motion",
+            names.join(", ")
+        )
+    })
 }
 
 /// Report of a training run.
@@ -51,7 +72,8 @@ pub struct TrainingReport {
 
 impl TrainingReport {
     /// The report on `trained`, from `prepared`.
-    pub fn of(prepared: &Prepared, trained: &TrainedTemplates, tick_hz: f64) -> Self {
+    pub fn of(prepared: &Prepared, trained: &TrainedTemplates, params: &TrainParams) -> Self {
+        let tick_hz = params.features.tick_hz();
         let streams = &prepared.set.streams;
         let labelled = streams.iter().filter(|s| s.source == StreamKind::Labelled);
         let labelled: BTreeSet<&str> = labelled.map(|s| s.name.as_str()).collect();
@@ -109,6 +131,7 @@ impl TrainingReport {
                 class_names(&activities.windows, &classes)
             ));
         }
+        notes.extend(no_activity_note(trained, params));
         if !prepared.lacking.is_empty() {
             notes.push(format!(
                 "left out because they lack bones that the labelled clips have: {}",

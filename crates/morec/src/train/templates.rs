@@ -219,12 +219,6 @@ pub fn train(
             set_rest_share(&mut distances, plain);
         }
     }
-    let class_thresholds = match verifier {
-        None if params.class_share > 0.0 => {
-            thresholds::of_classes(set, &samples, &distances, threshold, params)
-        }
-        _ => Vec::new(),
-    };
     let alike = match verifier {
         None => alike_classes(set, &samples, &distances, threshold, params),
         Some(_) => Vec::new(),
@@ -249,7 +243,7 @@ pub fn train(
         ridged,
         total,
         threshold,
-        class_thresholds,
+        class_thresholds: Vec::new(),
         operating: operating.points,
         calibration: params.calibrate.then_some(calibration),
         stranger: stranger.filter(|_| verifier.is_none()),

@@ -44,11 +44,6 @@ pub const NOTES: &[(&str, &str)] = &[
         "more pairs of samples give the same result; bounds time",
     ),
     (
-        "class_share",
-        "0 is one threshold for all: distances are normalised class by class already; 0.5 was the default before",
-    ),
-    ("class_range", "2 accepts motion of exercises"),
-    (
         "everyday_may_pass",
         "synthetic motion may happen to be one of the classes",
     ),
