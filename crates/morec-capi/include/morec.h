@@ -614,6 +614,14 @@ typedef struct MorecEvent {
      * Wall clock when that frame was pushed: seconds since 1970, UTC.
      */
     double wall_secs;
+    /**
+     * Repetitions of an activity so far; 0 where nothing is counted.
+     */
+    uint32_t repetitions;
+    /**
+     * Duration of one, as it was last.
+     */
+    double period_secs;
 } MorecEvent;
 
 /**

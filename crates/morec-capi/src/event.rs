@@ -40,11 +40,15 @@ pub struct MorecEvent {
     pub reported_secs: f64,
     /// Wall clock when that frame was pushed: seconds since 1970, UTC.
     pub wall_secs: f64,
+    /// Repetitions of an activity so far; 0 where nothing is counted.
+    pub repetitions: u32,
+    /// Duration of one, as it was last.
+    pub period_secs: f64,
 }
 
 impl MorecEvent {
     /// Size of the first release's.
-    pub(crate) const FIRST_SIZE: usize = size_of::<Self>();
+    pub(crate) const FIRST_SIZE: usize = std::mem::offset_of!(Self, repetitions);
 }
 
 impl From<&Event> for MorecEvent {
@@ -66,6 +70,8 @@ impl From<&Event> for MorecEvent {
             stop_secs: event.stop_secs,
             reported_secs: event.reported_secs,
             wall_secs: event.wall_secs,
+            repetitions: event.repetitions.map_or(0, |r| r.count),
+            period_secs: event.repetitions.map_or(0.0, |r| r.period_secs),
         }
     }
 }

@@ -23,7 +23,7 @@ impl NamedEvent<'_> {
     /// As one line of JSON, without the line's end.
     pub fn json(&self) -> String {
         let e = self.event;
-        serde_json::json!({
+        let mut line = serde_json::json!({
             "type": "motion",
             "phase": e.phase.name(),
             "class": self.class,
@@ -38,8 +38,12 @@ impl NamedEvent<'_> {
             "actor": e.actor.0,
             "motion": e.motion,
             "seq": e.sequence,
-        })
-        .to_string()
+        });
+        if let Some(repeated) = e.repetitions {
+            line["repetitions"] = repeated.count.into();
+            line["period_secs"] = rounded(repeated.period_secs, 3).into();
+        }
+        line.to_string()
     }
 }
 

@@ -10,7 +10,8 @@ use crate::{Address, LiveError, NamedEvent, Sink};
 /// Sends two messages an event, each in a packet of its own:
 ///
 /// - `/morec/event s s f f f i`: class, phase (start, update, cancel, end), score, start and stop (seconds of the
-///   stream), actor; after these, for who wants more: progress (f), motion number and sequence number (i).
+///   stream), actor; after these, for who wants more: progress (f), motion number and sequence number (i), of an activity
+///   its repetitions so far (i) and the seconds of one (f), 0 where nothing is counted.
 /// - `/VMC/Thru/morec/event s f`, for ends only: class and score; it passes through a chain of VMC programs.
 pub struct OscSink {
     socket: UdpSocket,
@@ -62,6 +63,8 @@ impl Sink for OscSink {
             Arg::Float(e.progress as f32),
             Arg::Int(e.motion as i32),
             Arg::Int(e.sequence as i32),
+            Arg::Int(e.repetitions.map_or(0, |r| r.count as i32)),
+            Arg::Float(e.repetitions.map_or(0.0, |r| r.period_secs as f32)),
         ];
         self.send("/morec/event", &args)?;
         if event.is_final() {

@@ -157,7 +157,7 @@ impl PyCrossval {
         for found in &self.tested.founds {
             rows.push(plain(py, found)?.cast_into::<PyDict>()?);
         }
-        table(py, &DETECTION, rows)
+        table(py, &DETECTION[..6], rows)
     }
 
     /// All labels.

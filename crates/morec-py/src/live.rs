@@ -13,6 +13,7 @@ use pyo3::types::PyDict;
 
 use crate::errors::{file_error, morec_error, value_error};
 use crate::index::PyIndex;
+use crate::tables::set_repetitions;
 
 /// A session that listens; `morec.listen` is made of it.
 #[pyclass(frozen, module = "morec")]
@@ -144,6 +145,7 @@ impl LiveSession {
         row.set_item("motion", event.motion)?;
         row.set_item("sequence", event.sequence)?;
         row.set_item("wall_secs", event.wall_secs)?;
+        set_repetitions(&row, event.repetitions)?;
         Ok(row)
     }
 }

@@ -16,6 +16,7 @@ use crate::arrays::{doubles, motion, pose, wrong_shape};
 use crate::clip::PyClip;
 use crate::errors::{morec_error, value_error};
 use crate::options::mapping;
+use crate::tables::set_repetitions;
 
 /// Recognises motions in one performer's stream of joint positions. Made by `Index.recognizer`.
 ///
@@ -129,6 +130,7 @@ impl PyRecognizer {
             row.set_item(intern!(py, "stop_secs"), d.stop_secs)?;
             row.set_item(intern!(py, "score"), d.score)?;
             row.set_item(intern!(py, "reported_secs"), d.reported_secs)?;
+            set_repetitions(&row, d.repetitions)?;
             list.append(row)?;
         }
         Ok(list)
@@ -224,6 +226,7 @@ impl PyRecognizer {
         row.set_item("progress", early.progress)?;
         row.set_item("start_secs", early.start_secs)?;
         row.set_item("seen_secs", early.seen_secs)?;
+        set_repetitions(&row, early.repetitions)?;
         Ok(Some(row))
     }
 

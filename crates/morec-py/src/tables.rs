@@ -4,6 +4,7 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyList, PyString};
 
+use morec::decode::Repetitions;
 use morec::live::{Detection, Model};
 use serde::Serialize;
 
@@ -35,13 +36,15 @@ pub fn table<'py>(
 }
 
 /// Columns of tables of detections.
-pub const DETECTION: [&str; 6] = [
+pub const DETECTION: [&str; 8] = [
     "clip",
     "class",
     "start_secs",
     "stop_secs",
     "score",
     "reported_secs",
+    "repetitions",
+    "period_secs",
 ];
 
 /// A detection in the clip or stream `clip`, with the columns of [`DETECTION`].
@@ -58,7 +61,14 @@ pub fn detection<'py>(
     row.set_item("stop_secs", found.stop_secs)?;
     row.set_item("score", found.score)?;
     row.set_item("reported_secs", found.reported_secs)?;
+    set_repetitions(&row, found.repetitions)?;
     Ok(row)
+}
+
+/// What was counted of an activity; `None` in both where nothing was.
+pub fn set_repetitions(row: &Bound<'_, PyDict>, counted: Option<Repetitions>) -> PyResult<()> {
+    row.set_item("repetitions", counted.map(|r| r.count))?;
+    row.set_item("period_secs", counted.map(|r| r.period_secs))
 }
 
 /// The detections of several clips, one after the other.

@@ -19,7 +19,8 @@ def spans(rows: Any) -> list[tuple[str, float, float]]:
 
 def test_a_newcomer_is_recognised(index: morec.Index, newcomer: morec.Clip) -> None:
     found = index.recognize(newcomer)
-    assert found.columns == ["clip", "class", "start_secs", "stop_secs", "score", "reported_secs"]
+    columns = ["clip", "class", "start_secs", "stop_secs", "score", "reported_secs", "repetitions", "period_secs"]
+    assert found.columns == columns
     assert len(found) >= 3 and {row["clip"] for row in found} == {newcomer.name}
     for row in found:
         assert row["class"] in index.class_names and 0 <= row["score"] <= 1

@@ -46,6 +46,10 @@ export interface Detection {
   /** 0 just accepted … 1 identical to a sample. */
   score: number;
   reported_secs: number;
+  /** Of an activity that is counted, so far. */
+  repetitions?: number;
+  /** Seconds of one repetition, as it was last. */
+  period_secs?: number;
 }
 
 export interface MotionEvent extends Detection {

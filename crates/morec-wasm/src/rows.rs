@@ -1,5 +1,6 @@
 //! What is reported, as the objects that JavaScript gets. Their fields are those of the command's JSON lines.
 
+use morec::decode::Repetitions;
 use morec::live::{Detection, Event, Model};
 use serde::Serialize;
 
@@ -11,6 +12,8 @@ pub struct DetectionRow<'a> {
     stop_secs: f64,
     score: f64,
     reported_secs: f64,
+    #[serde(flatten)]
+    repetitions: Option<Repetitions>,
 }
 
 impl<'a> From<&Detection<&'a str>> for DetectionRow<'a> {
@@ -21,6 +24,7 @@ impl<'a> From<&Detection<&'a str>> for DetectionRow<'a> {
             stop_secs: d.stop_secs,
             score: d.score,
             reported_secs: d.reported_secs,
+            repetitions: d.repetitions,
         }
     }
 }
@@ -36,6 +40,8 @@ pub struct EventRow<'a> {
     start_secs: f64,
     stop_secs: f64,
     reported_secs: f64,
+    #[serde(flatten)]
+    repetitions: Option<Repetitions>,
 }
 
 impl<'a> EventRow<'a> {
@@ -50,6 +56,7 @@ impl<'a> EventRow<'a> {
             start_secs: event.start_secs,
             stop_secs: event.stop_secs,
             reported_secs: event.reported_secs,
+            repetitions: event.repetitions,
         }
     }
 }

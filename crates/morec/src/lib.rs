@@ -156,6 +156,8 @@ pub mod index;
 #[cfg(feature = "live")]
 pub mod live;
 #[cfg(feature = "live")]
+mod periodicity;
+#[cfg(feature = "live")]
 pub mod templates;
 #[cfg(feature = "live")]
 mod thesis;

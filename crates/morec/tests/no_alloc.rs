@@ -79,6 +79,28 @@ fn pushing_takes_no_memory() {
     packets_take_no_memory();
 }
 
+#[test]
+fn activities_and_their_counts_take_no_memory() {
+    let model = Arc::new(made::activity_model());
+    let (bones, poses) = made::poses(&made::waving(3));
+    let mut recognizer = Recognizer::new(&model, bones).unwrap();
+    let (mut found, mut counted) = (Vec::with_capacity(8), 0);
+    let allocations = allocations(|| {
+        for (time_secs, pose) in &poses {
+            found.extend_from_slice(recognizer.push(*time_secs, pose));
+            let early = recognizer.early_detection();
+            let repeated = early.and_then(|early| early.repetitions);
+            counted = repeated.map_or(counted, |r| r.count);
+        }
+        found.extend_from_slice(recognizer.finish());
+    });
+    assert_eq!(allocations, 0);
+    assert_eq!(found.len(), 1, "{found:?}");
+    let repeated = found[0].repetitions.unwrap();
+    assert!((7..=9).contains(&repeated.count), "{repeated:?}");
+    assert!((7..=12).contains(&counted), "while it went on: {counted}");
+}
+
 /// From frames to events, tentative ones included.
 fn events_take_no_memory(model: &Arc<morec::templates::TemplateModel>, poses: &[made::Timed]) {
     let mut performer = Performer::new(model, PerformerId(0), &EventOptions::default());

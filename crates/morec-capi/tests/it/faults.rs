@@ -455,7 +455,8 @@ fn polling_takes_what_fits_and_writes_no_farther() {
     let mut places = [0xEEu8; 300];
     let first = places.as_mut_ptr().cast::<MorecEvent>();
     let first = first.wrapping_byte_add(first.align_offset(8));
-    assert_eq!(poll(first, of - 8, 1), (MorecStatus::StructSize, 0));
+    let first_of = std::mem::offset_of!(MorecEvent, repetitions);
+    assert_eq!(poll(first, first_of - 8, 1), (MorecStatus::StructSize, 0));
     assert_eq!(poll(first, of + 4, 1), (MorecStatus::StructSize, 0));
     assert_eq!(
         poll(first.wrapping_byte_add(1), of, 1),

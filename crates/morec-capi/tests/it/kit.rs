@@ -189,5 +189,9 @@ pub fn detection(event: &MorecEvent) -> Detection {
         stop_secs: event.stop_secs,
         score: event.score,
         reported_secs: event.reported_secs,
+        repetitions: (event.repetitions > 0).then_some(morec::decode::Repetitions {
+            count: event.repetitions,
+            period_secs: event.period_secs,
+        }),
     }
 }

@@ -195,6 +195,7 @@ fn detection(model: &Model, found: &ClipDetection) -> Option<Detection> {
         stop_secs: found.stop_secs,
         score: found.score.unwrap_or_default(),
         reported_secs: found.reported_secs.unwrap_or(found.stop_secs),
+        repetitions: None,
     })
 }
 

@@ -341,11 +341,15 @@ fn write_found(
         OutputFormat::Tsv => writeln!(out, "{line}"),
         OutputFormat::Jsonl => {
             let frame = |secs: f64| (secs * rate_hz).round() as u64;
-            let object = serde_json::json!({
+            let mut object = serde_json::json!({
                 "clip": clip, "start": frame(found.start_secs), "stop": frame(found.stop_secs), "class": class,
                 "score": found.score, "reported_at": frame(found.reported_secs),
                 "start_secs": found.start_secs, "stop_secs": found.stop_secs, "reported_secs": found.reported_secs,
             });
+            if let Some(repeated) = found.repetitions {
+                object["repetitions"] = repeated.count.into();
+                object["period_secs"] = repeated.period_secs.into();
+            }
             writeln!(out, "{object}")
         }
     }

@@ -39,20 +39,22 @@ impl Sink for Terminal {
         if e.phase != Phase::End {
             return Ok(());
         }
+        let repeated = e.repetitions.map_or(String::new(), |r| {
+            format!("  {} times, {:.2} s each", r.count, r.period_secs)
+        });
+        let performer = match e.actor.0 {
+            0 => String::new(),
+            number => format!("  (performer {number})"),
+        };
         let mut out = crate::console::stdout();
         writeln!(
             out,
-            "{:9.2} to {:7.2} s  {:20} {:.2}  reported {:.2} s after its end{}",
+            "{:9.2} to {:7.2} s  {:20} {:.2}  reported {:.2} s after its end{repeated}{performer}",
             e.start_secs,
             e.stop_secs,
             event.class,
             e.score,
             e.reported_secs - e.stop_secs,
-            if e.actor.0 > 0 {
-                format!("  (performer {})", e.actor.0)
-            } else {
-                String::new()
-            },
         )?;
         out.flush()
     }

@@ -18,6 +18,7 @@ fn event(sequence: u64) -> Event {
         start_secs: 1.0,
         stop_secs: 2.0,
         reported_secs: 2.1,
+        repetitions: None,
         wall_secs: 1.0e9,
     }
 }

@@ -41,7 +41,8 @@ class listen:
     ------
     dict
         phase ("end", or a tentative one), class, start_secs, stop_secs, score, progress, reported_secs, actor, motion,
-        sequence, wall_secs (seconds since 1970 at the arrival of the frame that settled it).
+        sequence, wall_secs (seconds since 1970 at the arrival of the frame that settled it), and of an activity that repeats
+        repetitions so far and period_secs (None where nothing is counted).
 
     Examples
     --------

@@ -183,7 +183,8 @@ class Index:
         Returns
         -------
         Table
-            Columns clip, class, start_secs, stop_secs, score (0 just accepted … 1 identical to a sample), reported_secs.
+            Columns clip, class, start_secs, stop_secs, score (0 just accepted … 1 identical to a sample), reported_secs, and of
+            activities that repeat repetitions and period_secs (None where nothing is counted).
 
         Warns
         -----
@@ -273,7 +274,8 @@ class Recognizer:
         Returns
         -------
         list of dict
-            The detections that this pose settled, mostly none: class, start_secs, stop_secs, score, reported_secs.
+            The detections that this pose settled, mostly none: class, start_secs, stop_secs, score, reported_secs,
+            repetitions, period_secs.
         """
     def push_all(self, times_secs: npt.ArrayLike, positions: npt.ArrayLike) -> list[dict[str, Any]]:
         """Take many poses, other Python threads running meanwhile; the same detections as of pushing one by one.
@@ -288,7 +290,7 @@ class Recognizer:
     def early_detection(self) -> dict[str, Any] | None:
         """The motion that seems to be under way after the last push, or None. Tentative.
 
-        Keys class, score, progress (0 to 1), start_secs, seen_secs.
+        Keys class, score, progress (0 to 1), start_secs, seen_secs, repetitions, period_secs.
         """
     def __enter__(self) -> Recognizer: ...
     def __exit__(

@@ -151,7 +151,7 @@ fn trained(
         TrainError::Cancelled => JobError::Cancelled,
         other => JobError::Failed(format!("Training stopped: {other}")),
     })?;
-    let report = TrainingReport::of(&prepared, &done, params.features.tick_hz());
+    let report = TrainingReport::of(&prepared, &done, &params);
     let index = MotionIndex {
         roles: data.role_names(),
         provenance: Provenance {

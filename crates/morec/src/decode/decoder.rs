@@ -443,6 +443,7 @@ impl Decoder {
                 score: ending.score,
                 separation: ending.separation,
                 rest_share: ending.rest_share,
+                repetitions: None,
             });
             // What begins before the oldest tick that is kept has nothing before it that could still be reported.
             tick = if start > oldest {

@@ -80,6 +80,18 @@ pub struct TickDetection {
     pub separation: f32,
     /// See [`ClassDistance::rest_share`].
     pub rest_share: f32,
+    /// Of an activity that repeats.
+    pub repetitions: Option<Repetitions>,
+}
+
+/// Repetitions of an activity.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+pub struct Repetitions {
+    /// The nearest whole number, at least 1.
+    #[serde(rename = "repetitions")]
+    pub count: u32,
+    /// Duration of one, as it was last.
+    pub period_secs: f64,
 }
 
 /// A stretch of fewer ticks than this after its first is no motion.

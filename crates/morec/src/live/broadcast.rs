@@ -189,6 +189,7 @@ mod tests {
             stop_secs: 1.0,
             reported_secs: 1.0,
             wall_secs: 0.0,
+            repetitions: None,
         };
         (0..PENDING + 3).for_each(|_| broadcast.keep(event));
         assert!(broadcast.deliver());

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use crate::classes::ClassId;
+use crate::decode::Repetitions;
 
 use super::Model;
 
@@ -22,6 +23,8 @@ pub struct Detection<C = ClassId> {
     pub score: f64,
     /// The stream's clock when it was reported: the time of the pose that settled it.
     pub reported_secs: f64,
+    /// Of an activity that repeats.
+    pub repetitions: Option<Repetitions>,
 }
 
 impl Detection {
@@ -33,6 +36,7 @@ impl Detection {
             stop_secs: self.stop_secs,
             score: self.score,
             reported_secs: self.reported_secs,
+            repetitions: self.repetitions,
         }
     }
 }
@@ -61,6 +65,8 @@ pub struct EarlyDetection {
     pub start_secs: f64,
     /// Up to when it was seen.
     pub seen_secs: f64,
+    /// Of an activity that repeats, so far.
+    pub repetitions: Option<Repetitions>,
 }
 
 /// Time of a path: its origin and its step.
@@ -104,7 +110,14 @@ impl DetectionBuffer {
     }
 
     /// Adds what lies from step `start` to step `stop`.
-    pub(super) fn add(&mut self, class: ClassId, at: Steps, start: i64, stop: i64, score: f64) {
+    pub(super) fn add(
+        &mut self,
+        class: ClassId,
+        at: Steps,
+        (start, stop): (i64, i64),
+        score: f64,
+        repetitions: Option<Repetitions>,
+    ) {
         // The buffer never grows: pushing must not allocate.
         if self.detections.len() < self.detections.capacity() {
             self.detections.push(Detection {
@@ -113,6 +126,7 @@ impl DetectionBuffer {
                 stop_secs: at.origin_secs + stop as f64 * at.step_secs,
                 score,
                 reported_secs: self.reported_secs,
+                repetitions,
             });
         } else {
             self.dropped += 1;
@@ -146,11 +160,11 @@ mod tests {
         };
         found.begin(1.0);
         for start in 0..70 {
-            found.add(ClassId(0), at, start, start + 1, 0.5);
+            found.add(ClassId(0), at, (start, start + 1), 0.5, None);
         }
         assert_eq!((found.detections.len(), found.dropped), (64, 6));
         found.begin(2.0);
-        found.add(ClassId(0), at, 0, 1, 0.5);
+        found.add(ClassId(0), at, (0, 1), 0.5, None);
         assert_eq!((found.detections.len(), found.dropped), (1, 6));
         assert_eq!(found.clone().dropped, 6);
     }

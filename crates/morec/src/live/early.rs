@@ -6,6 +6,9 @@ use super::{Detection, EarlyDetection, Event, Phase};
 /// Progress is reported again when it has grown by this.
 const STEP: f64 = 0.1;
 
+/// A motion that goes on is reported again after this, seconds: an activity is all that lasts so long.
+const HEARTBEAT_SECS: f64 = 1.0;
+
 /// Nothing heard of a motion for so long is the end of the early detection, seconds: it came to nothing.
 const FORGET_SECS: f64 = 0.5;
 
@@ -51,8 +54,11 @@ impl EarlyTracker {
             }
             (Some(early), Some(open)) => {
                 open.heard_secs = now_secs;
-                let news = early.class != open.last_reported.class
-                    || early.progress >= open.last_reported.progress + STEP;
+                let last = &open.last_reported;
+                let news = early.class != last.class
+                    || early.progress >= last.progress + STEP
+                    || early.seen_secs >= last.seen_secs + HEARTBEAT_SECS
+                    || early.repetitions.map(|r| r.count) != last.repetitions.map(|r| r.count);
                 if news {
                     open.last_reported = early;
                     let motion = open.motion;

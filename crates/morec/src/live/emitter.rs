@@ -36,6 +36,7 @@ impl<F: FnMut(Event)> EventEmitter<'_, F> {
             stop_secs: what.seen_secs,
             reported_secs,
             wall_secs: self.wall_secs,
+            repetitions: what.repetitions,
         });
     }
 }

@@ -1,6 +1,7 @@
 //! Events that a live session emits.
 
 use crate::classes::ClassId;
+use crate::decode::Repetitions;
 
 use super::{Detection, PerformerId};
 
@@ -54,6 +55,8 @@ pub struct Event {
     pub reported_secs: f64,
     /// Wall clock at the arrival of that frame: seconds since 1970, UTC.
     pub wall_secs: f64,
+    /// Of an activity that repeats, so far.
+    pub repetitions: Option<Repetitions>,
 }
 
 impl Event {
@@ -65,6 +68,7 @@ impl Event {
             stop_secs: self.stop_secs,
             score: self.score,
             reported_secs: self.reported_secs,
+            repetitions: self.repetitions,
         }
     }
 

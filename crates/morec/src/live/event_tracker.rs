@@ -57,6 +57,7 @@ impl EventTracker {
                 progress: 1.0,
                 start_secs: d.start_secs,
                 seen_secs: d.stop_secs,
+                repetitions: d.repetitions,
             },
             d.reported_secs,
         );

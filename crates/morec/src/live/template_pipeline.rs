@@ -77,7 +77,7 @@ impl TemplatePipeline {
                 break;
             };
             for d in self.engine.push(row) {
-                found.add(d.class, steps, d.start, d.stop, d.score);
+                found.add(d.class, steps, (d.start, d.stop), d.score, d.repetitions);
             }
         }
     }
@@ -116,7 +116,7 @@ impl Pipeline for TemplatePipeline {
         self.recognise_rows(found);
         let steps = self.steps();
         for d in self.engine.finish() {
-            found.add(d.class, steps, d.start, d.stop, d.score);
+            found.add(d.class, steps, (d.start, d.stop), d.score, d.repetitions);
         }
         self.features.reset();
     }
@@ -140,6 +140,7 @@ impl Pipeline for TemplatePipeline {
             progress: f64::from(underway.progress),
             start_secs: seen_secs - (underway.age + 1) as f64 * tick_secs,
             seen_secs,
+            repetitions: underway.repetitions,
         })
     }
 

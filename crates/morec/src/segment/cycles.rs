@@ -1,28 +1,8 @@
 //! Cycles: how long one repetition is, and how many a stretch holds.
 
 use crate::features::Rows;
-
-/// Parameters of [`cycles`].
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
-pub struct CycleParams {
-    /// No repetition is shorter.
-    pub least_secs: f64,
-    /// The first peak of the autocorrelation that reaches this share of the highest is the period: later ones are two
-    /// periods, three.
-    pub share: f64,
-    /// Below this correlation nothing repeats.
-    pub least_correlation: f64,
-}
-
-impl Default for CycleParams {
-    fn default() -> Self {
-        Self {
-            least_secs: 0.25,
-            share: 0.7,
-            least_correlation: 0.15,
-        }
-    }
-}
+pub use crate::periodicity::CycleParams;
+use crate::periodicity::period;
 
 /// The repetitions of a stretch.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
@@ -53,36 +33,11 @@ impl Cycles {
 /// O(rows² · values).
 pub fn cycles(rows: &Rows, rate_hz: f64, params: &CycleParams) -> Option<Cycles> {
     let correlation = autocorrelation(rows)?;
-    let first = ((params.least_secs * rate_hz).ceil() as usize).max(1);
-    let peaks: Vec<usize> = (first.max(1)..correlation.len().saturating_sub(1))
-        .filter(|&l| correlation[l] >= correlation[l - 1] && correlation[l] > correlation[l + 1])
-        .collect();
-    let highest = peaks
-        .iter()
-        .map(|&l| correlation[l])
-        .fold(f64::MIN, f64::max);
-    if highest < params.least_correlation {
-        return None;
-    }
-    let peak = *peaks
-        .iter()
-        .find(|&&l| correlation[l] >= params.share * highest)?;
-    let (before, at, after) = (
-        correlation[peak - 1],
-        correlation[peak],
-        correlation[peak + 1],
-    );
-    let bend = before - 2.0 * at + after;
-    let shift = if bend < 0.0 {
-        0.5 * (before - after) / bend
-    } else {
-        0.0
-    };
-    let period = peak as f64 + shift.clamp(-0.5, 0.5);
+    let (period, correlation) = period(&correlation, rate_hz, params)?;
     Some(Cycles {
         period_secs: period / rate_hz,
         count: rows.len() as f64 / period,
-        correlation: at,
+        correlation,
     })
 }
 

@@ -124,6 +124,7 @@ impl ClassMatcher {
                 distance: found.distance,
                 age: found.age,
                 progress,
+                repetitions: None,
             };
             match best {
                 Some(old) if found.distance >= old.distance => {

@@ -1,6 +1,7 @@
 //! Detection of motions before they have ended.
 
 use crate::classes::ClassId;
+use crate::decode::Repetitions;
 
 /// When a beginning is near enough to be reported. Tentative: none of this has a say in detections.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -53,4 +54,6 @@ pub struct OngoingMatch {
     pub age: usize,
     /// Share of the sample that has been seen, 0 to 1.
     pub progress: f32,
+    /// Of an activity that repeats, so far.
+    pub repetitions: Option<Repetitions>,
 }

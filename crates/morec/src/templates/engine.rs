@@ -173,7 +173,11 @@ impl TemplateEngine {
             held: (model.held.as_ref()).map(|held| Box::new(HoldDetector::new(held))),
             activities: (model.activities.as_ref()).map(|activities| {
                 let layout = RowLayout::of(model.bones);
-                Box::new(ActivityDetector::new(activities, layout))
+                Box::new(ActivityDetector::new(
+                    activities,
+                    layout,
+                    model.features.tick_hz(),
+                ))
             }),
             metric,
         };

@@ -181,6 +181,7 @@ impl HoldDetector {
             // It ends when it is left, whenever that is.
             progress: 0.5,
             age,
+            repetitions: None,
         })
     }
 
@@ -262,6 +263,7 @@ impl HoldDetector {
                 score: 1.0 - share / 2.0,
                 separation: -(share.max(1e-3).ln()).clamp(0.0, 1.0) as f32,
                 rest_share: 0.0,
+                repetitions: None,
             }
         });
     }

@@ -6,7 +6,7 @@ use morec::clip::Clip;
 use morec::features::{BoneSet, KeyPose, bones_of_clip, for_each_pose};
 use morec::labels::Sample;
 use morec::roles::RoleMap;
-use morec::synth::{DatabaseSpec, SyntheticTake, database, everyday};
+use morec::synth::{DatabaseSpec, Person, Script, SyntheticTake, database, everyday};
 use morec::templates::TemplateModel;
 use morec::train::{
     EVERYDAY_SEED, LabelSet, StreamKind, TrainClip, TrainOptions, TrainParams, train_clips,
@@ -79,4 +79,47 @@ fn train_clip(clip: Clip, person: Option<String>, source: StreamKind) -> TrainCl
         person,
         clip,
     }
+}
+
+/// A take in which somebody rests, waves eight times without a pause, and rests.
+#[allow(
+    dead_code,
+    reason = "not every program that includes this module is about activities"
+)]
+pub fn waving(number: usize) -> SyntheticTake {
+    let script = Script::new(90 + number as u64, Person::draw(91, number)).rest(2.0);
+    let script = (0..8).fold(script, |script, _| script.play("wave"));
+    script
+        .rest(3.0)
+        .film(&format!("waving{number}"), 30.0)
+        .unwrap()
+}
+
+/// Trained on two such takes, with waving as an activity.
+#[allow(
+    dead_code,
+    reason = "not every program that includes this module is about activities"
+)]
+pub fn activity_model() -> TemplateModel {
+    let takes = [waving(1), waving(2)];
+    let goes_on = |take: &SyntheticTake| {
+        let waves: Vec<Sample> = take.samples().collect();
+        let stop_secs = waves.last().unwrap().stop_secs;
+        Sample {
+            stop_secs,
+            ..waves[0].clone()
+        }
+    };
+    let samples = takes.each_ref().map(goes_on);
+    let clips = takes.map(|t| train_clip(t.clip, Some(t.person), StreamKind::Labelled));
+    let classes = ["wave".to_owned()];
+    let labelling = LabelSet {
+        samples: &samples,
+        classes: &classes,
+        unlabelled_is_background: true,
+        ..LabelSet::default()
+    };
+    let mut options = TrainOptions::default();
+    options.params.set_kinds(&classes, &[]);
+    train_clips(&clips, &labelling, &options, &()).unwrap().0
 }

@@ -11,6 +11,7 @@ use morec::live::{
 use morec::math::Vec3;
 use morec::roles::Role;
 use morec::synth::{LimbSide, Person, Script};
+use morec::templates::TemplateModel;
 
 use crate::engines::{Played, ended, inline};
 use crate::made::{self, Timed};
@@ -72,9 +73,12 @@ impl Source for Scripted {
 }
 
 fn run(steps: Vec<Step>) -> (Vec<Event>, morec::live::Status) {
+    run_with(&made::model(), steps)
+}
+
+fn run_with(model: &Arc<TemplateModel>, steps: Vec<Step>) -> (Vec<Event>, morec::live::Status) {
     let source = Box::new(Scripted(steps.into_iter()));
-    let (session, readers) =
-        Session::start(&made::model(), source, &SessionOptions::default()).unwrap();
+    let (session, readers) = Session::start(model, source, &SessionOptions::default()).unwrap();
     let events = readers.into_iter().map(all).next().unwrap();
     (events, session.join())
 }
@@ -165,6 +169,28 @@ fn every_motion_ends_once_every_start_ends_or_is_cancelled_and_numbers_have_no_g
             "motion {motion}: {phases:?}"
         );
     }
+}
+
+#[test]
+fn an_activity_is_heard_of_every_second_and_its_repetitions_are_counted() {
+    let model = Arc::new(made::activity_model());
+    let poses = made::poses(&made::waving(3)).1;
+    let (events, _) = run_with(
+        &model,
+        vec![rig(0, Rig::of_roles()), Step::Frames(0, poses)],
+    );
+    let (end, going_on) = events.split_last().unwrap();
+    assert_eq!(end.phase, Phase::End);
+    let told: Vec<&Event> = going_on.iter().filter(|e| e.motion == end.motion).collect();
+    assert_eq!(told[0].phase, Phase::Start);
+    for pair in told.windows(2) {
+        let (last, next) = (pair[0], pair[1]);
+        assert!(next.stop_secs - last.stop_secs < 1.1, "{last:?}, {next:?}");
+        let count = |e: &Event| e.repetitions.map_or(0, |r| r.count);
+        assert!(count(next) >= count(last), "{last:?}, {next:?}");
+    }
+    let repeated = end.repetitions.unwrap();
+    assert!((7..=9).contains(&repeated.count), "{repeated:?}");
 }
 
 #[test]

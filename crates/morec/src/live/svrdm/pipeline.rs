@@ -57,14 +57,15 @@ impl Pipeline for SvrdmPipeline {
         };
         self.rows.push(time_secs, pivots, &mut |row| {
             engine.push(row, &mut |d| {
-                found.add(d.class, steps, d.start, d.stop, d.score)
+                found.add(d.class, steps, (d.start, d.stop), d.score, None)
             });
         })
     }
 
     fn end_stretch(&mut self, found: &mut DetectionBuffer) {
         let (steps, engine) = (self.steps(), &mut self.engine);
-        let mut out = |d: FrameDetection| found.add(d.class, steps, d.start, d.stop, d.score);
+        let mut out =
+            |d: FrameDetection| found.add(d.class, steps, (d.start, d.stop), d.score, None);
         self.rows.finish(&mut |row| engine.push(row, &mut out));
         engine.finish(&mut out);
     }

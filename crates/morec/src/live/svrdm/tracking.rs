@@ -138,5 +138,6 @@ fn detection(found: &ChunkDetection, mark: &MessageStamp, chunk_frames: i64) -> 
         stop_secs: at_secs(found.stop),
         score: found.score,
         reported_secs: mark.reported_secs,
+        repetitions: None,
     }
 }

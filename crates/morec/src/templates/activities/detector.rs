@@ -6,6 +6,7 @@ use crate::classes::ClassId;
 use crate::decode::TickDetection;
 use crate::features::{RowLayout, Rows};
 
+use super::repetitions::RepetitionCounter;
 use super::windows::{STEP_TICKS, SlidingWindow, windows_of};
 use super::{Activities, LEAST_WINDOWS};
 use crate::templates::Metric;
@@ -36,6 +37,7 @@ pub(in crate::templates) struct ActivityDetector {
     ticks: usize,
     path: BestPath,
     run: Option<ActivityRun>,
+    counter: RepetitionCounter,
     found: Vec<TickDetection>,
 }
 
@@ -54,13 +56,18 @@ impl ActivityRun {
     fn share(&self) -> f64 {
         (self.shares / self.count as f64).min(1.0)
     }
+
+    /// One past its last tick so far, in a stretch of `ticks`.
+    fn stop(&self, ticks: usize) -> usize {
+        ((self.first + self.count) * STEP_TICKS).min(ticks)
+    }
 }
 
 impl Activities {
     /// For each activity, the mean of the distances of the windows of `rows` from it, as shares of those from anything else.
     /// O(windows · windows of anything else · statistics).
     pub fn shares(&self, layout: RowLayout, rows: &Rows) -> Vec<(ClassId, f64)> {
-        let mut detector = ActivityDetector::new(self, layout);
+        let mut detector = ActivityDetector::new(self, layout, 1.0);
         let windows = windows_of(rows, layout, self.window_ticks);
         let mut sums = vec![0.0; detector.classes.len()];
         for window in windows.iter() {
@@ -76,8 +83,8 @@ impl Activities {
 }
 
 impl ActivityDetector {
-    /// Of rows of `layout`.
-    pub fn new(activities: &Activities, layout: RowLayout) -> Self {
+    /// Of rows of `layout`, `tick_hz` a second.
+    pub fn new(activities: &Activities, layout: RowLayout, tick_hz: f64) -> Self {
         let windows = &activities.windows;
         let metric = windows.metric();
         let (classes, of_class) = windows.numbered();
@@ -96,6 +103,7 @@ impl ActivityDetector {
             classes,
             metric,
             run: None,
+            counter: RepetitionCounter::new(layout.dim(), tick_hz),
             // What can end at once: each activity lasts some windows, and at the end of a stream half a window and the lag are due.
             found: Vec::with_capacity(1 + (half / STEP_TICKS + LAG) / LEAST_WINDOWS + 1),
         }
@@ -115,12 +123,14 @@ impl ActivityDetector {
             // It ends when it is left, whenever that is.
             progress: 0.5,
             age: self.ticks - 1 - run.first * STEP_TICKS,
+            repetitions: self.counter.repetitions(self.ticks - run.stop(self.ticks)),
         })
     }
 
     pub fn reset(&mut self) {
         self.window.clear();
         self.path.clear();
+        self.counter.clear();
         self.ticks = 0;
         self.run = None;
     }
@@ -129,6 +139,7 @@ impl ActivityDetector {
     pub fn push(&mut self, row: &[f32]) {
         self.found.clear();
         self.window.push(row);
+        self.counter.push(row);
         self.ticks += 1;
         let centre = (self.ticks - 1).checked_sub(self.half);
         if centre.is_some_and(|centre| centre.is_multiple_of(STEP_TICKS)) {
@@ -195,7 +206,11 @@ impl ActivityDetector {
                     count: 1,
                     shares: self.path.share(window, class),
                 });
+                self.counter.begin(window * STEP_TICKS);
             }
+        }
+        if let Some(run) = &self.run {
+            self.counter.advance(run.stop(self.ticks));
         }
     }
 
@@ -203,15 +218,15 @@ impl ActivityDetector {
         let run = self.run.take().filter(|run| run.count >= LEAST_WINDOWS);
         self.found.extend(run.map(|run| {
             let share = run.share();
-            let stop = (run.first + run.count) * STEP_TICKS;
             TickDetection {
                 class: self.classes[run.class],
                 start: (run.first * STEP_TICKS) as i64,
-                stop: stop.min(self.ticks) as i64,
+                stop: run.stop(self.ticks) as i64,
                 // Halfway where anything else was as near.
                 score: 1.0 - share / 2.0,
                 separation: -(share.max(1e-3).ln()).clamp(0.0, 1.0) as f32,
                 rest_share: 0.0,
+                repetitions: self.counter.repetitions(0),
             }
         }));
     }
@@ -401,7 +416,7 @@ mod tests {
     }
 
     fn found(parts: &[Rows]) -> Vec<TickDetection> {
-        let mut detector = ActivityDetector::new(&activities(), layout());
+        let mut detector = ActivityDetector::new(&activities(), layout(), 30.0);
         let mut all = Vec::new();
         for row in parts.iter().flat_map(Rows::iter) {
             detector.push(row);
@@ -425,6 +440,12 @@ mod tests {
                 "{events:?}"
             );
             assert!(events[0].score > 0.5 && events[0].score <= 1.0);
+            let repeated = events[0].repetitions.unwrap();
+            assert!(
+                repeated.count.abs_diff(ticks as u32 / 20) <= 1,
+                "{repeated:?}"
+            );
+            assert!((repeated.period_secs - 20.0 / 30.0).abs() < 0.05);
         }
     }
 
@@ -446,7 +467,7 @@ mod tests {
 
     #[test]
     fn an_activity_that_goes_on_is_underway_until_it_ends() {
-        let mut detector = ActivityDetector::new(&activities(), layout());
+        let mut detector = ActivityDetector::new(&activities(), layout(), 30.0);
         let mut seen = Vec::new();
         for row in swing(240, 20.0, 1.0, 0.0).iter() {
             detector.push(row);
@@ -459,6 +480,8 @@ mod tests {
         );
         assert!(seen[first..].iter().all(Option::is_some));
         assert_eq!(seen[239], Some(239));
+        let repeated = detector.underway(2.0).unwrap().repetitions.unwrap();
+        assert!((11..=13).contains(&repeated.count), "{repeated:?}");
         detector.reset();
         assert_eq!(detector.underway(2.0), None);
     }

@@ -7,6 +7,7 @@
 //! through classes and *none of them* is decoded with a cost for every change and a fixed lag (Viterbi 1967).
 
 mod detector;
+mod repetitions;
 mod windows;
 
 use crate::classes::ClassId;

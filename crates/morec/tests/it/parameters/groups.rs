@@ -179,7 +179,7 @@ fn offline() -> Vec<Group> {
         ),
         group!(
             "### Repetitions (`CycleParams`)",
-            "../../../src/segment/cycles.rs",
+            "../../../src/periodicity.rs",
             "CycleParams",
             "CycleParams.",
             CycleParams::default()
