@@ -173,11 +173,10 @@ impl TemplateEngine {
             held: (model.held.as_ref()).map(|held| Box::new(HoldDetector::new(held))),
             activities: (model.activities.as_ref()).map(|activities| {
                 let layout = RowLayout::of(model.bones);
-                Box::new(ActivityDetector::new(
-                    activities,
-                    layout,
-                    model.features.tick_hz(),
-                ))
+                let detector = ActivityDetector::new(activities, layout, model.features.tick_hz());
+                // The map of distances' margins holds for windows' as well, and they are never verified.
+                let calibration = model.calibration.map(|_| Calibration::MEASURED);
+                Box::new(detector.calibrated(calibration))
             }),
             metric,
         };

@@ -9,9 +9,9 @@ use crate::features::{RowLayout, Rows};
 use super::repetitions::RepetitionCounter;
 use super::windows::{STEP_TICKS, SlidingWindow, windows_of};
 use super::{Activities, LEAST_WINDOWS};
-use crate::templates::Metric;
 use crate::templates::early::OngoingMatch;
 use crate::templates::kernel::{self, LANES, Lanes};
+use crate::templates::{Calibration, Metric};
 
 /// Cost of a change of class on the path: three logarithms of distances' ratios; a window is looked at ten times a second.
 const CHANGE_COST: f64 = 3.0;
@@ -38,6 +38,8 @@ pub(in crate::templates) struct ActivityDetector {
     path: BestPath,
     run: Option<ActivityRun>,
     counter: RepetitionCounter,
+    /// Makes scores probabilities.
+    calibration: Option<Calibration>,
     found: Vec<TickDetection>,
 }
 
@@ -102,10 +104,19 @@ impl ActivityDetector {
             path: BestPath::new(classes.len()),
             classes,
             metric,
+            calibration: None,
             run: None,
             counter: RepetitionCounter::new(layout.dim(), tick_hz),
             // What can end at once: each activity lasts some windows, and at the end of a stream half a window and the lag are due.
             found: Vec::with_capacity(1 + (half / STEP_TICKS + LAG) / LEAST_WINDOWS + 1),
+        }
+    }
+
+    /// The same with scores that are probabilities.
+    pub fn calibrated(self, calibration: Option<Calibration>) -> Self {
+        Self {
+            calibration,
+            ..self
         }
     }
 
@@ -214,6 +225,14 @@ impl ActivityDetector {
         }
     }
 
+    /// Halfway where anything else was as near, or the probability that it is right.
+    fn score(&self, share: f64) -> f64 {
+        let margin = 1.0 - share / 2.0;
+        self.calibration.map_or(margin, |calibration| {
+            calibration.probability(margin, separation(share), 0.0)
+        })
+    }
+
     fn end_run(&mut self) {
         let run = self.run.take().filter(|run| run.count >= LEAST_WINDOWS);
         self.found.extend(run.map(|run| {
@@ -222,14 +241,18 @@ impl ActivityDetector {
                 class: self.classes[run.class],
                 start: (run.first * STEP_TICKS) as i64,
                 stop: run.stop(self.ticks) as i64,
-                // Halfway where anything else was as near.
-                score: 1.0 - share / 2.0,
-                separation: -(share.max(1e-3).ln()).clamp(0.0, 1.0) as f32,
+                score: self.score(share),
+                separation: separation(share),
                 rest_share: 0.0,
                 repetitions: self.counter.repetitions(0),
             }
         }));
     }
+}
+
+/// See [`TickDetection::separation`], for this share of the distance from anything else.
+fn separation(share: f64) -> f32 {
+    -(share.max(1e-3).ln()).clamp(0.0, 1.0) as f32
 }
 
 /// Mapped windows, laid out for the kernel.
