@@ -12,11 +12,15 @@
 #[path = "../tests/it/made.rs"]
 mod made;
 
+use std::sync::Arc;
+
 use divan::Bencher;
 use divan::counter::ItemsCount;
+use morec::classes::ClassId;
 use morec::features::{FeatureParams, FeatureStream, Rows};
 use morec::live::Recognizer;
 use morec::synth::{LimbSide, Person, Rng, Script};
+use morec::templates::TemplateModel;
 
 fn main() {
     divan::main();
@@ -166,9 +170,28 @@ fn features(bencher: Bencher) {
 /// Poses to detections, with an index of 48 samples.
 #[divan::bench]
 fn whole_path(bencher: Bencher) {
+    recognise(bencher, &made::model());
+}
+
+/// The same with eight activities beside the gestures.
+#[divan::bench]
+fn whole_path_with_activities(bencher: Bencher) {
+    let mut model = (*made::model()).clone();
+    let of_one = made::activity_model().activities.expect("an activity");
+    let mut eight = of_one.clone();
+    for class in 1..8 {
+        for row in of_one.windows.rows.iter() {
+            eight.windows.rows.push(row);
+            eight.windows.classes.push(ClassId(class));
+        }
+    }
+    model.activities = Some(eight);
+    recognise(bencher, &Arc::new(model));
+}
+
+fn recognise(bencher: Bencher, model: &Arc<TemplateModel>) {
     let (bones, poses) = poses();
-    let model = made::model();
-    let mut recognizer = Recognizer::new(&model, bones).expect("a model of its own making");
+    let mut recognizer = Recognizer::new(model, bones).expect("a model of its own making");
     let mut found = Vec::with_capacity(64);
     bencher
         .counter(ItemsCount::new(poses.len()))
