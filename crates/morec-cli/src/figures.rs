@@ -127,7 +127,12 @@ fn write_figures(out: &mut impl Write, e: &Evaluation) -> io::Result<()> {
         "P_R  (rejected)",
         figure(c.p_r),
         format!("{} samples", c.rejected),
-    )
+    )?;
+    let s = &e.segmentation;
+    let detail = format!("{} of what is labelled", figure(s.labelled_accuracy));
+    line("frame accuracy", figure(s.frame_accuracy), detail)?;
+    let detail = "order of classes, whenever they were".to_owned();
+    line("edit score", figure(s.edit_score), detail)
 }
 
 fn write_overlaps(out: &mut impl Write, e: &Evaluation) -> io::Result<()> {

@@ -135,7 +135,7 @@ fn divided(samples: &[Sample], clips: &[TrainClip]) -> Vec<Stretch> {
     let params = FeatureParams::default();
     // Labels say which bones all clips must show.
     let labelling = LabelSet {
-        samples: samples,
+        samples,
         ..LabelSet::default()
     };
     let set = build_train_set(clips, &labelling, BoneSet::BODY, &params).set;

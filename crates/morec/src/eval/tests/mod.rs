@@ -3,6 +3,7 @@
 mod by_hand;
 mod properties;
 mod reference;
+mod segmentation;
 
 use super::*;
 
