@@ -128,7 +128,7 @@ fn write_figures(out: &mut impl Write, e: &Evaluation) -> io::Result<()> {
         figure(c.p_r),
         format!("{} samples", c.rejected),
     )?;
-    let s = &e.segmentation;
+    let s = &e.frames;
     let detail = format!("{} of what is labelled", figure(s.labelled_accuracy));
     line("frame accuracy", figure(s.frame_accuracy), detail)?;
     let detail = "order of classes, whenever they were".to_owned();

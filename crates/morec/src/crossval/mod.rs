@@ -436,7 +436,8 @@ fn missed<'t>(truths: &'t [GroundTruth], founds: &[ClipDetection]) -> Vec<Sought
 /// A copy of `clip`, reproducible: the seed comes of its name.
 pub fn perturbed(clip: &TrainClip, perturbation: Perturbation) -> Perturbed {
     let mut poses = Vec::with_capacity(clip.clip.frames);
-    for_each_pose(&clip.clip, &clip.roles, &clip.rest, |secs, pose| {
+    let roles = &clip.roles.with_fingers(&clip.clip.skeleton);
+    for_each_pose(&clip.clip, roles, &clip.rest, |secs, pose| {
         poses.push((secs, *pose));
     });
     let seed = clip

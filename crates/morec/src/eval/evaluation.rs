@@ -7,8 +7,8 @@ use super::pairs::pair;
 use super::timing::measured_pairs;
 use super::{
     Boundaries, Classification, ClipDetection, Confusion, Delay, EvalError, EvaluatedStream,
-    EventScore, FalseAlarms, GroundTruth, Mistake, OVERLAPS, OverlapScore, Reliability,
-    Segmentation, StreamInfo, ThesisAccuracy, UnknownFigures, all_classes, streams,
+    EventScore, FalseAlarms, FrameScore, GroundTruth, Mistake, OVERLAPS, OverlapScore, Reliability,
+    StreamInfo, ThesisAccuracy, UnknownFigures, all_classes, streams,
 };
 
 /// Every measure, over all streams together and class by class. Serialises to the JSON that `morec evaluate
@@ -36,7 +36,7 @@ pub struct Evaluation {
     /// P_C, P_E and P_R.
     pub classification: Classification,
     /// Shares of time, and order.
-    pub segmentation: Segmentation,
+    pub frames: FrameScore,
     /// Confusion matrix of known streams.
     pub confusion: Confusion,
     /// Each class that is labelled or found, by name.
@@ -131,7 +131,7 @@ impl Evaluation {
             delay: Delay::of(&pairs),
             boundaries: Boundaries::of(&pairs),
             classification: Classification::count(&known, None),
-            segmentation: Segmentation::count(&known),
+            frames: FrameScore::count(&known),
             classes: classes.iter().map(per_class).collect(),
             confusion,
         })

@@ -9,7 +9,7 @@
 //!
 //! Measures and their sources: thesis accuracy ([`ThesisAccuracy`], §5.4), F1 at overlap ([`OverlapScore`]),
 //! false alarms ([`FalseAlarms`]), delay and boundary errors ([`Delay`], [`Boundaries`]), P_C, P_E and P_R
-//! ([`Classification`], §5.3), time and order ([`Segmentation`]) and the confusion matrix ([`Confusion`]).
+//! ([`Classification`], §5.3), time and order ([`FrameScore`]) and the confusion matrix ([`Confusion`]).
 
 mod alarms;
 mod confusion;
@@ -17,10 +17,10 @@ mod decisions;
 mod evaluation;
 mod events;
 mod figures;
+mod frames;
 mod interval;
 mod pairs;
 mod reliability;
-mod segmentation;
 mod timeline;
 mod timing;
 
@@ -36,9 +36,10 @@ pub use confusion::{Confusion, Mistake};
 pub use decisions::{Classification, ThesisAccuracy};
 pub use evaluation::{ClassFigures, Evaluation, Totals};
 pub use events::{EVENT_TOLERANCE_SECS, EventScore, event_pairs};
+pub use frames::FrameScore;
 pub use pairs::OverlapScore;
 pub use reliability::{Reliability, SCORE_BINS, ScoreBin};
-pub use segmentation::Segmentation;
+
 pub use timeline::{DetectionVerdict, GroundTruthVerdict, Timeline, timelines};
 pub use timing::{Boundaries, Delay};
 

@@ -81,6 +81,7 @@ pub fn explain(
         reason,
         sensitivity,
     };
+    let roles = &roles.for_bones(&clip.skeleton, model.bones);
     let bones = all_bones_of_clip(clip, roles, rest);
     let Ok(model) = model.restricted(bones) else {
         let unseen = |s| miss(s, (Reason::Unseen, None));

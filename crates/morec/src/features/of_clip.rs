@@ -48,7 +48,7 @@ pub fn shows_hips(clip: &Clip, roles: &RoleMap, rest: &Span) -> bool {
     mapped && (rest.end..clip.frames).any(in_frame)
 }
 
-/// The feature rows of a clip over `bones`; row `i` ends at `(i + 1) / tick_hz` seconds.
+/// The feature rows of a clip over `bones`, with the fingers of its skeleton if they are among them; row `i` ends at `(i + 1) / tick_hz` seconds.
 pub fn rows_of_clip(
     clip: &Clip,
     roles: &RoleMap,
@@ -56,6 +56,7 @@ pub fn rows_of_clip(
     bones: BoneSet,
     params: &FeatureParams,
 ) -> Rows {
+    let roles = &roles.for_bones(&clip.skeleton, bones);
     let mut stream = FeatureStream::new(bones, params);
     let mut rows = Rows::new(stream.dim());
     for_each_pose(clip, roles, rest, |time_secs, pose| {

@@ -107,10 +107,11 @@ impl MotionIndex {
         )
     }
 
-    /// Fills roles that `map` left empty with the joints that played them in training, where `skeleton` has
+    /// Fills roles that `map` left empty with [fingers](RoleMap::for_bones), if the index looks at them, and with the joints that played them in training, where `skeleton` has
     /// joints of those names that play nothing else. Returns the roles that were filled.
     pub fn complete_roles(&self, map: &mut RoleMap, skeleton: &crate::clip::Skeleton) -> Vec<Role> {
         let mut filled = Vec::new();
+        *map = self.model.roles_of(skeleton, map).into_owned();
         for (&role, name) in &self.roles {
             let Some(joint) = skeleton.find(name) else {
                 continue;

@@ -1,10 +1,12 @@
 //! The model of an index, for either method.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use crate::classes::{ClassId, ClassInfo};
+use crate::clip::Skeleton;
 use crate::features::{ALL_BONES, BoneSet};
-use crate::roles::Role;
+use crate::roles::{Role, RoleMap};
 use crate::templates::{PerformerKind, TemplateModel};
 use crate::thesis::pivots::PivotSet;
 use crate::thesis::svrdm::SvrdmModel;
@@ -50,6 +52,14 @@ impl Model {
             .indices()
             .flat_map(|bone| [ALL_BONES[bone].from, ALL_BONES[bone].to]);
         ends.chain(pivots.iter().filter_map(|pivot| pivot.role))
+    }
+
+    /// The roles of a performer that the model asks for, with fingers if it looks at them: [`RoleMap::for_bones`].
+    pub fn roles_of<'r>(&self, skeleton: &Skeleton, roles: &'r RoleMap) -> Cow<'r, RoleMap> {
+        match self {
+            Model::Templates(model) => roles.for_bones(skeleton, model.bones),
+            Model::Svrdm(_) => Cow::Borrowed(roles),
+        }
     }
 
     /// Comparisons of the stream a second.

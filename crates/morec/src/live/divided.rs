@@ -113,6 +113,7 @@ pub fn match_clip(
     roles: &RoleMap,
     rest: &Span,
 ) -> Result<ClassMatches, StartError> {
+    let roles = &roles.for_bones(&clip.skeleton, part.bones);
     let mut matcher = PartMatcher::new(part, all_bones_of_clip(clip, roles, rest))?;
     for_each_pose(clip, roles, rest, |time_secs, pose| {
         matcher.push(time_secs, pose);
@@ -133,6 +134,7 @@ pub fn recognize_matched(
     rest: &Span,
 ) -> Result<Vec<Detection>, StartError> {
     let model = Model::Templates(std::sync::Arc::new(first.clone()));
+    let roles = &model.roles_of(&clip.skeleton, roles);
     let bones = all_bones_of_clip(clip, roles, rest);
     recognize_with(
         Recognizer::replay(first, bones, matches)?,

@@ -41,6 +41,7 @@ impl RecognizerCache {
         roles: &RoleMap,
         rest: &Span,
     ) -> Result<Vec<Detection>, StartError> {
+        let roles = &self.model().roles_of(&clip.skeleton, roles);
         let recognizer = self.recognizer(all_bones_of_clip(clip, roles, rest))?;
         recognize_with(recognizer, self.model(), clip, roles, rest)
     }
@@ -114,6 +115,7 @@ pub fn recognize_clip_in_session<M: Clone + Into<Model>>(
     options: &SessionOptions,
 ) -> Result<Vec<Detection>, SessionError> {
     let model = model.clone().into();
+    let roles = &model.roles_of(&clip.skeleton, roles);
     // What keeps a clip from being recognised is said as it is without a session.
     reader(&model, clip, roles)?;
     if let (Model::Templates(model), true) = (&model, clip.frames > 0) {
@@ -127,7 +129,7 @@ pub fn recognize_clip_in_session<M: Clone + Into<Model>>(
     let (session, mut feed, readers) = Session::open(&model, &options)?;
     let rig = Arc::new(Rig {
         skeleton: clip.skeleton.clone(),
-        roles: roles.clone(),
+        roles: RoleMap::clone(roles),
     });
     let found = thread::scope(|scope| {
         let found = scope.spawn(|| readers.into_iter().flat_map(ended).collect());

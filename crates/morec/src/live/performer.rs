@@ -1,5 +1,6 @@
 //! One performer's way from posed skeletons to events.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use crate::diagnosis::{Diagnoser, Diagnosis};
@@ -79,11 +80,18 @@ impl Performer {
     /// Begins with a new skeleton; ends what went on with the old one.
     pub fn set_rig(&mut self, rig: &Arc<Rig>, out: &mut impl FnMut(Event)) {
         self.finish(out);
-        self.rig = Some(rig.clone());
+        let rig = match self.model.roles_of(&rig.skeleton, &rig.roles) {
+            Cow::Borrowed(_) => rig.clone(),
+            Cow::Owned(roles) => Arc::new(Rig {
+                roles,
+                skeleton: rig.skeleton.clone(),
+            }),
+        };
         self.dropped = self.dropped();
         self.recognizer = None;
         self.diagnoser = Some(Box::new(Diagnoser::live()));
         self.reader = PoseExtractor::new(&self.model, &rig.skeleton, &rig.roles).ok();
+        self.rig = Some(rig);
     }
 
     /// Takes a frame and calls `out` with what it settled. A frame without a rig, or of a skeleton that shows none of

@@ -8,6 +8,7 @@ use super::sides::SideCues;
 use super::tree::JointTree;
 use super::{Role, RoleMap, trunk};
 use crate::clip::Skeleton;
+use crate::features::BoneSet;
 use crate::math::Vec3;
 
 /// Finds the roles of `skeleton` from its tree, its bone lengths and its names. O(joints²) at worst.
@@ -82,6 +83,10 @@ pub(crate) fn find_named(
         set_arm(&mut found.map, side, arm);
     }
     found.notes.dedup();
+    // Of a body they are found where they are asked for: most poses do without.
+    if BoneSet::of_roles(&found.map).is_empty() {
+        found.map = found.map.with_fingers(skeleton).into_owned();
+    }
     found
 }
 

@@ -2,6 +2,7 @@
 
 mod check;
 mod find;
+mod fingers;
 mod languages;
 mod limbs;
 pub mod mapping;

@@ -1,5 +1,6 @@
 //! From clips and labels to what training works on.
 
+use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 
 use rayon::prelude::*;
@@ -127,6 +128,7 @@ pub fn build_train_set(
     params: &FeatureParams,
 ) -> Prepared {
     let by_clip = by_clip(labelling.samples);
+    let clips = &*with_fingers(clips, wanted);
     let shown: Vec<BoneSet> = clips
         .par_iter()
         .map(|c| all_bones_of_clip(&c.clip, &c.roles, &c.rest))
@@ -182,6 +184,18 @@ pub fn build_train_set(
             .map(|(clip, _)| clip.name.clone())
             .collect(),
     }
+}
+
+/// The clips with the fingers of their skeletons, if `wanted` asks for hands.
+fn with_fingers(clips: &[TrainClip], wanted: BoneSet) -> Cow<'_, [TrainClip]> {
+    if wanted.and(BoneSet::HANDS).is_empty() {
+        return Cow::Borrowed(clips);
+    }
+    let with_fingers = |clip: &TrainClip| TrainClip {
+        roles: (clip.roles.for_bones(&clip.clip.skeleton, wanted)).into_owned(),
+        ..clip.clone()
+    };
+    clips.iter().map(with_fingers).collect()
 }
 
 /// `params` for the rows of a profile: its own in place of each that is as usual for bodies.

@@ -15,6 +15,7 @@ mod engines;
 mod faster_copies;
 #[cfg(feature = "fbx")]
 mod fbx;
+mod fingers;
 mod for_ever;
 mod golden;
 mod hands;

@@ -58,6 +58,9 @@ struct ClipReport {
     missing_roles: Vec<Role>,
     #[serde(skip)]
     roles: String,
+    /// Of a body with fingers.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    fingers: Option<String>,
     #[serde(flatten)]
     facts: ImportReport,
     repaired: Vec<Span>,
@@ -153,6 +156,7 @@ impl ClipReport {
             joints: joints(clip, roles),
             missing_roles: roles.missing().collect(),
             roles: count_of(roles),
+            fingers: fingers_of(clip, roles),
             facts: facts.clone(),
             repaired: clip.repaired.clone(),
             diagnosis: Diagnosed {
@@ -212,6 +216,9 @@ impl ClipReport {
             writeln!(out, "  points     {set}; rotations are not known")?;
         }
         writeln!(out, "  roles      {}{}", self.roles, self.missing())?;
+        if let Some(fingers) = &self.fingers {
+            writeln!(out, "  fingers    {fingers}")?;
+        }
         writeln!(out, "  joints     {}", self.joints.len())?;
         self.write_joints(out)?;
         for doubt in &facts.doubts {
@@ -336,6 +343,23 @@ fn count_of(map: &RoleMap) -> String {
         profile if of_hands.is_empty() => count(profile),
         profile => format!("{} and {of_hands}", count(profile)),
     }
+}
+
+/// What there is of fingers beside the roles, and how they are made to count.
+fn fingers_of(clip: &Clip, map: &RoleMap) -> Option<String> {
+    let found = map.with_fingers(&clip.skeleton);
+    let is_new = |role: &Role| found.joint(*role).is_some() && map.joint(*role).is_none();
+    let hands = Hand::BOTH.map(|hand| hand.beside_wrist().iter().any(is_new));
+    let (of, bones) = match hands {
+        [false, false] => return None,
+        [true, true] => ("both hands", "hands or body_and_hands"),
+        [true, false] => ("the left hand", "left_hand"),
+        [false, true] => ("the right hand", "hand"),
+    };
+    let points = Role::ALL.iter().filter(|role| is_new(role)).count();
+    Some(format!(
+        "{points} points of {of}; they count with --bones {bones}"
+    ))
 }
 
 fn joints(clip: &Clip, map: &RoleMap) -> Vec<JointReport> {

@@ -1,9 +1,9 @@
 //! Measures against counts made by hand, against brute force, and against what must not change them.
 
 mod by_hand;
+mod frames;
 mod properties;
 mod reference;
-mod segmentation;
 
 use super::*;
 

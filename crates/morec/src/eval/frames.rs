@@ -14,7 +14,7 @@ use super::{EvaluatedStream, Interval};
 /// Networks for Action Segmentation and Detection*, 2017, §4.1, who take the mean over streams). It does not ask when, and falls where one
 /// performance is several detections.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
-pub struct Segmentation {
+pub struct FrameScore {
     /// Seconds that are right, of all.
     pub right_secs: f64,
     /// Seconds that are labelled.
@@ -29,7 +29,7 @@ pub struct Segmentation {
     pub edit_score: Option<f64>,
 }
 
-impl Segmentation {
+impl FrameScore {
     /// O((samples + detections)²) within each stream.
     pub(super) fn count(known: &[EvaluatedStream<'_>]) -> Self {
         let mut all = Self::default();

@@ -2,12 +2,12 @@
 
 use proptest::prelude::*;
 
-use super::super::segmentation::edit_distance;
+use super::super::frames::edit_distance;
 use super::*;
 
-fn of(truths: &[GroundTruth], founds: &[ClipDetection]) -> Segmentation {
+fn of(truths: &[GroundTruth], founds: &[ClipDetection]) -> FrameScore {
     let infos = [stream("a", 10.0)];
-    Evaluation::of(&infos, truths, founds).unwrap().segmentation
+    Evaluation::of(&infos, truths, founds).unwrap().frames
 }
 
 #[test]
