@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use morec::features::{all_bones_of_clip, rows_of_clip};
 use morec::import::SignedAxis;
 use morec::index::MotionIndex;
-use morec::live::{Detection, Model, RecognizerCache, StartError};
+use morec::live::{Model, RecognizerCache, StartError};
 use morec::templates::{MatchGate, Matcher, Metric, PerformerKind, Stretches};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -19,7 +19,7 @@ use crate::clip_data::ClipData;
 use crate::errors::{library_error, morec_error, value_error, warn};
 use crate::job;
 use crate::recognizer::{PointLayout, PyRecognizer};
-use crate::tables::{detections, plain};
+use crate::tables::{FoundWithQuality, detections, plain};
 
 /// A trained index: what recognition needs, in one immutable file.
 #[pyclass(frozen, name = "Index", module = "morec")]
@@ -150,13 +150,14 @@ impl PyIndex {
     }
 
     /// Everything that is recognised in clips, frame by frame as in a live stream.
-    #[pyo3(signature = (clips, *, sensitivity=None, performer=None, progress=None))]
+    #[pyo3(signature = (clips, *, sensitivity=None, performer=None, quality=false, progress=None))]
     fn recognize<'py>(
         &self,
         py: Python<'py>,
         clips: &Bound<'py, PyAny>,
         sensitivity: Option<f64>,
         performer: Option<&str>,
+        quality: bool,
         progress: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let index = self.tuned(sensitivity, performer)?;
@@ -172,7 +173,15 @@ impl PyIndex {
                     return None;
                 }
                 let data = completed(&index, data);
-                let found = recognizers.recognize_clip(&data.clip, &data.roles, &data.rest);
+                let parts = (&data.clip, &data.roles, &data.rest);
+                let found = recognizers.recognize_clip(parts.0, parts.1, parts.2);
+                let found = found.map(|found| {
+                    let qualities = match quality {
+                        true => morec::explain::quality(&index.model, parts, &found),
+                        false => vec![None; found.len()],
+                    };
+                    found.into_iter().zip(qualities).collect()
+                });
                 let done = done.fetch_add(1, Ordering::Relaxed) + 1;
                 progress.report("recognising", done, clips.len());
                 Some((data.clip.name.clone(), lacks(&index, &data), found))
@@ -185,7 +194,7 @@ impl PyIndex {
             let result = result.map_err(|error| morec_error(format!("{clip}: {error}")))?;
             found.push((clip, result));
         }
-        detections(py, &index.model, &found)
+        detections(py, &index.model, &found, quality)
     }
 
     /// A recogniser for a live stream of joint positions.
@@ -305,7 +314,7 @@ impl PyIndex {
     }
 }
 
-type Recognized = (String, Option<String>, Result<Vec<Detection>, StartError>);
+type Recognized = (String, Option<String>, Result<FoundWithQuality, StartError>);
 
 /// The least distance of each class anywhere in a clip, as recognition compares; infinite if it is like none.
 fn class_distances(index: &MotionIndex, data: &Arc<ClipData>) -> Result<Vec<f32>, String> {

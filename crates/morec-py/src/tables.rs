@@ -5,6 +5,7 @@ use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyList, PyString};
 
 use morec::decode::Repetitions;
+use morec::explain::MotionQuality;
 use morec::live::{Detection, Model};
 use serde::Serialize;
 
@@ -75,13 +76,22 @@ pub fn set_repetitions(row: &Bound<'_, PyDict>, counted: Option<Repetitions>) ->
 pub fn detections<'py>(
     py: Python<'py>,
     model: &Model,
-    of_clips: &[(String, Vec<Detection>)],
+    of_clips: &[(String, FoundWithQuality)],
+    with_quality: bool,
 ) -> PyResult<Bound<'py, PyAny>> {
     let mut rows = Vec::new();
     for (clip, founds) in of_clips {
-        for found in founds {
-            rows.push(detection(py, clip, model.class_name(found.class), found)?);
+        for (found, quality) in founds {
+            let row = detection(py, clip, model.class_name(found.class), found)?;
+            if with_quality {
+                row.set_item("quality", plain(py, quality)?)?;
+            }
+            rows.push(row);
         }
     }
-    table(py, &DETECTION, rows)
+    let quality: &[&str] = if with_quality { &["quality"] } else { &[] };
+    table(py, &[&DETECTION, quality].concat(), rows)
 }
+
+/// Detections, each with how it was performed if that was asked for.
+pub type FoundWithQuality = Vec<(Detection, Option<MotionQuality>)>;

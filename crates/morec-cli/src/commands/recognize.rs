@@ -6,6 +6,7 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result};
 use clap::ValueEnum;
+use morec::explain::{MotionQuality, quality};
 use morec::features::all_bones_of_clip;
 use morec::import::{ImportOptions, Take};
 use morec::index::MotionIndex;
@@ -44,6 +45,10 @@ pub struct Args {
     /// Format of detections
     #[arg(long, alias = "format", value_enum, default_value = "tsv")]
     form: OutputFormat,
+    /// Say of each motion how it was performed: its mean angle off the nearest sample, its pace, and the bone that is farthest off. Of
+    /// activities and held poses, and with the method of 2009, nothing is said
+    #[arg(long)]
+    quality: bool,
     /// File to write them to [default: standard output]
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -181,7 +186,8 @@ fn recognize_all(
     args: &Args,
 ) -> Result<bool> {
     if args.form == OutputFormat::Tsv {
-        writeln!(out, "{FOUND_HEADER}")?;
+        let columns = if args.quality { QUALITY_COLUMNS } else { "" };
+        writeln!(out, "{FOUND_HEADER}{columns}")?;
     }
     let mut stats = Stats::default();
     let mut failed = false;
@@ -191,7 +197,7 @@ fn recognize_all(
         match recognize_file(path, index, &recognizers, options, args, &mut stats) {
             Ok(found) => found
                 .iter()
-                .try_for_each(|f| write_found(out, args.form, f, index))?,
+                .try_for_each(|f| write_found(out, args, f, index))?,
             Err(error) => {
                 failed = true;
                 progress.suspend(|| eprintln!("morec: {error:#}"));
@@ -212,7 +218,11 @@ struct FoundInClip {
     clip: String,
     rate_hz: f64,
     detection: Detection,
+    quality: Option<MotionQuality>,
 }
+
+/// What `--quality` adds to a line.
+const QUALITY_COLUMNS: &str = "\toff_degrees\tpace\tworst_bone\tworst_degrees\tworst_secs";
 
 fn recognize_file(
     path: &Path,
@@ -247,12 +257,21 @@ fn recognize_file(
         if args.stats {
             stats.stages(&index.model, &imported)?;
         }
-        let in_clip = |detection| FoundInClip {
+        let qualities = match args.quality {
+            true => quality(
+                &index.model,
+                (clip, &imported.roles, imported.rest()),
+                &found,
+            ),
+            false => vec![None; found.len()],
+        };
+        let in_clip = |(detection, quality)| FoundInClip {
             clip: clip.name.clone(),
             rate_hz: clip.rate_hz,
             detection,
+            quality,
         };
-        all.extend(found.into_iter().map(in_clip));
+        all.extend(found.into_iter().zip(qualities).map(in_clip));
     }
     Ok(all)
 }
@@ -318,7 +337,7 @@ fn adapt(imported: &mut Take, index: &MotionIndex, path: &Path, complete: bool) 
 
 fn write_found(
     out: &mut dyn Write,
-    format: OutputFormat,
+    args: &Args,
     in_clip: &FoundInClip,
     index: &MotionIndex,
 ) -> std::io::Result<()> {
@@ -326,6 +345,7 @@ fn write_found(
         clip,
         rate_hz,
         detection: found,
+        quality,
     } = in_clip;
     let class = index.model.class_name(found.class);
     let line = FoundLine {
@@ -337,8 +357,16 @@ fn write_found(
         reported_secs: found.reported_secs,
         rate_hz: *rate_hz,
     };
-    match format {
-        OutputFormat::Tsv => writeln!(out, "{line}"),
+    match args.form {
+        OutputFormat::Tsv => match quality.as_ref().and_then(|q| Some((q, q.bones.first()?))) {
+            Some((q, bone)) => writeln!(
+                out,
+                "{line}\t{:.1}\t{:.2}\t{}\t{:.1}\t{:.2}",
+                q.off_degrees, q.pace, bone.bone, bone.worst_degrees, bone.worst_secs
+            ),
+            None if args.quality => writeln!(out, "{line}\t\t\t\t\t"),
+            None => writeln!(out, "{line}"),
+        },
         OutputFormat::Jsonl => {
             let frame = |secs: f64| (secs * rate_hz).round() as u64;
             let mut object = serde_json::json!({
@@ -349,6 +377,9 @@ fn write_found(
             if let Some(repeated) = found.repetitions {
                 object["repetitions"] = repeated.count.into();
                 object["period_secs"] = repeated.period_secs.into();
+            }
+            if let Some(quality) = quality {
+                object["quality"] = serde_json::to_value(quality)?;
             }
             writeln!(out, "{object}")
         }

@@ -206,6 +206,39 @@ fn kinds_of_classes_are_of_classes_that_there_are() {
     }
 }
 
+#[test]
+fn how_well_a_motion_was_performed_is_said_beside_it() {
+    let (folder, _) = labelled();
+    let train = ["train", "--db", "m.mdb", "-o", "i.index"];
+    folder
+        .morec(&[&train[..], &["--everyday", "never"]].concat())
+        .ok();
+    let table = folder
+        .morec(&["recognize", "i.index", "clips", "--quality"])
+        .ok();
+    let mut lines = table.lines();
+    let columns: Vec<&str> = lines.next().unwrap().split('\t').collect();
+    let at = |name: &str| columns.iter().position(|c| *c == name).unwrap();
+    let rows: Vec<Vec<&str>> = lines.map(|line| line.split('\t').collect()).collect();
+    assert!(!rows.is_empty() && rows.iter().all(|row| row.len() == columns.len()));
+    let off = |row: &Vec<&str>| row[at("off_degrees")].parse::<f64>().unwrap();
+    // These clips teach: each motion is near a sample, some are one.
+    assert!(rows.iter().all(|row| off(row) < 30.0), "{table}");
+    assert!(rows.iter().any(|row| off(row) < 1.0), "{table}");
+    let lines = [
+        "recognize",
+        "i.index",
+        "clips",
+        "--quality",
+        "--form",
+        "jsonl",
+    ];
+    let lines = folder.morec(&lines).ok();
+    let first: Value = serde_json::from_str(lines.lines().next().unwrap()).unwrap();
+    let worst = first["quality"]["bones"][0]["bone"].as_str();
+    assert_eq!(worst, Some(rows[0][at("worst_bone")]));
+}
+
 /// Training and measuring read every form of labels that `db label` reads.
 #[test]
 fn every_form_of_labels_teaches() {

@@ -16,14 +16,10 @@ const LEAST_DEGREES: f64 = 15.0;
 pub(super) fn farthest(template: &Rows, stretch: &Rows, bones: BoneSet) -> Vec<BoneOff> {
     let path = align(template, stretch);
     let mean_degrees = |slot: usize| {
-        let at = |rows: &Rows, i: usize| {
-            let row = &rows.row(i)[3 * slot..3 * slot + 3];
-            [f64::from(row[0]), f64::from(row[1]), f64::from(row[2])]
-        };
         let angles = path
             .iter()
-            .map(|&(i, j)| angle(at(template, i), at(stretch, j)));
-        angles.sum::<f64>().to_degrees() / path.len().max(1) as f64
+            .map(|&(i, j)| angle_at(template, i, stretch, j, slot));
+        angles.sum::<f64>() / path.len().max(1) as f64
     };
     let mut off: Vec<BoneOff> = bones
         .indices()
@@ -37,6 +33,15 @@ pub(super) fn farthest(template: &Rows, stretch: &Rows, bones: BoneSet) -> Vec<B
     off.sort_by(|a, b| b.degrees.total_cmp(&a.degrees));
     off.truncate(MOST);
     off
+}
+
+/// Angle between the directions of the bone in `slot` in row `i` of `a` and row `j` of `b`, degrees.
+pub(super) fn angle_at(a: &Rows, i: usize, b: &Rows, j: usize, slot: usize) -> f64 {
+    let at = |rows: &Rows, i: usize| {
+        let row = &rows.row(i)[3 * slot..3 * slot + 3];
+        [f64::from(row[0]), f64::from(row[1]), f64::from(row[2])]
+    };
+    angle(at(a, i), at(b, j)).to_degrees()
 }
 
 fn angle(a: [f64; 3], b: [f64; 3]) -> f64 {

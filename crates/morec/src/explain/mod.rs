@@ -1,9 +1,10 @@
-//! Why a sample was missed: what kept a labelled motion from being reported.
+//! Why a sample was missed: what kept a labelled motion from being reported; and how well one was performed.
 //!
 //! The stream is compared with the index once more, and the nearest match of the sample's class within the sample is
 //! followed through the conditions of [`decode`](crate::decode) in their order. The first that fails is the reason.
 
 mod bones;
+mod quality;
 mod reason;
 
 #[cfg(test)]
@@ -23,6 +24,7 @@ use crate::templates::{
 };
 use crate::train::overlap_share;
 
+pub use quality::{BoneQuality, MotionQuality, quality};
 pub use reason::{BoneOff, Reason};
 
 /// A sample that was not reported.

@@ -3,7 +3,8 @@
 use crate::clip::{Clip, Span};
 use crate::import::Take;
 use crate::live::{Model, recognize_clip};
-use crate::roles::RoleMap;
+use crate::math::Axis;
+use crate::roles::{Role, RoleMap};
 use crate::synth::{DatabaseSpec, SyntheticTake, database};
 use crate::train::{LabelSet, StreamKind, TrainClip, TrainOptions, train_clips};
 
@@ -194,4 +195,56 @@ fn a_larger_sensitivity_is_named_where_it_would_help() {
     ];
     let miss = reason(&strict.into(), &takes[0], None);
     assert_eq!(miss.sensitivity, Some(0.5));
+}
+
+/// The qualities of the first label of `take`, with the right forearm turned by `degrees`.
+fn turned(model: &Model, take: &SyntheticTake, degrees: f64) -> MotionQuality {
+    let mut played = played(take.clip.clone());
+    let elbow = played.roles.joint(Role::RightForearm).unwrap();
+    let joints = played.clip.skeleton.len();
+    let turn = Axis::Y.rotation(degrees.to_radians());
+    for frame in 0..played.clip.frames {
+        let rotation = &mut played.clip.rotations[frame * joints + elbow];
+        *rotation = turn * *rotation;
+    }
+    let label = &take.labels[0];
+    let class = model.classes().iter().position(|c| c.name == label.class);
+    let motion = Detection {
+        class: ClassId(class.unwrap() as u16),
+        start_secs: label.start_secs,
+        stop_secs: label.stop_secs,
+        score: 1.0,
+        reported_secs: label.stop_secs,
+        repetitions: None,
+    };
+    let parts = (&played.clip, &played.roles, &played.rest);
+    quality(model, parts, &[motion]).remove(0).unwrap()
+}
+
+#[test]
+fn worse_performances_are_farther_off_and_the_limb_is_named() {
+    let takes = takes();
+    let model = trained(&takes[1..], |_| {});
+    // The teacher's own performance is the nearest sample, but for where its ticks lie.
+    let own = turned(&model, &takes[1], 0.0);
+    assert!(
+        own.off_degrees < 3.0 && (own.pace - 1.0).abs() < 0.1,
+        "{own:?}"
+    );
+    let stranger = [0.0, 15.0, 30.0, 60.0].map(|degrees| turned(&model, &takes[0], degrees));
+    assert!(own.off_degrees < stranger[0].off_degrees);
+    for pair in stranger.windows(2) {
+        assert!(pair[0].off_degrees < pair[1].off_degrees, "{pair:?}");
+    }
+    let [.., worst] = &stranger;
+    let bone = &worst.bones[0];
+    assert_eq!(bone.bone, "right_forearm");
+    let label = &takes[0].labels[0];
+    assert!((label.start_secs - 0.1..label.stop_secs + 0.1).contains(&bone.worst_secs));
+    let mean = worst.over_time_degrees.iter().sum::<f64>() / worst.over_time_degrees.len() as f64;
+    assert!(
+        (mean / worst.off_degrees - 1.0).abs() < 0.3,
+        "{mean} {}",
+        worst.off_degrees
+    );
 }
