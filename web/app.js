@@ -190,7 +190,8 @@ teaching.addEventListener("motion", ({ detail }) => {
   if (detail.phase !== "end") return;
   const row = document.createElement("li");
   row.className = "now";
-  row.textContent = `${detail.class}, score ${detail.score.toFixed(2)}, ${detail.start_secs.toFixed(1)} to ${detail.stop_secs.toFixed(1)} s`;
+  const times = detail.repetitions ? ` × ${detail.repetitions}` : "";
+  row.textContent = `${detail.class}${times}, score ${detail.score.toFixed(2)}, ${detail.start_secs.toFixed(1)} to ${detail.stop_secs.toFixed(1)} s`;
   at("events").firstElementChild?.classList.remove("now");
   at("events").prepend(row);
 });

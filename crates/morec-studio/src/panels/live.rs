@@ -358,7 +358,11 @@ fn banner(ui: &Ui, state: &State, rect: Rect) {
     let age = ((run.now_secs - seen.reported_secs) / SHOWN_SECS) as f32;
     let place = state.classes.place(&seen.class);
     let text = c.text_on(c.class(place));
-    let galley = painter.layout_no_wrap(seen.class.clone(), egui::FontId::proportional(30.0), text);
+    let said = match seen.repetitions {
+        Some(count) => format!("{} × {count}", seen.class),
+        None => seen.class.clone(),
+    };
+    let galley = painter.layout_no_wrap(said, egui::FontId::proportional(30.0), text);
     let size = galley.size() + Vec2::new(40.0, 18.0);
     let at = Rect::from_center_size(rect.center_bottom() - Vec2::new(0.0, 46.0), size);
     let fill = c.class(place).gamma_multiply((1.4 - age).clamp(0.0, 1.0));

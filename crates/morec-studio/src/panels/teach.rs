@@ -103,7 +103,9 @@ pub fn recognised(ui: &mut Ui, state: &State, out: Out) {
                         .desired_height(8.0)
                         .fill(colour),
                 );
-                ui.label(RichText::new(format!("{class}?")).color(c.muted));
+                let times = early.repetitions.map(|r| format!(" × {}", r.count));
+                let said = format!("{class}?{}", times.unwrap_or_default());
+                ui.label(RichText::new(said).color(c.muted));
             });
         }
         None => {

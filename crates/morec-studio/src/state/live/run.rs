@@ -23,6 +23,8 @@ pub struct LiveDetection {
     pub stop_secs: f64,
     pub reported_secs: f64,
     pub score: f64,
+    /// Of an activity that repeats.
+    pub repetitions: Option<u32>,
 }
 
 /// A source that runs.
@@ -156,6 +158,7 @@ impl Run {
                 stop_secs: event.stop_secs,
                 reported_secs: event.reported_secs,
                 score: event.score,
+                repetitions: event.repetitions.map(|r| r.count),
             });
         }
     }
