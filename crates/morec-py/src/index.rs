@@ -19,7 +19,7 @@ use crate::clip_data::ClipData;
 use crate::errors::{library_error, morec_error, value_error, warn};
 use crate::job;
 use crate::recognizer::{PointLayout, PyRecognizer};
-use crate::tables::{FoundWithQuality, detections, plain};
+use crate::tables::{FoundWithDeviation, detections, plain};
 
 /// A trained index: what recognition needs, in one immutable file.
 #[pyclass(frozen, name = "Index", module = "morec")]
@@ -150,14 +150,14 @@ impl PyIndex {
     }
 
     /// Everything that is recognised in clips, frame by frame as in a live stream.
-    #[pyo3(signature = (clips, *, sensitivity=None, performer=None, quality=false, progress=None))]
+    #[pyo3(signature = (clips, *, sensitivity=None, performer=None, deviation=false, progress=None))]
     fn recognize<'py>(
         &self,
         py: Python<'py>,
         clips: &Bound<'py, PyAny>,
         sensitivity: Option<f64>,
         performer: Option<&str>,
-        quality: bool,
+        deviation: bool,
         progress: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let index = self.tuned(sensitivity, performer)?;
@@ -176,11 +176,11 @@ impl PyIndex {
                 let parts = (&data.clip, &data.roles, &data.rest);
                 let found = recognizers.recognize_clip(parts.0, parts.1, parts.2);
                 let found = found.map(|found| {
-                    let qualities = match quality {
-                        true => morec::explain::quality(&index.model, parts, &found),
+                    let deviations = match deviation {
+                        true => morec::explain::deviation(&index.model, parts, &found),
                         false => vec![None; found.len()],
                     };
-                    found.into_iter().zip(qualities).collect()
+                    found.into_iter().zip(deviations).collect()
                 });
                 let done = done.fetch_add(1, Ordering::Relaxed) + 1;
                 progress.report("recognising", done, clips.len());
@@ -194,7 +194,7 @@ impl PyIndex {
             let result = result.map_err(|error| morec_error(format!("{clip}: {error}")))?;
             found.push((clip, result));
         }
-        detections(py, &index.model, &found, quality)
+        detections(py, &index.model, &found, deviation)
     }
 
     /// A recogniser for a live stream of joint positions.
@@ -314,7 +314,11 @@ impl PyIndex {
     }
 }
 
-type Recognized = (String, Option<String>, Result<FoundWithQuality, StartError>);
+type Recognized = (
+    String,
+    Option<String>,
+    Result<FoundWithDeviation, StartError>,
+);
 
 /// The least distance of each class anywhere in a clip, as recognition compares; infinite if it is like none.
 fn class_distances(index: &MotionIndex, data: &Arc<ClipData>) -> Result<Vec<f32>, String> {

@@ -5,7 +5,7 @@ use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyList, PyString};
 
 use morec::decode::Repetitions;
-use morec::explain::MotionQuality;
+use morec::explain::MotionDeviation;
 use morec::live::{Detection, Model};
 use serde::Serialize;
 
@@ -76,22 +76,22 @@ pub fn set_repetitions(row: &Bound<'_, PyDict>, counted: Option<Repetitions>) ->
 pub fn detections<'py>(
     py: Python<'py>,
     model: &Model,
-    of_clips: &[(String, FoundWithQuality)],
-    with_quality: bool,
+    of_clips: &[(String, FoundWithDeviation)],
+    with_deviation: bool,
 ) -> PyResult<Bound<'py, PyAny>> {
     let mut rows = Vec::new();
     for (clip, founds) in of_clips {
-        for (found, quality) in founds {
+        for (found, deviation) in founds {
             let row = detection(py, clip, model.class_name(found.class), found)?;
-            if with_quality {
-                row.set_item("quality", plain(py, quality)?)?;
+            if with_deviation {
+                row.set_item("deviation", plain(py, deviation)?)?;
             }
             rows.push(row);
         }
     }
-    let quality: &[&str] = if with_quality { &["quality"] } else { &[] };
-    table(py, &[&DETECTION, quality].concat(), rows)
+    let deviation: &[&str] = if with_deviation { &["deviation"] } else { &[] };
+    table(py, &[&DETECTION, deviation].concat(), rows)
 }
 
 /// Detections, each with how it was performed if that was asked for.
-pub type FoundWithQuality = Vec<(Detection, Option<MotionQuality>)>;
+pub type FoundWithDeviation = Vec<(Detection, Option<MotionDeviation>)>;

@@ -28,12 +28,12 @@ def test_a_newcomer_is_recognised(index: morec.Index, newcomer: morec.Clip) -> N
 
 
 def test_how_well_a_motion_was_performed(index: morec.Index, newcomer: morec.Clip) -> None:
-    found = index.recognize(newcomer, quality=True)
-    assert found.columns[-1] == "quality" and "quality" not in index.recognize(newcomer).columns
+    found = index.recognize(newcomer, deviation=True)
+    assert found.columns[-1] == "deviation" and "deviation" not in index.recognize(newcomer).columns
     for row in found:
-        quality = row["quality"]
-        assert 0 < quality["off_degrees"] < 90 and quality["pace"] > 0.3
-        assert quality["bones"][0]["off_degrees"] >= quality["bones"][-1]["off_degrees"]
+        deviation = row["deviation"]
+        assert 0 < deviation["off_degrees"] < 90 and deviation["pace"] > 0.3
+        assert deviation["bones"][0]["off_degrees"] >= deviation["bones"][-1]["off_degrees"]
 
 
 def test_several_clips_and_paths(index: morec.Index, clips: list[morec.Clip], folder: Path) -> None:

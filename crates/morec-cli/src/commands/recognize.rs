@@ -6,7 +6,7 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result};
 use clap::ValueEnum;
-use morec::explain::{MotionQuality, quality};
+use morec::explain::{MotionDeviation, deviation};
 use morec::features::all_bones_of_clip;
 use morec::import::{ImportOptions, Take};
 use morec::index::MotionIndex;
@@ -48,7 +48,7 @@ pub struct Args {
     /// Say of each motion how it was performed: its mean angle off the nearest sample, its pace, and the bone that is farthest off. Of
     /// activities and held poses, and with the method of 2009, nothing is said
     #[arg(long)]
-    quality: bool,
+    deviation: bool,
     /// File to write them to [default: standard output]
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -186,7 +186,11 @@ fn recognize_all(
     args: &Args,
 ) -> Result<bool> {
     if args.form == OutputFormat::Tsv {
-        let columns = if args.quality { QUALITY_COLUMNS } else { "" };
+        let columns = if args.deviation {
+            DEVIATION_COLUMNS
+        } else {
+            ""
+        };
         writeln!(out, "{FOUND_HEADER}{columns}")?;
     }
     let mut stats = Stats::default();
@@ -218,11 +222,11 @@ struct FoundInClip {
     clip: String,
     rate_hz: f64,
     detection: Detection,
-    quality: Option<MotionQuality>,
+    deviation: Option<MotionDeviation>,
 }
 
-/// What `--quality` adds to a line.
-const QUALITY_COLUMNS: &str = "\toff_degrees\tpace\tworst_bone\tworst_degrees\tworst_secs";
+/// What `--deviation` adds to a line.
+const DEVIATION_COLUMNS: &str = "\toff_degrees\tpace\tworst_bone\tworst_degrees\tworst_secs";
 
 fn recognize_file(
     path: &Path,
@@ -257,21 +261,21 @@ fn recognize_file(
         if args.stats {
             stats.stages(&index.model, &imported)?;
         }
-        let qualities = match args.quality {
-            true => quality(
+        let deviations = match args.deviation {
+            true => deviation(
                 &index.model,
                 (clip, &imported.roles, imported.rest()),
                 &found,
             ),
             false => vec![None; found.len()],
         };
-        let in_clip = |(detection, quality)| FoundInClip {
+        let in_clip = |(detection, deviation)| FoundInClip {
             clip: clip.name.clone(),
             rate_hz: clip.rate_hz,
             detection,
-            quality,
+            deviation,
         };
-        all.extend(found.into_iter().zip(qualities).map(in_clip));
+        all.extend(found.into_iter().zip(deviations).map(in_clip));
     }
     Ok(all)
 }
@@ -345,7 +349,7 @@ fn write_found(
         clip,
         rate_hz,
         detection: found,
-        quality,
+        deviation,
     } = in_clip;
     let class = index.model.class_name(found.class);
     let line = FoundLine {
@@ -358,13 +362,13 @@ fn write_found(
         rate_hz: *rate_hz,
     };
     match args.form {
-        OutputFormat::Tsv => match quality.as_ref().and_then(|q| Some((q, q.bones.first()?))) {
+        OutputFormat::Tsv => match deviation.as_ref().and_then(|q| Some((q, q.bones.first()?))) {
             Some((q, bone)) => writeln!(
                 out,
                 "{line}\t{:.1}\t{:.2}\t{}\t{:.1}\t{:.2}",
                 q.off_degrees, q.pace, bone.bone, bone.worst_degrees, bone.worst_secs
             ),
-            None if args.quality => writeln!(out, "{line}\t\t\t\t\t"),
+            None if args.deviation => writeln!(out, "{line}\t\t\t\t\t"),
             None => writeln!(out, "{line}"),
         },
         OutputFormat::Jsonl => {
@@ -378,8 +382,8 @@ fn write_found(
                 object["repetitions"] = repeated.count.into();
                 object["period_secs"] = repeated.period_secs.into();
             }
-            if let Some(quality) = quality {
-                object["quality"] = serde_json::to_value(quality)?;
+            if let Some(deviation) = deviation {
+                object["deviation"] = serde_json::to_value(deviation)?;
             }
             writeln!(out, "{object}")
         }

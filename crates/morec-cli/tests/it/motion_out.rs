@@ -214,7 +214,7 @@ fn how_well_a_motion_was_performed_is_said_beside_it() {
         .morec(&[&train[..], &["--everyday", "never"]].concat())
         .ok();
     let table = folder
-        .morec(&["recognize", "i.index", "clips", "--quality"])
+        .morec(&["recognize", "i.index", "clips", "--deviation"])
         .ok();
     let mut lines = table.lines();
     let columns: Vec<&str> = lines.next().unwrap().split('\t').collect();
@@ -229,13 +229,13 @@ fn how_well_a_motion_was_performed_is_said_beside_it() {
         "recognize",
         "i.index",
         "clips",
-        "--quality",
+        "--deviation",
         "--form",
         "jsonl",
     ];
     let lines = folder.morec(&lines).ok();
     let first: Value = serde_json::from_str(lines.lines().next().unwrap()).unwrap();
-    let worst = first["quality"]["bones"][0]["bone"].as_str();
+    let worst = first["deviation"]["bones"][0]["bone"].as_str();
     assert_eq!(worst, Some(rows[0][at("worst_bone")]));
 }
 

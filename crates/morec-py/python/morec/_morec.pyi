@@ -165,7 +165,7 @@ class Index:
         *,
         sensitivity: float | None = None,
         performer: Literal["auto", "teacher", "anyone"] | None = None,
-        quality: bool = False,
+        deviation: bool = False,
         progress: _Progress = None,
     ) -> Table:
         """Everything that is recognised in clips, frame by frame as in a live stream.
@@ -179,15 +179,15 @@ class Index:
         performer : {"auto", "teacher", "anyone"}, optional
             Who performs what one or two people taught: "auto" is more generous once four recognised motions show a performer
             unlike the teacher, "anyone" is so from the first frame, "teacher" never. "auto" by default.
-        quality : bool
-            Whether to say how each motion was performed.
+        deviation : bool
+            Whether to say how far off the nearest sample each motion was performed.
         progress : callable, optional
 
         Returns
         -------
         Table
             Columns clip, class, start_secs, stop_secs, score (0 just accepted … 1 identical to a sample), reported_secs, and of
-            activities that repeat repetitions and period_secs (None where nothing is counted). With `quality` also quality: a
+            activities that repeat repetitions and period_secs (None where nothing is counted). With `deviation` also deviation: a
             dict of off_degrees (mean angle off the nearest sample), pace (duration over its), bones (each with off_degrees,
             worst_degrees, worst_secs; the farthest off first) and over_time_degrees; None for activities and held poses.
 

@@ -4,7 +4,7 @@
 //! followed through the conditions of [`decode`](crate::decode) in their order. The first that fails is the reason.
 
 mod bones;
-mod quality;
+mod deviation;
 mod reason;
 
 #[cfg(test)]
@@ -24,7 +24,7 @@ use crate::templates::{
 };
 use crate::train::overlap_share;
 
-pub use quality::{BoneQuality, MotionQuality, quality};
+pub use deviation::{BoneDeviation, MotionDeviation, deviation};
 pub use reason::{BoneOff, Reason};
 
 /// A sample that was not reported.

@@ -197,8 +197,8 @@ fn a_larger_sensitivity_is_named_where_it_would_help() {
     assert_eq!(miss.sensitivity, Some(0.5));
 }
 
-/// The qualities of the first label of `take`, with the right forearm turned by `degrees`.
-fn turned(model: &Model, take: &SyntheticTake, degrees: f64) -> MotionQuality {
+/// The deviations of the first label of `take`, with the right forearm turned by `degrees`.
+fn turned(model: &Model, take: &SyntheticTake, degrees: f64) -> MotionDeviation {
     let mut played = played(take.clip.clone());
     let elbow = played.roles.joint(Role::RightForearm).unwrap();
     let joints = played.clip.skeleton.len();
@@ -218,7 +218,7 @@ fn turned(model: &Model, take: &SyntheticTake, degrees: f64) -> MotionQuality {
         repetitions: None,
     };
     let parts = (&played.clip, &played.roles, &played.rest);
-    quality(model, parts, &[motion]).remove(0).unwrap()
+    deviation(model, parts, &[motion]).remove(0).unwrap()
 }
 
 #[test]

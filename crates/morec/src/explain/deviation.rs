@@ -11,21 +11,21 @@ use super::bones::angle_at;
 
 /// A performance against the nearest sample of its class.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub struct MotionQuality {
+pub struct MotionDeviation {
     /// Mean angle between its bones and the sample's along the warping path, degrees: 0 if it is the sample. Bones count by their weights
     /// in feature rows.
     pub off_degrees: f64,
     /// Its duration over the sample's.
     pub pace: f64,
     /// Every bone, the one that is farthest off first.
-    pub bones: Vec<BoneQuality>,
+    pub bones: Vec<BoneDeviation>,
     /// The same angle at each of its ticks, from its start.
     pub over_time_degrees: Vec<f64>,
 }
 
 /// A bone of a performance.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub struct BoneQuality {
+pub struct BoneDeviation {
     /// Its name.
     pub bone: &'static str,
     /// Mean angle between the two along the warping path, degrees.
@@ -39,11 +39,11 @@ pub struct BoneQuality {
 /// Compares each of the motions `found` in `clip` with the sample of its class that it is nearest to, bone by bone; `None` where no samples
 /// are kept: for activities, held poses and the method of 2009. `rest` are the frames that a conversion left at the start.
 /// O(motions · samples · rows²).
-pub fn quality(
+pub fn deviation(
     model: &Model,
     (clip, roles, rest): (&Clip, &RoleMap, &Span),
     found: &[Detection],
-) -> Vec<Option<MotionQuality>> {
+) -> Vec<Option<MotionDeviation>> {
     let nothing = || vec![None; found.len()];
     let Model::Templates(model) = model else {
         return nothing();
@@ -56,7 +56,7 @@ pub fn quality(
     found.iter().map(|d| of_motion(&model, &rows, d)).collect()
 }
 
-fn of_motion(model: &TemplateModel, rows: &Rows, found: &Detection) -> Option<MotionQuality> {
+fn of_motion(model: &TemplateModel, rows: &Rows, found: &Detection) -> Option<MotionDeviation> {
     let hz = model.features.tick_hz();
     let tick = |secs: f64| ((secs * hz).round().max(0.0) as usize).min(rows.len());
     let first = tick(found.start_secs);
@@ -71,7 +71,7 @@ fn of_motion(model: &TemplateModel, rows: &Rows, found: &Detection) -> Option<Mo
     });
     let (_, nearest, length) = compared.min_by(|a, b| a.0.total_cmp(&b.0))?;
     let start_secs = first as f64 / hz;
-    Some(nearest.quality(stretch.len(), start_secs, 1.0 / hz, length))
+    Some(nearest.deviation(stretch.len(), start_secs, 1.0 / hz, length))
 }
 
 /// Angles of every bone at every step of a warping path, in degrees.
@@ -111,13 +111,13 @@ impl ComparedBones {
         (0..self.ticks.len()).map(|step| self.at(step)).sum::<f64>() / self.ticks.len() as f64
     }
 
-    fn quality(
+    fn deviation(
         &self,
         ticks: usize,
         start_secs: f64,
         tick_secs: f64,
         length: usize,
-    ) -> MotionQuality {
+    ) -> MotionDeviation {
         let mut over_time_degrees = vec![0.0; ticks];
         let mut steps = vec![0; ticks];
         for (step, tick) in self.ticks.iter().enumerate() {
@@ -130,16 +130,16 @@ impl ComparedBones {
         let of_bone = |(bone, _, angles): &(&'static str, f64, Vec<f64>)| {
             let worst = (0..angles.len()).max_by(|a, b| angles[*a].total_cmp(&angles[*b]));
             let worst = worst.unwrap_or(0);
-            BoneQuality {
+            BoneDeviation {
                 bone,
                 off_degrees: angles.iter().sum::<f64>() / angles.len() as f64,
                 worst_degrees: angles[worst],
                 worst_secs: start_secs + self.ticks[worst] as f64 * tick_secs,
             }
         };
-        let mut bones: Vec<BoneQuality> = self.bones.iter().map(of_bone).collect();
+        let mut bones: Vec<BoneDeviation> = self.bones.iter().map(of_bone).collect();
         bones.sort_by(|a, b| b.off_degrees.total_cmp(&a.off_degrees));
-        MotionQuality {
+        MotionDeviation {
             off_degrees: self.off_degrees(),
             pace: ticks as f64 / length as f64,
             bones,
