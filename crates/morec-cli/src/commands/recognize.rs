@@ -362,11 +362,11 @@ fn write_found(
         rate_hz: *rate_hz,
     };
     match args.form {
-        OutputFormat::Tsv => match deviation.as_ref().and_then(|q| Some((q, q.bones.first()?))) {
-            Some((q, bone)) => writeln!(
+        OutputFormat::Tsv => match deviation.as_ref().and_then(|d| Some((d, d.bones.first()?))) {
+            Some((d, bone)) => writeln!(
                 out,
                 "{line}\t{:.1}\t{:.2}\t{}\t{:.1}\t{:.2}",
-                q.off_degrees, q.pace, bone.bone, bone.worst_degrees, bone.worst_secs
+                d.off_degrees, d.pace, bone.bone, bone.worst_degrees, bone.worst_secs
             ),
             None if args.deviation => writeln!(out, "{line}\t\t\t\t\t"),
             None => writeln!(out, "{line}"),

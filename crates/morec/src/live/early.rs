@@ -6,7 +6,7 @@ use super::{Detection, EarlyDetection, Event, Phase};
 /// Progress is reported again when it has grown by this.
 const STEP: f64 = 0.1;
 
-/// A motion that goes on is reported again after this, seconds: an activity is all that lasts so long.
+/// A motion that goes on is reported again after this, seconds: activities and held poses make no progress that would be.
 const HEARTBEAT_SECS: f64 = 1.0;
 
 /// Nothing heard of a motion for so long is the end of the early detection, seconds: it came to nothing.

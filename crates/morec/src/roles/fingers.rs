@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use super::words::{is_side_word, spelt_side, words};
 use super::{RoleMap, meaning::Side};
-use crate::clip::Skeleton;
+use crate::clip::{Joint, Skeleton};
 use crate::features::{BoneSet, Hand};
 
 /// Fewer fingers say nothing of a hand; the index and the little finger, which give its palm, must be among them.
@@ -97,19 +97,14 @@ fn chains(skeleton: &Skeleton, map: &RoleMap) -> BTreeMap<(Hand, usize), Vec<usi
             FingerNumber::Named(finger) => Some(finger),
             FingerNumber::Written(number) => number.checked_sub(thumb),
         };
-        let above = || std::iter::successors(joints[at].parent, |&joint| joints[joint].parent);
-        let hands = Hand::BOTH.map(|hand| map.joint(hand.points().wrist));
-        let below = Hand::BOTH
-            .into_iter()
-            .zip(hands)
-            .find(|(_, wrist)| wrist.is_some_and(|wrist| above().any(|joint| joint == wrist)));
-        let side_above = || above().find_map(|joint| side_of(&words(bare(&joints[joint].name))));
-        let hand = match below {
-            Some((hand, _)) => Some(hand),
+        let above = || above(joints, at);
+        let hand = hand_above(joints, at, map).or_else(|| {
+            let side_above =
+                || above().find_map(|joint| side_of(&words(bare(&joints[joint].name))));
+            let hand = name.hand.or_else(side_above)?;
             // Where the hand is known, its fingers hang below it.
-            None => (name.hand.or_else(side_above))
-                .filter(|hand| map.joint(hand.points().wrist).is_none()),
-        };
+            map.joint(hand.points().wrist).is_none().then_some(hand)
+        });
         let (Some(hand), Some(finger @ 0..5)) = (hand, finger) else {
             continue;
         };
@@ -125,6 +120,20 @@ fn chains(skeleton: &Skeleton, map: &RoleMap) -> BTreeMap<(Hand, usize), Vec<usi
     }
     chains.retain(|_, chain| chain.len() >= 2);
     chains
+}
+
+/// The joints that joint `at` hangs on, the nearest first.
+fn above(joints: &[Joint], at: usize) -> impl Iterator<Item = usize> {
+    std::iter::successors(joints[at].parent, |&joint| joints[joint].parent)
+}
+
+/// The hand of `map` that joint `at` hangs on.
+fn hand_above(joints: &[Joint], at: usize, map: &RoleMap) -> Option<Hand> {
+    let is_below = |hand: &Hand| {
+        let wrist = map.joint(hand.points().wrist);
+        wrist.is_some_and(|wrist| above(joints, at).any(|joint| joint == wrist))
+    };
+    Hand::BOTH.into_iter().find(is_below)
 }
 
 fn bare(name: &str) -> &str {
@@ -202,7 +211,6 @@ fn counted_finger(words: &[String]) -> Option<FingerNumber> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::clip::Joint;
     use crate::math::Vec3;
     use crate::roles::Role;
 

@@ -9,6 +9,7 @@ use crate::decode::TickDetection;
 use crate::features::{RowLayout, Rows};
 
 use super::early::OngoingMatch;
+use super::reference::separation;
 use super::verifier::squared_distance;
 use super::{Metric, ReferenceRows};
 
@@ -261,7 +262,7 @@ impl HoldDetector {
                 stop: hold.last + 1,
                 // Halfway where anything else was as near.
                 score: 1.0 - share / 2.0,
-                separation: -(share.max(1e-3).ln()).clamp(0.0, 1.0) as f32,
+                separation: separation(share),
                 rest_share: 0.0,
                 repetitions: None,
             }

@@ -80,3 +80,8 @@ impl ReferenceRows {
         }
     }
 }
+
+/// [`TickDetection::separation`](crate::decode::TickDetection::separation) of what is at this share of the distance from anything else.
+pub(super) fn separation(share: f64) -> f32 {
+    -(share.max(1e-3).ln()).clamp(0.0, 1.0) as f32
+}

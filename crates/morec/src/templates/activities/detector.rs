@@ -11,6 +11,7 @@ use super::windows::{STEP_TICKS, SlidingWindow, windows_of};
 use super::{Activities, LEAST_WINDOWS};
 use crate::templates::early::OngoingMatch;
 use crate::templates::kernel::{self, LANES, Lanes};
+use crate::templates::reference::separation;
 use crate::templates::{Calibration, Metric};
 
 /// Cost of a change of class on the path: three logarithms of distances' ratios; a window is looked at ten times a second.
@@ -248,11 +249,6 @@ impl ActivityDetector {
             }
         }));
     }
-}
-
-/// See [`TickDetection::separation`], for this share of the distance from anything else.
-fn separation(share: f64) -> f32 {
-    -(share.max(1e-3).ln()).clamp(0.0, 1.0) as f32
 }
 
 /// Mapped windows, laid out for the kernel.
