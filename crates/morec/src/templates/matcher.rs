@@ -151,20 +151,15 @@ impl Matcher {
         self.bank.step(row);
     }
 
+    /// [`TemplateBank::step_all`].
+    pub fn step_all(&mut self, rows: &[&[f32]], matches: &mut Vec<Match>) {
+        self.bank.step_all(rows, matches);
+    }
+
     /// Match of template `index` to a stretch that ends with the last tick; `stretches` has taken the same rows.
     /// O(d).
     pub fn compare(&self, index: usize, stretches: &mut Stretches) -> NormalizedMatch {
-        self.compare_match(index, self.bank.matched(index), stretches)
-    }
-
-    /// [`compare`](Self::compare) with the match as [`TemplateBank::matched`] gave it, whatever the bank has gone on to.
-    pub fn compare_match(
-        &self,
-        index: usize,
-        matched: Match,
-        stretches: &mut Stretches,
-    ) -> NormalizedMatch {
-        let (matched, noise) = self.without_noise(index, matched, stretches);
+        let (matched, noise) = self.without_noise(index, self.bank.matched(index), stretches);
         let near = self.nearness(index, matched, noise, stretches);
         self.held_against_rest(index, matched, near, stretches)
     }
@@ -195,7 +190,18 @@ impl Matcher {
         gate: MatchGate,
         stretches: &mut Stretches,
     ) -> Option<NormalizedMatch> {
-        let matched = self.bank.matched(index);
+        self.nearer_match(index, self.bank.matched(index), distance, gate, stretches)
+    }
+
+    /// [`nearer`](Self::nearer) with the match as [`TemplateBank::matched`] gave it, whatever the bank has gone on to.
+    pub fn nearer_match(
+        &self,
+        index: usize,
+        matched: Match,
+        distance: f32,
+        gate: MatchGate,
+        stretches: &mut Stretches,
+    ) -> Option<NormalizedMatch> {
         if matched.distance >= FAR {
             return None;
         }

@@ -1,8 +1,12 @@
 //! Classes whose samples are as near to another class as to their own: where two are about as near, neither is reported.
 
-use crate::classes::ClassId;
+use std::ops::Range;
 
-use super::mining::TemplateDistances;
+use crate::classes::ClassId;
+use crate::decode::DecodeParams;
+use crate::templates::MatchGate;
+
+use super::mining::Offer;
 use super::params::TrainParams;
 use super::set::{TrainSample, TrainSet, overlap_share};
 
@@ -19,31 +23,83 @@ pub struct AlikeClasses {
     pub of: usize,
 }
 
+/// The nearest that each class comes to a sample where a rival would end, without the sample's own template.
+#[derive(Debug, Clone)]
+pub struct SampleRivals {
+    class: ClassId,
+    ticks: Range<usize>,
+    /// Ticks at which a rival's match ends.
+    ends: Range<usize>,
+    nearest: Vec<f32>,
+}
+
+impl SampleRivals {
+    /// Nothing near any of the samples of the stream at `place`, but for copies: nobody showed them.
+    pub fn of_stream(
+        set: &TrainSet,
+        samples: &[TrainSample],
+        place: usize,
+        params: &DecodeParams,
+    ) -> Vec<Self> {
+        let stream = &set.streams[place];
+        let is_original = |s: &&TrainSample| s.stream == place && !s.is_faster && !stream.is_copy;
+        let rivals = |sample: &TrainSample| {
+            let (around, last) = (params.rival_ticks, sample.ticks.end - 1);
+            Self {
+                class: sample.class,
+                ticks: sample.ticks.clone(),
+                ends: last.saturating_sub(around)..(last + around + 1).min(stream.rows.len()),
+                nearest: vec![f32::INFINITY; set.classes.len()],
+            }
+        };
+        samples.iter().filter(is_original).map(rivals).collect()
+    }
+
+    /// Ticks whose matches it asks for.
+    pub fn ends(&self) -> Range<usize> {
+        self.ends.clone()
+    }
+
+    /// Takes a match of `template` in the sample's stream, which is at `place`.
+    pub fn take(
+        &mut self,
+        offer: &mut Offer<'_>,
+        (template, place): (&TrainSample, usize),
+        gate: MatchGate,
+        params: &DecodeParams,
+    ) {
+        if !self.ends.contains(&offer.tick) {
+            return;
+        }
+        let is_itself = template.stream == place && template.ticks == self.ticks;
+        let covers = overlap_share(&offer.ticks(), &self.ticks);
+        if is_itself || covers <= f64::from(params.rival_overlap) {
+            return;
+        }
+        let nearest = &mut self.nearest[template.class.index()];
+        if let Some(nearer) = offer.nearer(*nearest, gate) {
+            *nearest = nearer.distance;
+        }
+    }
+}
+
 /// Pairs of which the other class matches at least half of the samples, as [`DecodeParams::rival_share`] has it; each
-/// pair once, with the class of which it matches the larger part first. `distances` are those of every stream of `set` from
-/// every template of `samples`; what is farther than `threshold` is not reported anyway. A sample is not compared with itself.
-/// O(samples · templates).
-///
-/// [`DecodeParams::rival_share`]: crate::decode::DecodeParams::rival_share
-pub fn alike_classes(
+/// pair once, with the class of which it matches the larger part first. `samples` are those of all streams; what is farther than
+/// `threshold` is not reported anyway. O(samples · classes + classes²).
+pub fn alike_classes<'r>(
     set: &TrainSet,
-    samples: &[TrainSample],
-    distances: &[TemplateDistances],
+    samples: impl Iterator<Item = &'r SampleRivals>,
     threshold: f32,
     params: &TrainParams,
 ) -> Vec<AlikeClasses> {
     let classes = set.classes.len();
     let (mut matched, mut shown) = (vec![0; classes * classes], vec![0; classes]);
-    let is_original = |s: &&TrainSample| !s.is_faster && !set.streams[s.stream].is_copy;
-    let originals = samples.iter().filter(is_original);
-    for sample in originals {
-        let of_class =
-            nearest_by_class(sample, samples, &distances[sample.stream], classes, params);
-        let class = sample.class.index();
+    for SampleRivals { class, nearest, .. } in samples {
+        let class = class.index();
         shown[class] += 1;
-        let near = threshold.min(of_class[class] * params.decode.rival_share);
+        let near = threshold.min(nearest[class] * params.decode.rival_share);
         for other in (0..classes).filter(|other| *other != class) {
-            matched[class * classes + other] += usize::from(of_class[other] < near);
+            matched[class * classes + other] += usize::from(nearest[other] < near);
         }
     }
     let pair = |class: usize, other: usize| AlikeClasses {
@@ -63,30 +119,4 @@ pub fn alike_classes(
         })
         .filter(|pair| pair.samples > 0 && 2 * pair.samples >= pair.of)
         .collect()
-}
-
-/// The nearest that each class comes to a sample where a rival would end, without the sample's own template.
-fn nearest_by_class(
-    sample: &TrainSample,
-    templates: &[TrainSample],
-    distances: &TemplateDistances,
-    classes: usize,
-    params: &TrainParams,
-) -> Vec<f32> {
-    let around = params.decode.rival_ticks;
-    let last = sample.ticks.end - 1;
-    let ends = last.saturating_sub(around)..(last + around + 1).min(distances.len());
-    let mut nearest = vec![f32::INFINITY; classes];
-    for end in ends {
-        for (found, template) in distances.at(end).zip(templates) {
-            let is_itself = template.stream == sample.stream && template.ticks == sample.ticks;
-            let ticks = end - found.age.min(end)..end + 1;
-            let covers = overlap_share(&ticks, &sample.ticks);
-            if !is_itself && covers > f64::from(params.decode.rival_overlap) {
-                let nearest = &mut nearest[template.class.index()];
-                *nearest = nearest.min(found.distance);
-            }
-        }
-    }
-    nearest
 }

@@ -4,9 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use crate::decode::{FAR, MIN_AGE_TICKS};
-use crate::templates::{Evidence, Match};
+use crate::templates::{Evidence, Match, MatchGate};
 
-use super::mining::{NearMiss, TemplateDistances};
+use super::mining::{NO_MATCH, Offer, keep_nearest, smallest};
 use super::params::TrainParams;
 use super::set::{StreamKind, TrainSample, TrainSet, TrainStream, overlap_share};
 
@@ -46,34 +46,66 @@ impl VerifierExample {
     }
 }
 
-/// All streams, each as seen by a model without the stream's own person.
+/// The templates of a training, each stream seen by a model without the stream's own person.
 pub struct LeaveOneOutView<'a> {
-    /// All streams.
-    pub set: &'a TrainSet,
-    /// The templates.
-    pub samples: &'a [TrainSample],
-    /// The negatives.
-    pub negatives: &'a [NearMiss],
-    /// Each stream against every negative.
-    pub near_negatives: &'a [TemplateDistances],
+    set: &'a TrainSet,
+    samples: &'a [TrainSample],
+    /// For each class, whether a single group shows it: then only the very sample is left out.
+    single: Vec<bool>,
 }
 
-impl LeaveOneOutView<'_> {
-    /// Distance of the nearest negative that is not of the stream's own group.
-    pub fn nearest_negative(&self, stream: usize, tick: usize) -> f32 {
-        let streams = &self.set.streams;
-        let strange = |n: usize| streams[self.negatives[n].stream].group != streams[stream].group;
-        self.near_negatives[stream].nearest(tick, strange).distance
+impl<'a> LeaveOneOutView<'a> {
+    /// Templates of `samples`, in their order.
+    pub fn new(set: &'a TrainSet, samples: &'a [TrainSample]) -> Self {
+        let groups = |class: usize| -> BTreeSet<&str> {
+            let of_class = samples.iter().filter(|s| s.class.index() == class);
+            of_class.map(|s| s.group.as_str()).collect()
+        };
+        let classes = 0..set.classes.len();
+        let single = classes.map(|class| groups(class).len() < 2).collect();
+        Self {
+            set,
+            samples,
+            single,
+        }
     }
+
+    /// Nothing near at any tick of the stream: for each tick the match of every class.
+    pub fn none(&self, stream: usize) -> Vec<Match> {
+        vec![NO_MATCH; self.set.streams[stream].rows.len() * self.set.classes.len()]
+    }
+
+    /// Keeps a match in `stream` that is the nearest of its class so far.
+    pub fn take(&self, near: &mut [Match], offer: &mut Offer<'_>, stream: usize, gate: MatchGate) {
+        let sample = &self.samples[offer.template];
+        if self.counts(stream, &offer.ticks(), sample) {
+            let class = offer.tick * self.set.classes.len() + sample.class.index();
+            keep_nearest(&mut near[class], offer, gate);
+        }
+    }
+
+    fn counts(&self, stream: usize, ticks: &Range<usize>, sample: &TrainSample) -> bool {
+        if !self.single[sample.class.index()] {
+            return sample.group != self.set.streams[stream].group;
+        }
+        sample.stream != stream || overlap_share(ticks, &sample.ticks) <= TOUCHES
+    }
+}
+
+/// A stream's nearest matches by [`LeaveOneOutView`].
+#[derive(Debug, Clone, Copy)]
+pub struct NearStream<'a> {
+    /// Its place in the set.
+    pub stream: usize,
+    /// For each tick, the nearest of every class.
+    pub classes: &'a [Match],
+    /// For each tick, the nearest negative of another group.
+    pub negatives: &'a [Match],
 }
 
 /// Finds the stretches of all streams that come near a class.
 pub struct CandidateFinder<'a> {
-    seen: &'a LeaveOneOutView<'a>,
-    /// Each stream against every template.
-    distances: &'a [TemplateDistances],
-    /// For each class, whether a single group shows it: then only the very sample is left out.
-    single: Vec<bool>,
+    set: &'a TrainSet,
     /// Largest distance under which an unlabelled stretch of a labelled clip is probably an unlabelled sample.
     suspicious: f32,
     /// As the decoder has it.
@@ -81,86 +113,44 @@ pub struct CandidateFinder<'a> {
 }
 
 impl<'a> CandidateFinder<'a> {
-    /// Candidates among `distances`, where `threshold` is near enough.
-    pub fn new(
-        seen: &'a LeaveOneOutView<'a>,
-        distances: &'a [TemplateDistances],
-        threshold: f32,
-        params: &TrainParams,
-    ) -> Self {
-        let groups = |class: usize| -> BTreeSet<&str> {
-            let of_class = seen.samples.iter().filter(|s| s.class.index() == class);
-            of_class.map(|s| s.group.as_str()).collect()
-        };
-        let classes = 0..seen.set.classes.len();
+    /// Candidates where `threshold` is near enough.
+    pub fn new(set: &'a TrainSet, threshold: f32, params: &TrainParams) -> Self {
         Self {
-            seen,
-            distances,
-            single: classes.map(|class| groups(class).len() < 2).collect(),
+            set,
             suspicious: params.suspicious_below as f32 * threshold,
             peak_ticks: params.decode.peak_ticks,
         }
     }
 
-    /// Every candidate of one stream. O(ticks · templates).
-    pub fn examples(&self, stream: usize) -> Vec<VerifierExample> {
-        let ticks = self.distances[stream].len();
-        let classes = self.seen.set.classes.len();
-        let near: Vec<Match> = (0..ticks)
-            .flat_map(|t| self.nearest_by_class(stream, t))
-            .collect();
-        let at = |t: usize, class: usize| near[t * classes + class];
-        let negative: Vec<f32> = (0..ticks)
-            .map(|t| self.seen.nearest_negative(stream, t))
-            .collect();
+    /// Every candidate of one stream. O(ticks · classes).
+    pub fn examples(&self, near: NearStream<'_>) -> Vec<VerifierExample> {
+        let (ticks, classes) = (near.negatives.len(), self.set.classes.len());
         let mut found = Vec::new();
+        // Of every class and of the negatives, the nearest around the tick.
+        let mut nearest = vec![FAR; classes];
         for t in 0..ticks {
-            let around = t.saturating_sub(self.peak_ticks)..=(t + self.peak_ticks).min(ticks - 1);
+            let around = t.saturating_sub(self.peak_ticks)..(t + self.peak_ticks + 1).min(ticks);
+            nearest.fill(FAR);
+            for here in near.classes[around.start * classes..around.end * classes].chunks(classes) {
+                let pairs = nearest.iter_mut().zip(here);
+                pairs.for_each(|(nearest, m)| *nearest = nearest.min(m.distance));
+            }
+            let negative = smallest(&near.negatives[around]);
             for class in 0..classes {
-                let Match { distance, age } = at(t, class);
-                let beaten = around.clone().any(|n| at(n, class).distance < distance);
-                if distance >= FAR || age < MIN_AGE_TICKS || beaten {
+                let Match { distance, age } = near.classes[t * classes + class];
+                if distance >= FAR || age < MIN_AGE_TICKS || nearest[class] < distance {
                     continue;
                 }
-                let rivals = (0..classes).filter(|c| *c != class);
-                let other = rivals
-                    .flat_map(|c| around.clone().map(move |n| at(n, c).distance))
-                    .fold(FAR, f32::min);
-                let nearest_negative = around.clone().map(|n| negative[n]).fold(FAR, f32::min);
+                let others = nearest[..class].iter().chain(&nearest[class + 1..]);
                 let evidence = Evidence {
                     distance: distance.into(),
-                    other: other.into(),
-                    negative: nearest_negative.into(),
+                    other: others.fold(FAR, |least, d| least.min(*d)).into(),
+                    negative: negative.into(),
                 };
-                found.extend(self.judged(stream, class, t - age.min(t)..t + 1, evidence));
+                found.extend(self.judged(near.stream, class, t - age.min(t)..t + 1, evidence));
             }
         }
         found
-    }
-
-    fn nearest_by_class(&self, stream: usize, tick: usize) -> Vec<Match> {
-        let mut near = vec![
-            Match {
-                distance: FAR,
-                age: 0
-            };
-            self.seen.set.classes.len()
-        ];
-        for (found, sample) in self.distances[stream].at(tick).zip(self.seen.samples) {
-            let best = &mut near[sample.class.index()];
-            if found.distance < best.distance && self.counts(stream, tick, &found, sample) {
-                *best = found;
-            }
-        }
-        near
-    }
-
-    fn counts(&self, stream: usize, tick: usize, found: &Match, sample: &TrainSample) -> bool {
-        if !self.single[sample.class.index()] {
-            return sample.group != self.seen.set.streams[stream].group;
-        }
-        let ticks = tick - found.age.min(tick)..tick + 1;
-        sample.stream != stream || overlap_share(&ticks, &sample.ticks) <= TOUCHES
     }
 
     /// The candidate with what the labels say of it; `None` if they say too little.
@@ -171,7 +161,7 @@ impl<'a> CandidateFinder<'a> {
         ticks: Range<usize>,
         evidence: Evidence,
     ) -> Option<VerifierExample> {
-        let stream = &self.seen.set.streams[index];
+        let stream = &self.set.streams[index];
         let mut label = None;
         let mut touches = false;
         for known in &stream.known {

@@ -4,8 +4,9 @@ use std::collections::BTreeSet;
 
 use crate::decode::FAR;
 use crate::features::{BoneSet, retimed_rows};
+use crate::templates::Match;
 
-use super::mining::TemplateDistances;
+use super::mining::NO_MATCH;
 use super::params::TrainParams;
 use super::set::{TrainSample, TrainSet};
 
@@ -61,51 +62,37 @@ pub fn faster_copies(
         .collect()
 }
 
-/// Those of `copies` that match no beginnings of samples of their class, which they would report before their end. They are
-/// the templates of `distances`, which has those of the samples' streams at least.
-pub fn without_early(
-    copies: Vec<TrainSample>,
-    samples: &[TrainSample],
-    distances: &[TemplateDistances],
-    threshold: f64,
-) -> Vec<TrainSample> {
-    let is_early = |place: usize, copy: &TrainSample| {
-        let of_class = samples.iter().filter(|s| s.class == copy.class);
-        let early = of_class
-            .clone()
-            .filter(|s| matches_beginning(&distances[s.stream], place, s, threshold));
-        early.count() as f64 > MAY_MATCH_BEGINNINGS * of_class.count() as f64
-    };
-    copies
-        .into_iter()
-        .enumerate()
-        .filter(|(place, copy)| !is_early(*place, copy))
-        .map(|(_, copy)| copy)
-        .collect()
+/// Ticks at which a match of a copy ends in the beginning of `sample`, and one more on both sides.
+pub fn beginning(sample: &TrainSample, ticks: usize) -> std::ops::Range<usize> {
+    let ends = ends_in_beginning(sample, ticks);
+    ends.start.saturating_sub(1)..(ends.end + 1).min(ticks)
 }
 
-/// True if the template at `place` has a match nearer than `threshold` that ends in the beginning of `sample`.
-fn matches_beginning(
-    distances: &TemplateDistances,
-    place: usize,
-    sample: &TrainSample,
-    threshold: f64,
-) -> bool {
-    let ticks = &sample.ticks;
-    let share = |share: f64| (ticks.len() as f64 * share) as usize;
-    let ends = ticks.start..(ticks.start + share(BEGINNING)).min(distances.len());
-    let distance = |tick: Option<usize>| {
-        let tick = tick.filter(|tick| *tick < distances.len());
-        let found = tick.and_then(|tick| distances.at(tick).nth(place));
-        found.map_or(FAR, |found| found.distance)
-    };
+fn ends_in_beginning(sample: &TrainSample, ticks: usize) -> std::ops::Range<usize> {
+    let start = sample.ticks.start;
+    start..(start + share_of(sample, BEGINNING)).min(ticks)
+}
+
+fn share_of(sample: &TrainSample, share: f64) -> usize {
+    (sample.ticks.len() as f64 * share) as usize
+}
+
+/// Whether a copy that matches the beginnings of `early` of its class's `samples` would report them before their end.
+pub fn is_early(early: usize, samples: usize) -> bool {
+    early as f64 > MAY_MATCH_BEGINNINGS * samples as f64
+}
+
+/// True if a match nearer than `threshold` ends in the beginning of `sample`: `matches` are those of one template at every tick of
+/// the sample's stream.
+pub fn matches_beginning(matches: &[Match], sample: &TrainSample, threshold: f64) -> bool {
+    let at = |tick: Option<usize>| *tick.and_then(|tick| matches.get(tick)).unwrap_or(&NO_MATCH);
     let is_match = |end: usize| {
-        let here = distance(Some(end));
-        let is_nearest = here <= distance(end.checked_sub(1)) && here < distance(Some(end + 1));
-        is_nearest && f64::from(here) < threshold
+        let here = at(Some(end)).distance;
+        let is_nearest =
+            here <= at(end.checked_sub(1)).distance && here < at(Some(end + 1)).distance;
+        is_nearest && f64::from(here) < threshold.min(f64::from(FAR))
     };
-    ends.filter(|end| is_match(*end)).any(|end| {
-        let age = distances.at(end).nth(place).map_or(0, |found| found.age);
-        end + 1 + share(START_TOLERANCE) >= ticks.start + age
-    })
+    let mut ends = ends_in_beginning(sample, matches.len()).filter(|end| is_match(*end));
+    let start = sample.ticks.start;
+    ends.any(|end| end + 1 + share_of(sample, START_TOLERANCE) >= start + matches[end].age)
 }

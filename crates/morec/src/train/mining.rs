@@ -1,56 +1,104 @@
-//! Looking for what might be mistaken for a class: the threshold and the hard negatives.
+//! Every template matched against every stream, and what comes near: a match is looked at when it is made, and of each tick only the
+//! nearest is kept, so that memory grows with the ticks and not with the templates.
 
 use std::ops::Range;
 
 use crate::decode::FAR;
 use crate::features::Rows;
-use crate::templates::{Match, MatchGate, Matcher, NormalizedMatch, Stretches};
+use crate::templates::{Match, MatchGate, Matcher, Stretches};
 
 use super::params::TrainParams;
-use super::set::{StreamKind, TrainSample, TrainStream, overlap_share};
+use super::set::{StreamKind, TrainStream, overlap_share};
 
-/// Every template's match at every tick of one stream: `ticks` × `templates`.
-pub struct TemplateDistances {
-    templates: usize,
-    matches: Vec<Compared>,
-    gate: MatchGate,
+/// A template's match at a tick of a stream.
+pub struct Offer<'a> {
+    /// The tick.
+    pub tick: usize,
+    /// Place of the template among those of all parts.
+    pub template: usize,
+    /// Ticks since the match began.
+    pub age: usize,
+    found: Match,
+    matcher: &'a Matcher,
+    index: usize,
+    stretches: &'a mut Stretches,
 }
 
-/// A match, in little space: there is one for each template and tick.
-#[derive(Debug, Clone, Copy)]
-struct Compared {
-    distance: f32,
-    age: u32,
-    rest_share: f32,
-    offset_share: f32,
-}
+impl Offer<'_> {
+    /// Its ticks.
+    pub fn ticks(&self) -> Range<usize> {
+        self.tick - self.age.min(self.tick)..self.tick + 1
+    }
 
-impl Compared {
-    const NOTHING: Self = Self {
-        distance: FAR,
-        age: 0,
-        rest_share: f32::MAX,
-        offset_share: 0.0,
-    };
-
-    fn of(found: NormalizedMatch) -> Self {
-        Self {
+    /// The match with its normalised distance, if it passes `gate` and is nearer than `distance`. O(1) for most that are not.
+    pub fn nearer(&mut self, distance: f32, gate: MatchGate) -> Option<Match> {
+        let (matcher, stretches) = (self.matcher, &mut *self.stretches);
+        let found = matcher.nearer_match(self.index, self.found, distance, gate, stretches)?;
+        Some(Match {
             distance: found.distance,
-            age: found.age as u32,
-            rest_share: found.rest_share,
-            offset_share: found.offset_share,
+            age: found.age,
+        })
+    }
+}
+
+/// Nothing comes near.
+pub const NO_MATCH: Match = Match {
+    distance: FAR,
+    age: 0,
+};
+
+/// What a match must be like to count in training.
+#[derive(Debug, Clone, Copy)]
+pub struct TrainGates {
+    /// For performers like the teacher.
+    pub plain: MatchGate,
+    /// For strangers, where so few teach.
+    pub wide: Option<MatchGate>,
+}
+
+/// The nearest of some templates at every tick of a stream.
+#[derive(Debug, Clone, Default)]
+pub struct Nearest {
+    /// Of those that pass the plain gate.
+    pub plain: Vec<Match>,
+    /// Of those that pass the wide gate; empty without one.
+    pub wide: Vec<Match>,
+}
+
+impl Nearest {
+    /// Nothing near at any of `ticks`.
+    pub fn none(ticks: usize, gates: TrainGates) -> Self {
+        Self {
+            plain: vec![NO_MATCH; ticks],
+            wide: vec![NO_MATCH; if gates.wide.is_some() { ticks } else { 0 }],
         }
     }
 
-    fn found(&self) -> NormalizedMatch {
-        NormalizedMatch {
-            distance: self.distance,
-            age: self.age as usize,
-            rest_share: self.rest_share,
-            spread: 0.0,
-            offset_share: self.offset_share,
+    /// Keeps a match that is the nearest so far.
+    pub fn take(&mut self, offer: &mut Offer<'_>, gates: TrainGates) {
+        keep_nearest(&mut self.plain[offer.tick], offer, gates.plain);
+        if let Some(wide) = gates.wide {
+            keep_nearest(&mut self.wide[offer.tick], offer, wide);
         }
     }
+}
+
+/// Lets the match be `best` if it passes `gate` and is nearer.
+pub fn keep_nearest(best: &mut Match, offer: &mut Offer<'_>, gate: MatchGate) {
+    if let Some(nearer) = offer.nearer(best.distance, gate) {
+        *best = nearer;
+    }
+}
+
+/// For each tick, whether something is nearer than `distance`.
+pub fn ticks_within(nearest: &[Match], distance: f64) -> Vec<bool> {
+    let is_near = |found: &Match| f64::from(found.distance) < distance;
+    nearest.iter().map(is_near).collect()
+}
+
+/// The smallest distance anywhere.
+pub fn smallest(nearest: &[Match]) -> f32 {
+    nearest.iter().map(|m| m.distance).fold(FAR, f32::min)
 }
 
 /// Ticks that one part of the templates takes before the next: its rows come from the cache after the first of them.
@@ -70,119 +118,76 @@ fn spans(wanted: &[bool], lead: usize) -> Vec<Range<usize>> {
     spans
 }
 
-impl TemplateDistances {
-    /// Matches at every tick.
-    #[cfg(test)]
-    pub fn of(parts: &mut [Matcher], rows: &Rows) -> Self {
-        Self::at_ticks(parts, rows, &vec![true; rows.len()])
-    }
-
-    /// Runs the templates of all `parts`, in their order, over rows that are already in their metric: the matches at the
-    /// ticks that are `wanted`; at the others nothing comes near. Parts of templates whose rows fit the processor's cache
-    /// take less time than one of all. O(ticks · template rows · d), of the ticks that are wanted and the longest match before
-    /// each.
-    pub fn at_ticks(parts: &mut [Matcher], rows: &Rows, wanted: &[bool]) -> Self {
-        let longest = parts.iter().map(Matcher::longest_match).max().unwrap_or(0);
-        let templates = parts.iter().map(|part| part.bank().len()).sum();
-        let mut stretches = Stretches::new(rows.dim(), longest);
-        let mut matches = vec![Compared::NOTHING; rows.len() * templates];
-        let mut matched = vec![Vec::new(); parts.len()];
-        let mut pushed = 0;
-        // Transitions look two ticks back.
-        for span in spans(wanted, longest + 2) {
-            parts.iter_mut().for_each(Matcher::reset);
-            for first in span.clone().step_by(TICKS_AT_ONCE) {
-                let ticks = first..(first + TICKS_AT_ONCE).min(span.end);
-                for (part, matched) in parts.iter_mut().zip(&mut matched) {
-                    matched.clear();
-                    for tick in ticks.clone() {
-                        part.step(rows.row(tick));
-                        let bank = part.bank();
-                        matched.extend((0..bank.len()).map(|template| bank.matched(template)));
-                    }
+/// Runs the templates of all `parts`, in their order, over `rows`, which are already in their metric, and gives `take` the matches at the
+/// ticks that are `wanted`, in order of ticks, then of templates; what never matches is left out. Parts of templates whose rows fit
+/// the processor's cache take less time than one of all. O(ticks · template rows · d), of the ticks that are wanted and the longest
+/// match before each.
+pub fn for_each_match(
+    parts: &mut [Matcher],
+    rows: &Rows,
+    wanted: &[bool],
+    mut take: impl FnMut(&mut Offer<'_>),
+) {
+    let longest = parts.iter().map(Matcher::longest_match).max().unwrap_or(0);
+    let mut stretches = Stretches::new(rows.dim(), longest);
+    let mut matched = vec![Vec::new(); parts.len()];
+    let mut pushed = 0;
+    // Transitions look two ticks back.
+    for span in spans(wanted, longest + 2) {
+        parts.iter_mut().for_each(Matcher::reset);
+        for first in span.clone().step_by(TICKS_AT_ONCE) {
+            let ticks = first..(first + TICKS_AT_ONCE).min(span.end);
+            for (part, matched) in parts.iter_mut().zip(&mut matched) {
+                matched.clear();
+                let rows: Vec<&[f32]> = ticks.clone().map(|tick| rows.row(tick)).collect();
+                part.step_all(&rows, matched);
+            }
+            for tick in ticks {
+                // Sums run over the whole stream, or they would round otherwise.
+                while pushed <= tick {
+                    stretches.push(rows.row(pushed));
+                    pushed += 1;
                 }
-                for tick in ticks {
-                    // Sums run over the whole stream, or they would round otherwise.
-                    while pushed <= tick {
-                        stretches.push(rows.row(pushed));
-                        pushed += 1;
-                    }
-                    if !wanted[tick] {
-                        continue;
-                    }
-                    let mut here = matches[tick * templates..][..templates].iter_mut();
-                    for (part, matched) in parts.iter().zip(&matched) {
-                        let count = part.bank().len();
-                        let found = &matched[(tick - first) * count..][..count];
-                        for ((template, found), out) in found.iter().enumerate().zip(&mut here) {
-                            *out =
-                                Compared::of(part.compare_match(template, *found, &mut stretches));
-                        }
-                    }
+                if wanted[tick] {
+                    offer(
+                        parts,
+                        &matched,
+                        (tick, tick - first),
+                        &mut stretches,
+                        &mut take,
+                    );
                 }
             }
         }
-        Self {
-            templates,
-            matches,
-            gate: MatchGate::plain(0.0),
-        }
-    }
-
-    /// For each tick, whether some match that counts is nearer than `distance`.
-    pub fn ticks_within(&self, distance: f64) -> Vec<bool> {
-        let is_near = |tick| f64::from(self.nearest(tick, |_| true).distance) < distance;
-        (0..self.len()).map(is_near).collect()
-    }
-
-    /// Lets matches count that pass `gate` only, discounted as it says.
-    pub fn set_gate(&mut self, gate: MatchGate) {
-        self.gate = gate;
-    }
-
-    /// Number of ticks.
-    pub fn len(&self) -> usize {
-        self.matches.len().checked_div(self.templates).unwrap_or(0)
-    }
-
-    /// Matches of all templates at `tick`.
-    pub fn at(&self, tick: usize) -> impl Iterator<Item = Match> + '_ {
-        let here = &self.matches[tick * self.templates..(tick + 1) * self.templates];
-        here.iter().map(|m| self.counted(m))
-    }
-
-    fn counted(&self, found: &Compared) -> Match {
-        let found = found.found().discounted(self.gate.discount);
-        let counts = found.moves(self.gate.rest_share);
-        Match {
-            distance: if counts { found.distance } else { FAR },
-            age: found.age,
-        }
-    }
-
-    /// The smallest distance anywhere.
-    pub fn smallest(&self) -> f32 {
-        let counted = self.matches.iter().map(|m| self.counted(m).distance);
-        counted.fold(FAR, f32::min)
-    }
-
-    /// The nearest of the templates that `counts` admits, at `tick`.
-    pub fn nearest(&self, tick: usize, counts: impl Fn(usize) -> bool) -> Match {
-        let admitted = self
-            .at(tick)
-            .enumerate()
-            .filter(|(i, _)| counts(*i))
-            .map(|(_, m)| m);
-        admitted
-            .reduce(|best, m| if m.distance < best.distance { m } else { best })
-            .unwrap_or(NO_MATCH)
     }
 }
 
-const NO_MATCH: Match = Match {
-    distance: FAR,
-    age: 0,
-};
+/// Offers the matches at `tick`, the tick at `place` of those that were `matched`.
+fn offer(
+    parts: &[Matcher],
+    matched: &[Vec<Match>],
+    (tick, place): (usize, usize),
+    stretches: &mut Stretches,
+    take: &mut impl FnMut(&mut Offer<'_>),
+) {
+    let mut before = 0;
+    for (matcher, matched) in parts.iter().zip(matched) {
+        let count = matcher.bank().len();
+        let here = matched[place * count..][..count].iter().copied();
+        for (index, found) in here.enumerate().filter(|(_, found)| found.distance < FAR) {
+            take(&mut Offer {
+                tick,
+                template: before + index,
+                age: found.age,
+                found,
+                matcher,
+                index,
+                stretches,
+            });
+        }
+        before += count;
+    }
+}
 
 /// A stretch of a stream that comes near to some template.
 #[derive(Debug, Clone, PartialEq)]
@@ -200,9 +205,10 @@ pub struct NearMiss {
 ///
 /// In labelled streams this is done twice, the second time without the same person's templates, as a new person's
 /// stream would be seen.
+///
+/// `nearest` is the nearest of all templates at every tick, `others` the same without those of the stream's own group.
 pub fn hard_negatives(
-    distances: &TemplateDistances,
-    samples: &[TrainSample],
+    [nearest, others]: [&[Match]; 2],
     (index, stream): (usize, &TrainStream),
     threshold: f32,
     params: &TrainParams,
@@ -214,13 +220,7 @@ pub fn hard_negatives(
         0.0
     };
     let mut found = Vec::new();
-    let all = |_: usize| true;
-    let others = |template: usize| samples[template].group != stream.group;
-    let views: [&dyn Fn(usize) -> bool; 2] = [&all, &others];
-    for counts in &views[..if labelled { 2 } else { 1 }] {
-        let nearest: Vec<Match> = (0..distances.len())
-            .map(|t| distances.nearest(t, counts))
-            .collect();
+    for nearest in &[nearest, others][..if labelled { 2 } else { 1 }] {
         for t in 1..nearest.len().saturating_sub(1) {
             let Match { distance, age } = nearest[t];
             let dip = distance <= nearest[t - 1].distance && distance < nearest[t + 1].distance;
@@ -264,10 +264,10 @@ mod tests {
             .prop_map(|v| Rows::from_values(2, v))
     }
 
-    fn bits(distances: &TemplateDistances, tick: usize) -> Vec<(u32, u32, u32)> {
-        let here = &distances.matches[tick * distances.templates..][..distances.templates];
-        let bits = |m: &Compared| (m.distance.to_bits(), m.age, m.rest_share.to_bits());
-        here.iter().map(bits).collect()
+    type Bits = (u32, usize);
+
+    fn bits(found: Option<Match>) -> Option<Bits> {
+        found.map(|m| (m.distance.to_bits(), m.age))
     }
 
     proptest! {
@@ -278,26 +278,27 @@ mod tests {
             stream in rows(1..120),
             wanted in prop::collection::vec(prop::bool::weighted(0.05), 120),
             cut in 0usize..6,
+            (discount, rest_share) in (0.0f32..0.5, 0.5f32..1.5),
         ) {
             let (dim, decode) = (2, DecodeParams::default());
+            let gate = MatchGate { discount, rest_share };
             let mut whole = Matcher::new(&templates, dim, &decode);
             let mut stretches = Stretches::new(dim, whole.longest_match());
             let (before, behind) = templates.split_at(cut.min(templates.len()));
             let mut parts = [before, behind].map(|part| Matcher::new(part, dim, &decode));
-            let all = TemplateDistances::of(&mut parts, &stream);
-            let some = TemplateDistances::at_ticks(&mut parts, &stream, &wanted[..stream.len()]);
+            let count = templates.len();
+            let mut found = vec![None; stream.len() * count];
+            for_each_match(&mut parts, &stream, &wanted[..stream.len()], |offer| {
+                found[offer.tick * count + offer.template] = bits(offer.nearer(FAR, gate));
+            });
             for (tick, row) in stream.iter().enumerate() {
                 whole.step(row);
                 stretches.push(row);
-                let plain: Vec<_> = (0..templates.len())
-                    .map(|template| Compared::of(whole.compare(template, &mut stretches)))
-                    .map(|m| (m.distance.to_bits(), m.age, m.rest_share.to_bits()))
-                    .collect();
-                prop_assert_eq!(&bits(&all, tick), &plain);
-                let nothing = |m: &(u32, u32, u32)| f32::from_bits(m.0) >= FAR;
-                match wanted[tick] {
-                    true => prop_assert_eq!(&bits(&some, tick), &plain),
-                    false => prop_assert!(bits(&some, tick).iter().all(nothing)),
+                for template in 0..count {
+                    let plain = whole.compare(template, &mut stretches).discounted(discount);
+                    let counts = wanted[tick] && plain.distance < FAR && plain.moves(rest_share);
+                    let plain = Match { distance: plain.distance, age: plain.age };
+                    prop_assert_eq!(found[tick * count + template], bits(counts.then_some(plain)));
                 }
             }
         }

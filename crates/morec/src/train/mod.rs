@@ -4,6 +4,7 @@ mod activities;
 mod align;
 mod alike;
 mod clips;
+mod comparison;
 mod data;
 mod examples;
 mod faster;

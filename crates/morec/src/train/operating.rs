@@ -5,8 +5,6 @@ use std::ops::Range;
 use crate::decode::FAR;
 use crate::templates::Match;
 
-use super::examples::LeaveOneOutView;
-use super::mining::TemplateDistances;
 use super::params::TrainParams;
 use super::set::{StreamKind, TrainSet, overlap_share};
 
@@ -23,11 +21,13 @@ impl AlarmCurve {
     /// Events of all background and everyday streams: local minima of the nearest template's distance, none
     /// overlapping a nearer one by more than half, where no negative of another person or clip is nearer. Unlabelled
     /// parts of labelled clips do not count: what comes near there may be a sample that nobody labelled.
-    /// O(ticks · templates + events²).
+    ///
+    /// `nearest` is each stream's nearest template at every tick, `negatives` its nearest negative of another group.
+    /// O(ticks + events²).
     pub fn of(
         set: &TrainSet,
-        distances: &[TemplateDistances],
-        seen: Option<&LeaveOneOutView<'_>>,
+        nearest: &[&[Match]],
+        negatives: Option<&[&[Match]]>,
         params: &TrainParams,
     ) -> Self {
         let mut curve = Self::default();
@@ -38,11 +38,9 @@ impl AlarmCurve {
             }
             curve.minutes += of.rows.len() as f64 / minute_ticks;
             let gate = |tick: usize| {
-                seen.map_or(FAR, |seen| {
-                    params.decode.gate * seen.nearest_negative(stream, tick)
-                })
+                negatives.map_or(FAR, |near| params.decode.gate * near[stream][tick].distance)
             };
-            let found = events(&distances[stream], gate);
+            let found = events(nearest[stream], gate);
             curve.events.extend(found.map(|d| (d, stream)));
         }
         curve.events.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -58,14 +56,13 @@ impl AlarmCurve {
 }
 
 /// Distances of the separate approaches in one stream that are nearer than `gate` says at their tick.
-fn events(distances: &TemplateDistances, gate: impl Fn(usize) -> f32) -> impl Iterator<Item = f32> {
-    let counted = |tick: usize| {
-        let found = distances.nearest(tick, |_| true);
+fn events(nearest: &[Match], gate: impl Fn(usize) -> f32) -> impl Iterator<Item = f32> {
+    let counted = |(tick, found): (usize, &Match)| {
         let admitted = found.distance < FAR && found.distance < gate(tick);
         let distance = if admitted { found.distance } else { FAR };
-        Match { distance, ..found }
+        Match { distance, ..*found }
     };
-    let nearest: Vec<Match> = (0..distances.len()).map(counted).collect();
+    let nearest: Vec<Match> = nearest.iter().enumerate().map(counted).collect();
     let mut dips: Vec<(f32, Range<usize>)> = Vec::new();
     for (t, Match { distance, age }) in nearest.iter().copied().enumerate() {
         let beaten = (t > 0 && nearest[t - 1].distance < distance)

@@ -1,7 +1,6 @@
 //! The training itself, step by step as in the method's description.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
@@ -10,17 +9,17 @@ use crate::decode::TYPICAL_SPREAD;
 use crate::features::{BoneSet, Profile, Rows};
 use crate::progress::Progress;
 use crate::templates::{
-    ALARM_RATES, Calibration, MatchGate, Matcher, Metric, OperatingPoint, PackedSymmetric,
+    ALARM_RATES, Calibration, Match, MatchGate, Metric, OperatingPoint, PackedSymmetric,
     PerformerKind, StrangerGate, TemplateModel, TemplateModelError, TemplateSample, Verifier,
     mean_and_spread,
 };
 
 use super::activities;
 use super::alike::{AlikeClasses, alike_classes};
-use super::examples::{self, CandidateFinder, LeaveOneOutView, VerifierExample};
-use super::faster::{faster_copies, without_early};
+use super::comparison::{StreamMatches, TrainingContext};
+use super::examples::{self, CandidateFinder, NearStream, VerifierExample};
 use super::held;
-use super::mining::{NearMiss, TemplateDistances, hard_negatives};
+use super::mining::{NearMiss, Nearest, TrainGates, hard_negatives, smallest};
 use super::operating::AlarmCurve;
 use super::params::TrainParams;
 use super::scatter::{covariance, ridged, within_class};
@@ -160,67 +159,54 @@ pub fn train(
         params,
         progress,
     };
-    samples.extend(step.faster_copies(&samples, bones)?);
-    let matchers = step.matchers(samples.iter().map(|s| &s.rows));
-    let mut distances = step.distances(&matchers, "comparing clips", |stream| {
-        vec![true; set.streams[stream].rows.len()]
-    })?;
-    let plain = params.decode.rest_gate;
-    set_rest_share(&mut distances, plain);
-    let near_enough = step.operating(&distances, None);
+    let plain = MatchGate::plain(params.decode.rest_gate);
+    samples.extend(step.faster_copies(&samples, bones, plain)?);
+    let verified = verified_gate(&classes, &samples, params);
+    let verified = verified.filter(|_| params.verify);
+    let verifies = verified.is_some() && verifier::has_background(set, params);
+    let wide = wide_gate(set, &samples, params).filter(|_| !verifies);
+    let gates = TrainGates { plain, wide };
+    let gate_of_verifier = verified.filter(|_| verifies).map(MatchGate::plain);
+    let matches = step.templates(&samples, gates, gate_of_verifier)?;
+    let near: Vec<&Nearest> = matches.iter().map(|m| &m.all).collect();
+    let near_enough = step.operating(&near, None, |near| &near.plain);
     let negatives = negatives_of(
         set,
         bones,
-        (&samples, &distances),
+        (&samples, &matches),
         near_enough.threshold,
         params,
     );
     let rows: Vec<Rows> = negatives.iter().map(|n| negative_rows(set, n)).collect();
-    let gate = verified_gate(&classes, &samples, params);
-    let gate = gate.filter(|_| params.verify);
-    let verifies = gate.is_some() && verifier::has_background(set, params);
-    let wide = wide_gate(set, &samples, params).filter(|_| !verifies);
-    let most = step.largest_threshold();
-    let near_wide = step.within_wide(&mut distances, wide, most);
-    let wanted = |stream: usize| {
-        // The threshold looks at background only, and not beyond its bound; a verifier learns from everything.
-        let is_background = set.streams[stream].source != StreamKind::Labelled;
-        match is_background && !verifies {
-            true => {
-                let mut wanted = distances[stream].ticks_within(most);
-                let wide = near_wide.iter().flat_map(|n| n[stream].iter());
-                wanted.iter_mut().zip(wide).for_each(|(w, wide)| *w |= wide);
-                wanted
-            }
-            false => vec![verifies; set.streams[stream].rows.len()],
-        }
+    let all = TrainGates {
+        plain: MatchGate::plain(0.0),
+        wide: wide.map(|gate| MatchGate {
+            rest_share: 0.0,
+            ..gate
+        }),
     };
-    let matchers = step.matchers(rows.iter());
-    let mut near_negatives = step.distances(&matchers, "comparing with near misses", wanted)?;
+    let rule = (verifies, step.largest_threshold());
+    let near_negatives = step.negatives((&negatives, &rows), &matches, all, rule)?;
+    let seen: Vec<&Nearest> = near_negatives.iter().collect();
     let stranger = wide.map(|gate| {
-        let seen = (samples.as_slice(), negatives.as_slice());
-        step.stranger_gate(gate, (&mut distances, &mut near_negatives), seen)
+        let operating = step.operating(&near, Some(&seen), |near| &near.wide);
+        step.stranger_gate(gate, operating)
     });
-    let seen = LeaveOneOutView {
-        set,
-        samples: &samples,
-        negatives: &negatives,
-        near_negatives: &near_negatives,
-    };
-    let operating = step.operating(&distances, Some(&seen));
+    let operating = step.operating(&near, Some(&seen), |near| &near.plain);
     let threshold = operating.threshold;
     let mut decode = params.decode.clone();
     let mut verifier = None;
-    if let Some(gate) = gate {
+    if let Some(gate) = verified {
         decode.rest_gate_verified = gate;
         if verifies {
-            set_rest_share(&mut distances, gate);
-            verifier = step.verifier(&seen, &distances, threshold);
-            set_rest_share(&mut distances, plain);
+            verifier = step.verifier(&matches, &near_negatives, threshold);
         }
     }
     let alike = match verifier {
-        None => alike_classes(set, &samples, &distances, threshold, params),
+        None => {
+            let rivals = matches.iter().flat_map(|m| &m.rivals);
+            alike_classes(set, rivals, threshold, params)
+        }
         Some(_) => Vec::new(),
     };
     let calibration = match verifier {
@@ -267,14 +253,6 @@ pub fn train(
     })
 }
 
-fn set_rest_share(distances: &mut [TemplateDistances], share: f32) {
-    set_gate(distances, MatchGate::plain(share));
-}
-
-fn set_gate(distances: &mut [TemplateDistances], gate: MatchGate) {
-    distances.iter_mut().for_each(|d| d.set_gate(gate));
-}
-
 /// The wider gate of matches, if so few people teach that a stranger is likely to be unlike them. Who is not named is one person.
 fn wide_gate(set: &TrainSet, samples: &[TrainSample], params: &TrainParams) -> Option<MatchGate> {
     let people: BTreeSet<Option<&str>> = samples
@@ -300,80 +278,7 @@ struct Operating {
     points: Vec<OperatingPoint>,
 }
 
-/// Values of templates' rows that are matched together, 192 kB of them: a core's own cache has room for twice that and more.
-const VALUES_OF_PART: usize = 48 << 10;
-
-/// State common to the steps of a training.
-struct TrainingContext<'a> {
-    set: &'a TrainSet,
-    metric: &'a Metric,
-    params: &'a TrainParams,
-    progress: &'a dyn Progress,
-}
-
 impl TrainingContext<'_> {
-    /// Lays out templates that are not mapped yet, in parts whose rows fit the processor's cache.
-    fn matchers<'r>(&self, rows: impl Iterator<Item = &'r Rows>) -> Vec<Matcher> {
-        let mapped: Vec<Rows> = rows.map(|r| self.metric.apply_all(r)).collect();
-        let dim = self.metric.dim();
-        let mut parts = Vec::new();
-        let mut rest = mapped.as_slice();
-        while !rest.is_empty() {
-            let mut values = 0;
-            let fitting = rest.iter().take_while(|rows| {
-                values += rows.values().len();
-                values <= VALUES_OF_PART
-            });
-            let (part, others) = rest.split_at(fitting.count().max(1));
-            parts.push(Matcher::new(part, dim, &self.params.decode));
-            rest = others;
-        }
-        parts
-    }
-
-    /// The ticks that are wanted of each stream against every template, in parallel, in the order of the set; at the others
-    /// nothing comes near.
-    fn distances(
-        &self,
-        matchers: &[Matcher],
-        stage: &str,
-        wanted: impl Fn(usize) -> Vec<bool> + Sync,
-    ) -> Result<Vec<TemplateDistances>, TrainError> {
-        let (done, total) = (AtomicUsize::new(0), self.set.streams.len());
-        let compare = |matchers: &mut Vec<Matcher>, (place, stream): (usize, &TrainStream)| {
-            if self.progress.cancelled() {
-                return Err(TrainError::Cancelled);
-            }
-            let mapped = self.metric.apply_all(&stream.rows);
-            let distances = TemplateDistances::at_ticks(matchers, &mapped, &wanted(place));
-            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-            self.progress.report(stage, done, total);
-            Ok(distances)
-        };
-        let streams = self.set.streams.par_iter().enumerate();
-        streams.map_init(|| matchers.to_vec(), compare).collect()
-    }
-
-    /// Faster copies of samples, for templates.
-    fn faster_copies(
-        &self,
-        samples: &[TrainSample],
-        bones: BoneSet,
-    ) -> Result<Vec<TrainSample>, TrainError> {
-        let copies = faster_copies(self.set, samples, bones, self.params);
-        if copies.is_empty() {
-            return Ok(copies);
-        }
-        let matchers = self.matchers(copies.iter().map(|s| &s.rows));
-        let teaching: BTreeSet<usize> = samples.iter().map(|s| s.stream).collect();
-        let mut distances = self.distances(&matchers, "comparing faster copies", |stream| {
-            vec![teaching.contains(&stream); self.set.streams[stream].rows.len()]
-        })?;
-        set_rest_share(&mut distances, self.params.decode.rest_gate);
-        let threshold = self.params.max_threshold;
-        Ok(without_early(copies, samples, &distances, threshold))
-    }
-
     /// Bound of the threshold at a rate of false alarms. It moves with the rate, or it would be all there is where no
     /// background comes near.
     fn most_at(&self, rate: f64) -> f64 {
@@ -391,15 +296,17 @@ impl TrainingContext<'_> {
         rates.map(|rate| self.most_at(rate)).fold(0.0, f64::max)
     }
 
-    /// The threshold; `seen` adds what negatives of other people and clips keep out.
+    /// The threshold under the gate that `of` chooses; `negatives` add what near misses of other people and clips keep out.
     fn operating(
         &self,
-        distances: &[TemplateDistances],
-        seen: Option<&LeaveOneOutView<'_>>,
+        near: &[&Nearest],
+        negatives: Option<&[&Nearest]>,
+        of: impl Fn(&Nearest) -> &[Match],
     ) -> Operating {
         let params = self.params;
+        let near: Vec<&[Match]> = near.iter().map(|near| of(near)).collect();
         if params.alarms_per_minute <= 0.0 {
-            let (threshold, from) = thresholds::global_threshold(self.set, distances, params);
+            let (threshold, from) = thresholds::global_threshold(self.set, &near, params);
             let points = Vec::new();
             return Operating {
                 threshold,
@@ -407,7 +314,8 @@ impl TrainingContext<'_> {
                 points,
             };
         }
-        let curve = AlarmCurve::of(self.set, distances, seen, params);
+        let negatives = negatives.map(|near| near.iter().map(|near| of(near)).collect::<Vec<_>>());
+        let curve = AlarmCurve::of(self.set, &near, negatives.as_deref(), params);
         let at = |rate: f64| {
             let most = self.most_at(rate);
             let set_by = curve.distance_at(rate);
@@ -432,50 +340,8 @@ impl TrainingContext<'_> {
         }
     }
 
-    /// For each stream, the ticks at which a match that passes the wider gate is nearer than `most`; nothing without one.
-    fn within_wide(
-        &self,
-        distances: &mut [TemplateDistances],
-        wide: Option<MatchGate>,
-        most: f64,
-    ) -> Option<Vec<Vec<bool>>> {
-        let wide = wide?;
-        set_gate(distances, wide);
-        let within = |(of, stream): (&TemplateDistances, &TrainStream)| match stream.source {
-            StreamKind::Labelled => Vec::new(),
-            _ => of.ticks_within(most),
-        };
-        let near = distances
-            .iter()
-            .zip(&self.set.streams)
-            .map(within)
-            .collect();
-        set_rest_share(distances, self.params.decode.rest_gate);
-        Some(near)
-    }
-
     /// The wider gate, with the thresholds that background motion sets when it is matched as under that gate.
-    fn stranger_gate(
-        &self,
-        gate: MatchGate,
-        (distances, near_negatives): (&mut [TemplateDistances], &mut [TemplateDistances]),
-        (samples, negatives): (&[TrainSample], &[NearMiss]),
-    ) -> StrangerGate {
-        let all = MatchGate {
-            rest_share: 0.0,
-            ..gate
-        };
-        set_gate(distances, gate);
-        set_gate(near_negatives, all);
-        let seen = LeaveOneOutView {
-            set: self.set,
-            samples,
-            negatives,
-            near_negatives,
-        };
-        let operating = self.operating(distances, Some(&seen));
-        set_rest_share(distances, self.params.decode.rest_gate);
-        set_rest_share(near_negatives, 0.0);
+    fn stranger_gate(&self, gate: MatchGate, operating: Operating) -> StrangerGate {
         let params = &self.params.stranger;
         StrangerGate {
             performer: PerformerKind::Auto,
@@ -493,15 +359,20 @@ impl TrainingContext<'_> {
     /// Candidates of all streams, each seen without its own person, and what a verifier learns from them.
     fn verifier(
         &self,
-        seen: &LeaveOneOutView<'_>,
-        distances: &[TemplateDistances],
+        matches: &[StreamMatches],
+        negatives: &[Nearest],
         threshold: f32,
     ) -> Option<Verifier> {
         let (set, params) = (self.set, self.params);
-        let candidates = CandidateFinder::new(seen, distances, threshold, params);
+        let candidates = CandidateFinder::new(set, threshold, params);
+        let near = |stream: usize| NearStream {
+            stream,
+            classes: &matches[stream].classes,
+            negatives: &negatives[stream].plain,
+        };
         let examples: Vec<VerifierExample> = (0..set.streams.len())
             .into_par_iter()
-            .flat_map_iter(|stream| candidates.examples(stream))
+            .flat_map_iter(|stream| candidates.examples(near(stream)))
             .collect();
         let reach = examples::reach(&examples, threshold, params);
         let chosen = examples::select(examples, set, reach, params);
@@ -630,7 +501,7 @@ fn metric_of(
 fn negatives_of(
     set: &TrainSet,
     bones: BoneSet,
-    (samples, distances): (&[TrainSample], &[TemplateDistances]),
+    (samples, matches): (&[TrainSample], &[StreamMatches]),
     threshold: f32,
     params: &TrainParams,
 ) -> Vec<NearMiss> {
@@ -650,12 +521,15 @@ fn negatives_of(
         .partition(|(_, s)| short(s));
     let mut found: Vec<NearMiss> = long
         .into_iter()
-        .flat_map(|(i, s)| hard_negatives(&distances[i], samples, (i, s), threshold, params))
+        .flat_map(|(i, s)| {
+            let near = [&matches[i].all.plain, &matches[i].others].map(Vec::as_slice);
+            hard_negatives(near, (i, s), threshold, params)
+        })
         .collect();
     found.sort_by(|a, b| a.distance.total_cmp(&b.distance));
     found.truncate(params.max_negatives);
     found.extend(whole.into_iter().map(|(stream, s)| NearMiss {
-        distance: distances[stream].smallest(),
+        distance: smallest(&matches[stream].all.plain),
         stream,
         ticks: motion_span(&s.rows, bones),
     }));

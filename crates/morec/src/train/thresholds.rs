@@ -1,33 +1,34 @@
 //! The distance threshold of all classes together.
 
 use crate::decode::FAR;
+use crate::templates::Match;
 
-use super::mining::TemplateDistances;
+use super::mining::smallest;
 use super::params::TrainParams;
 use super::set::{StreamKind, TrainSet};
 
 /// A share of the smallest distance that background motion has to any template, and what set it.
 ///
 /// Clips that the user calls background count in full. Of made everyday motion a tenth may come nearer: some of it
-/// may happen to be one of the classes, and what comes that near becomes a hard negative.
+/// may happen to be one of the classes, and what comes that near becomes a hard negative. `nearest` is each stream's nearest template at
+/// every tick.
 pub fn global_threshold(
     set: &TrainSet,
-    distances: &[TemplateDistances],
+    nearest: &[&[Match]],
     params: &TrainParams,
 ) -> (f32, String) {
     let of = |source: StreamKind, share: f64| {
         let streams = set
             .streams
             .iter()
-            .zip(distances)
+            .zip(nearest)
             .filter(|(s, _)| s.source == source);
-        let mut nearest: Vec<(f32, &str)> = streams
-            .map(|(s, d)| (d.smallest(), s.name.as_str()))
+        let mut smallest: Vec<(f32, &str)> = streams
+            .map(|(s, near)| (smallest(near), s.name.as_str()))
             .collect();
-        nearest.sort_by(|a, b| a.0.total_cmp(&b.0));
-        nearest
-            .get((share * nearest.len() as f64) as usize)
-            .copied()
+        smallest.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let place = (share * smallest.len() as f64) as usize;
+        smallest.get(place).copied()
     };
     let clips = of(StreamKind::Background, 0.0);
     let everyday = of(StreamKind::Everyday, params.everyday_may_pass);

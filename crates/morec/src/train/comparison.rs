@@ -1,0 +1,243 @@
+//! Streams compared with templates, in parallel: the part of a training that takes the time.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use rayon::prelude::*;
+
+use crate::decode::FAR;
+use crate::features::{BoneSet, Rows};
+use crate::progress::Progress;
+use crate::templates::{Match, MatchGate, Matcher, Metric};
+
+use super::alike::SampleRivals;
+use super::examples::LeaveOneOutView;
+use super::faster::{beginning, faster_copies, is_early, matches_beginning};
+use super::mining::{
+    NO_MATCH, NearMiss, Nearest, Offer, TrainGates, for_each_match, keep_nearest, ticks_within,
+};
+use super::params::TrainParams;
+use super::set::{StreamKind, TrainSample, TrainSet, TrainStream};
+use super::templates::TrainError;
+
+/// State common to the steps of a training.
+pub struct TrainingContext<'a> {
+    /// Everything to train from.
+    pub set: &'a TrainSet,
+    /// Of the rows.
+    pub metric: &'a Metric,
+    /// The parameters.
+    pub params: &'a TrainParams,
+    /// Listener.
+    pub progress: &'a dyn Progress,
+}
+
+/// What comes near in one stream.
+#[derive(Debug, Clone)]
+pub struct StreamMatches {
+    /// The nearest template of all at every tick.
+    pub all: Nearest,
+    /// The nearest template that is not of the stream's group, under the plain gate: what a new person would be near.
+    pub others: Vec<Match>,
+    /// For each tick the nearest match of every class, by [`LeaveOneOutView`]; empty where nothing is verified.
+    pub classes: Vec<Match>,
+    /// What the classes come to at its samples.
+    pub rivals: Vec<SampleRivals>,
+}
+
+/// Values of templates' rows that are matched together, 192 kB of them: a core's own cache has room for twice that and more.
+const VALUES_OF_PART: usize = 48 << 10;
+
+impl TrainingContext<'_> {
+    /// Lays out templates that are not mapped yet, in parts whose rows fit the processor's cache.
+    fn matchers<'r>(&self, rows: impl Iterator<Item = &'r Rows>) -> Vec<Matcher> {
+        let mapped: Vec<Rows> = rows.map(|r| self.metric.apply_all(r)).collect();
+        let dim = self.metric.dim();
+        let mut parts = Vec::new();
+        let mut rest = mapped.as_slice();
+        while !rest.is_empty() {
+            let mut values = 0;
+            let fitting = rest.iter().take_while(|rows| {
+                values += rows.values().len();
+                values <= VALUES_OF_PART
+            });
+            let (part, others) = rest.split_at(fitting.count().max(1));
+            parts.push(Matcher::new(part, dim, &self.params.decode));
+            rest = others;
+        }
+        parts
+    }
+
+    /// What `compare` makes of each stream, in parallel, in the order of the set. `compare` has copies of `matchers` for its own.
+    fn each_stream<T: Send>(
+        &self,
+        matchers: &[Matcher],
+        stage: &str,
+        compare: impl Fn(&mut [Matcher], usize, &TrainStream) -> T + Sync,
+    ) -> Result<Vec<T>, TrainError> {
+        let (done, total) = (AtomicUsize::new(0), self.set.streams.len());
+        let of_stream = |matchers: &mut Vec<Matcher>, (place, stream): (usize, &TrainStream)| {
+            if self.progress.cancelled() {
+                return Err(TrainError::Cancelled);
+            }
+            let found = compare(matchers, place, stream);
+            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+            self.progress.report(stage, done, total);
+            Ok(found)
+        };
+        let streams = self.set.streams.par_iter().enumerate();
+        streams.map_init(|| matchers.to_vec(), of_stream).collect()
+    }
+
+    /// Gives `take` the matches of `matchers` at the `wanted` ticks of a stream.
+    fn matches(
+        &self,
+        matchers: &mut [Matcher],
+        stream: &TrainStream,
+        wanted: &[bool],
+        take: impl FnMut(&mut Offer<'_>),
+    ) {
+        if wanted.contains(&true) {
+            for_each_match(matchers, &self.metric.apply_all(&stream.rows), wanted, take);
+        }
+    }
+
+    /// What comes near of the templates of `samples`; `verified` is the gate of a verifier that is to be learned.
+    pub fn templates(
+        &self,
+        samples: &[TrainSample],
+        gates: TrainGates,
+        verified: Option<MatchGate>,
+    ) -> Result<Vec<StreamMatches>, TrainError> {
+        let (set, decode) = (self.set, &self.params.decode);
+        let matchers = self.matchers(samples.iter().map(|s| &s.rows));
+        let view = LeaveOneOutView::new(set, samples);
+        self.each_stream(&matchers, "comparing clips", |matchers, place, stream| {
+            let ticks = stream.rows.len();
+            let classes = verified.map_or_else(Vec::new, |_| view.none(place));
+            let mut found = StreamMatches {
+                all: Nearest::none(ticks, gates),
+                others: vec![NO_MATCH; ticks],
+                classes,
+                rivals: SampleRivals::of_stream(set, samples, place, decode),
+            };
+            let wanted = wanted_of(stream, &found.rivals, verified.is_some());
+            self.matches(matchers, stream, &wanted, |offer| {
+                let sample = &samples[offer.template];
+                found.all.take(offer, gates);
+                if sample.group != stream.group {
+                    keep_nearest(&mut found.others[offer.tick], offer, gates.plain);
+                }
+                if let Some(gate) = verified {
+                    view.take(&mut found.classes, offer, place, gate);
+                }
+                for rivals in &mut found.rivals {
+                    rivals.take(offer, (sample, place), gates.plain, decode);
+                }
+            });
+            found
+        })
+    }
+
+    /// What comes near of the `negatives` of other groups than the stream's. Their `gates` admit a body at rest. Without a verifier only
+    /// background is looked at, where templates come nearer than `most`, the bound of the threshold: nothing else is asked for.
+    pub fn negatives(
+        &self,
+        (negatives, rows): (&[NearMiss], &[Rows]),
+        matches: &[StreamMatches],
+        gates: TrainGates,
+        (verifies, most): (bool, f64),
+    ) -> Result<Vec<Nearest>, TrainError> {
+        let streams = &self.set.streams;
+        let wanted = |place: usize, stream: &TrainStream| {
+            if verifies || stream.source == StreamKind::Labelled {
+                return vec![verifies; stream.rows.len()];
+            }
+            let mut wanted = ticks_within(&matches[place].all.plain, most);
+            let wide = ticks_within(&matches[place].all.wide, most);
+            wanted.iter_mut().zip(wide).for_each(|(w, wide)| *w |= wide);
+            wanted
+        };
+        let matchers = self.matchers(rows.iter());
+        let stage = "comparing with near misses";
+        self.each_stream(&matchers, stage, |matchers, place, stream| {
+            let mut near = Nearest::none(stream.rows.len(), gates);
+            self.matches(matchers, stream, &wanted(place, stream), |offer| {
+                if streams[negatives[offer.template].stream].group != stream.group {
+                    near.take(offer, gates);
+                }
+            });
+            near
+        })
+    }
+
+    /// Faster copies of samples, for templates: those that match no beginnings of samples of their class, which they would report
+    /// before their end.
+    pub fn faster_copies(
+        &self,
+        samples: &[TrainSample],
+        bones: BoneSet,
+        gate: MatchGate,
+    ) -> Result<Vec<TrainSample>, TrainError> {
+        let copies = faster_copies(self.set, samples, bones, self.params);
+        if copies.is_empty() {
+            return Ok(copies);
+        }
+        let stage = "comparing faster copies";
+        let early = self.each_stream(&[], stage, |_, place, stream| {
+            self.early_copies(&copies, samples, (place, stream), gate)
+        })?;
+        let early_of = |copy: usize| early.iter().flatten().filter(|c| **c == copy).count();
+        let keep = |(place, copy): &(usize, TrainSample)| {
+            let of_class = samples.iter().filter(|s| s.class == copy.class).count();
+            !is_early(early_of(*place), of_class)
+        };
+        let kept = copies.into_iter().enumerate().filter(keep);
+        Ok(kept.map(|(_, copy)| copy).collect())
+    }
+
+    /// The copies that match the beginning of a sample of their class in one stream, by their places, once for each sample.
+    fn early_copies(
+        &self,
+        copies: &[TrainSample],
+        samples: &[TrainSample],
+        (place, stream): (usize, &TrainStream),
+        gate: MatchGate,
+    ) -> Vec<usize> {
+        let ticks = stream.rows.len();
+        let here: Vec<&TrainSample> = samples.iter().filter(|s| s.stream == place).collect();
+        let is_shown = |copy: &TrainSample| here.iter().any(|s| s.class == copy.class);
+        let shown: Vec<usize> = (0..copies.len())
+            .filter(|c| is_shown(&copies[*c]))
+            .collect();
+        let mut wanted = vec![false; ticks];
+        here.iter()
+            .for_each(|s| wanted[beginning(s, ticks)].fill(true));
+        let mut matchers = self.matchers(shown.iter().map(|c| &copies[*c].rows));
+        let mut matches = vec![vec![NO_MATCH; ticks]; shown.len()];
+        self.matches(&mut matchers, stream, &wanted, |offer| {
+            if let Some(found) = offer.nearer(FAR, gate) {
+                matches[offer.template][offer.tick] = found;
+            }
+        });
+        let most = self.params.max_threshold;
+        let early = |(copy, matches): (usize, &Vec<Match>)| {
+            let of_class = here.iter().filter(|s| s.class == copies[copy].class);
+            let early = of_class.filter(|s| matches_beginning(matches, s, most));
+            vec![copy; early.count()]
+        };
+        shown
+            .iter()
+            .copied()
+            .zip(&matches)
+            .flat_map(early)
+            .collect()
+    }
+}
+
+/// The ticks of a stream whose matches are asked for: all of background and for a verifier, else where a sample ends.
+fn wanted_of(stream: &TrainStream, rivals: &[SampleRivals], verifies: bool) -> Vec<bool> {
+    let is_labelled = stream.source == StreamKind::Labelled && !stream.rest_is_background;
+    let mut wanted = vec![verifies || !is_labelled; stream.rows.len()];
+    rivals.iter().for_each(|r| wanted[r.ends()].fill(true));
+    wanted
+}
