@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::decode::FAR;
 use crate::features::Rows;
 
-use super::kernel::{self, CellRows, Cells, LANES, Lanes, TICKS, Totals, interleaved};
+use super::kernel::{self, Cells, LANES, Lanes, interleaved};
 
 /// Cells left empty before each template, so that transitions from "before the first row" cost [`FAR`] without
 /// a branch.
@@ -33,11 +33,13 @@ pub struct TemplateBank {
     dim: usize,
     /// The cells' rows, [`interleaved`].
     rows: Arc<[Lanes]>,
-    /// What else never changes of every cell.
-    fixed: Arc<[CellRows]>,
+    /// `|T_j|²` of every cell.
+    norms: Arc<[Lanes]>,
     /// First and last cell of each template.
     extents: Arc<[(usize, usize)]>,
+    /// At this tick and the one before, in turn.
     cells: Vec<Cells>,
+    tick: usize,
 }
 
 /// Best match of a template to a stretch that ends now.
@@ -69,21 +71,17 @@ impl TemplateBank {
         };
         let rows = interleaved(cells, dim, cell_rows());
         let blocks = cells.div_ceil(LANES);
-        let mut fixed = vec![CellRows::NONE; blocks];
+        let mut norms = vec![[0.0; LANES]; blocks];
         for (cell, row) in cell_rows() {
-            let (fixed, lane) = (&mut fixed[cell / LANES], cell % LANES);
-            fixed.norm[lane] = row.iter().map(|v| v * v).sum();
-            fixed.least[lane] = 0.0;
-        }
-        for (first, _) in extents.iter().filter(|(first, last)| first <= last) {
-            fixed[first / LANES].start[first % LANES] = 0.0;
+            norms[cell / LANES][cell % LANES] = row.iter().map(|v| v * v).sum();
         }
         Self {
             dim,
             rows: rows.into(),
-            fixed: fixed.into(),
+            norms: norms.into(),
             extents: extents.into(),
             cells: vec![Cells::EMPTY; blocks],
+            tick: 0,
         }
     }
 
@@ -114,6 +112,7 @@ impl TemplateBank {
     /// Forgets the stream so far.
     pub fn reset(&mut self) {
         self.cells.fill(Cells::EMPTY);
+        self.tick = 0;
     }
 
     /// Advances by one tick with the stream's row `z`, of `dim` values.
@@ -121,71 +120,42 @@ impl TemplateBank {
     /// # Panics
     /// `z` has another width than the templates.
     pub fn step(&mut self, z: &[f32]) {
-        self.check_width(z);
-        kernel::step(&self.rows, &self.fixed, z, &mut self.cells);
-    }
-
-    /// Advances by as many ticks as `stream` has rows and adds every template's match at the first of them to `matches`, then at the
-    /// next. As [`step`](Self::step) after step, to the bit, in less time.
-    ///
-    /// # Panics
-    /// As [`step`](Self::step).
-    pub fn step_all(&mut self, stream: &[&[f32]], matches: &mut Vec<Match>) {
-        let mut totals = vec![Totals::EMPTY; TICKS * self.cells.len()];
-        let mut rest = stream;
-        while let Some((ticks, others)) = rest.split_first_chunk::<TICKS>() {
-            ticks.iter().for_each(|z| self.check_width(z));
-            kernel::step_ticks(
-                &self.rows,
-                &self.fixed,
-                *ticks,
-                &mut self.cells,
-                &mut totals,
-            );
-            for totals in totals.chunks_exact(self.cells.len()) {
-                let at = |cell: usize| {
-                    (
-                        totals[cell / LANES].total[cell % LANES],
-                        totals[cell / LANES].age[cell % LANES],
-                    )
-                };
-                matches.extend((0..self.len()).map(|index| self.match_of(index, at)));
-            }
-            rest = others;
-        }
-        for z in rest {
-            self.step(z);
-            matches.extend((0..self.len()).map(|index| self.matched(index)));
-        }
-    }
-
-    fn check_width(&self, z: &[f32]) {
         assert_eq!(
             z.len(),
             self.dim,
             "a stream row of another width than the templates'"
         );
+        let now = self.tick % 2;
+        kernel::step(&self.rows, &self.norms, z, now, &mut self.cells);
+        for &(first, last) in self.extents.iter() {
+            for guard in first - GUARDS..first {
+                self.cells[guard / LANES].total[now][guard % LANES] = FAR;
+            }
+            if last >= first {
+                let block = &mut self.cells[first / LANES];
+                block.total[now][first % LANES] = block.local[first % LANES];
+                block.age[now][first % LANES] = 0;
+            }
+        }
+        self.tick += 1;
     }
 
     /// Match of template `index` to a stretch that ends with the last tick stepped.
     pub fn matched(&self, index: usize) -> Match {
-        self.match_of(index, |cell| self.at(cell))
-    }
-
-    /// Match of template `index` where cells have totals and ages as `at` says.
-    fn match_of(&self, index: usize, at: impl Fn(usize) -> (f32, i32)) -> Match {
         let length = self.template_len(index);
-        let nothing = Match {
-            distance: FAR,
-            age: 0,
-        };
-        if length == 0 {
-            return nothing;
+        if length == 0 || self.tick == 0 {
+            return Match {
+                distance: FAR,
+                age: 0,
+            };
         }
-        let (total, age) = at(self.extents[index].1);
-        // A path that came out of a cell between templates is no path.
+        let (total, age) = self.at(self.extents[index].1);
+        // A path that came out of a guard cell is no path.
         if total >= FAR / 2.0 {
-            return nothing;
+            return Match {
+                distance: FAR,
+                age: 0,
+            };
         }
         Match {
             distance: total / length as f32,
@@ -195,8 +165,8 @@ impl TemplateBank {
 
     /// Total and age of a cell at the last tick.
     fn at(&self, cell: usize) -> (f32, i32) {
-        let last = &self.cells[cell / LANES].totals[1];
-        (last.total[cell % LANES], last.age[cell % LANES])
+        let (block, now) = (&self.cells[cell / LANES], (self.tick + 1) % 2);
+        (block.total[now][cell % LANES], block.age[now][cell % LANES])
     }
 
     /// Best match of the first rows of template `index`, at least `least` of them, to a stretch that ends with the
@@ -204,14 +174,15 @@ impl TemplateBank {
     pub fn partial(&self, index: usize, least: usize) -> Option<PartialMatch> {
         let (first, last) = self.extents[index];
         let from = first + least.max(1) - 1;
-        if from > last {
+        if self.tick == 0 || from > last {
             return None;
         }
+        let now = (self.tick + 1) % 2;
         let (mut best, mut cell) = ((from, f32::INFINITY), from);
         while cell <= last {
             // As much of the template as lies in one block.
             let end = (cell / LANES * LANES + LANES).min(last + 1);
-            let total = &self.cells[cell / LANES].totals[1].total[cell % LANES..][..end - cell];
+            let total = &self.cells[cell / LANES].total[now][cell % LANES..][..end - cell];
             let (place, mean) = kernel::least_mean(total, cell - first + 1);
             if mean < best.1 {
                 best = (cell + place, mean);
@@ -219,7 +190,7 @@ impl TemplateBank {
             cell = end;
         }
         let (total, age) = self.at(best.0);
-        // A path that came out of a cell between templates is no path.
+        // A path that came out of a guard cell is no path.
         let real = total < FAR / 2.0;
         real.then(|| PartialMatch {
             distance: best.1,

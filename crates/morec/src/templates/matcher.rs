@@ -151,11 +151,6 @@ impl Matcher {
         self.bank.step(row);
     }
 
-    /// [`TemplateBank::step_all`].
-    pub fn step_all(&mut self, rows: &[&[f32]], matches: &mut Vec<Match>) {
-        self.bank.step_all(rows, matches);
-    }
-
     /// Match of template `index` to a stretch that ends with the last tick; `stretches` has taken the same rows.
     /// O(d).
     pub fn compare(&self, index: usize, stretches: &mut Stretches) -> NormalizedMatch {
