@@ -80,9 +80,10 @@ def main():
                 [morec, "train", "--clips", folder, "--labels", folder / "labels.tsv", "-o", index]
             )
             few = [folder / f"c{number}_0.bvh" for number in range(min(classes, 20))]
-            *_, text = run([morec, "recognize", index, *few, "--stats", "-o", folder / "found.tsv"])
-            rate = next((line for line in text.splitlines() if "frames/s" in line or "frames a second" in line), text)
-            print(f"{classes}\t{seconds:.1f}\t{processor:.1f}\t{memory:.0f}\t{index.stat().st_size / 1000:.0f}\t{rate.strip()}")
+            *_, text = run([morec, "bench", index, *few])
+            rate = next(line.split()[-1] for line in text.splitlines() if line.startswith("whole path"))
+            kilobytes = index.stat().st_size / 1000
+            print(f"{classes}\t{seconds:.1f}\t{processor:.1f}\t{memory:.0f}\t{kilobytes:.0f}\t{rate}", flush=True)
 
 
 main()

@@ -7,19 +7,24 @@ use std::time::{Duration, Instant};
 use anyhow::Result;
 use morec::features::rows_of_clip;
 use morec::import::Take;
+use morec::kinematics::for_each_world_pose;
 use morec::live::Model;
 use morec::pivots::{PivotMap, pose_rows_of_clip};
 use morec::svrdm::{SvrdmEngine, SvrdmModel};
-use morec::templates::{TemplateEngine, TemplateModel};
+use morec::templates::{ClassMatcher, Metric, TemplateEngine, TemplateModel};
 
 /// Frames and times, summed over clips; all on one thread.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct Stats {
     frames: usize,
     reading: Duration,
     whole: Duration,
+    /// Poses of joints, from the channels of a clip.
+    kinematics: Duration,
     features: Duration,
+    /// Rows matched against templates; nothing with the method of 2009, whose stages follow each other row by row.
     matching: Duration,
+    recognising: Duration,
     size: String,
 }
 
@@ -37,6 +42,11 @@ impl Stats {
 
     /// Runs the stages once more, one after the other, and times each.
     pub fn stages(&mut self, model: &Model, imported: &Take) -> Result<()> {
+        timed(&mut self.kinematics, || {
+            for_each_world_pose(&imported.clip, imported.rest(), |_, world| {
+                std::hint::black_box(world);
+            });
+        });
         match model {
             Model::Templates(model) => self.template_stages(model, imported),
             Model::Svrdm(model) => self.svrdm_stages(model, imported),
@@ -48,8 +58,17 @@ impl Stats {
         let rows = timed(&mut self.features, || {
             rows_of_clip(clip, roles, rest, model.bones, &model.features)
         });
-        let mut engine = TemplateEngine::new(model)?;
+        let metric = Metric::new(&model.ridged, &model.total);
+        let mut matcher = ClassMatcher::new(model, &metric);
+        let mut mapped = vec![0.0; metric.dim()];
         timed(&mut self.matching, || {
+            for row in rows.iter() {
+                metric.apply(row, &mut mapped);
+                matcher.step(&mapped);
+            }
+        });
+        let mut engine = TemplateEngine::new(model)?;
+        timed(&mut self.recognising, || {
             for row in rows.iter() {
                 let _ = engine.push(row);
             }
@@ -78,7 +97,7 @@ impl Stats {
             pose_rows_of_clip(clip, &model.pivots, &map, rest, &model.pose)
         });
         let mut engine = SvrdmEngine::new(model)?;
-        timed(&mut self.matching, || {
+        timed(&mut self.recognising, || {
             rows.iter().for_each(|row| engine.push(row, &mut |_| {}));
             engine.finish(&mut |_| {});
         });
@@ -98,25 +117,65 @@ fn timed<T>(total: &mut Duration, job: impl FnOnce() -> T) -> T {
     result
 }
 
+impl Stats {
+    /// Frames of all clips.
+    pub fn frames(&self) -> usize {
+        self.frames
+    }
+
+    /// Time of the whole path from poses to detections.
+    pub fn whole(&self) -> Duration {
+        self.whole
+    }
+
+    /// Times by stage. Forward kinematics is part of making rows, and matching part of recognising.
+    fn times(&self) -> Vec<(&'static str, Duration)> {
+        let rest = |all: Duration, part: Duration| all.saturating_sub(part);
+        let mut times = vec![
+            ("reading the files", self.reading),
+            ("poses of joints", self.kinematics),
+            (
+                "poses to feature rows",
+                rest(self.features, self.kinematics),
+            ),
+        ];
+        match self.matching.is_zero() {
+            true => times.push(("rows to detections", self.recognising)),
+            false => times.extend([
+                ("rows to matches of classes", self.matching),
+                (
+                    "matches to detections",
+                    rest(self.recognising, self.matching),
+                ),
+            ]),
+        }
+        times.push(("whole path, poses to detections", self.whole));
+        times
+    }
+}
+
 impl fmt::Display for Stats {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { frames, size, .. } = self;
+        let whole = self.whole.as_secs_f64().max(1e-9);
+        writeln!(f, "one core, {frames} frames, {size}")?;
         writeln!(
             f,
-            "frames a second on one core ({} frames, {})",
-            self.frames, self.size
+            "{:32} {:>12} {:>8} {:>16}",
+            "stage", "µs a frame", "share", "frames a second"
         )?;
-        let stages = [
-            ("whole path, poses to detections", self.whole),
-            ("  poses to feature rows", self.features),
-            ("  rows to detections", self.matching),
-            ("reading the files", self.reading),
-        ];
-        for (name, time) in stages {
-            writeln!(
-                f,
-                "{name:32} {:>12.0}",
-                self.frames as f64 / time.as_secs_f64().max(1e-9)
-            )?;
+        for (name, time) in self.times() {
+            let secs = time.as_secs_f64();
+            // Files are read before anything is recognised.
+            let share = match name.starts_with("reading") {
+                true => String::new(),
+                false => format!("{:.1} %", 100.0 * secs / whole),
+            };
+            let (of_frame, rate) = (
+                secs * 1e6 / (*frames).max(1) as f64,
+                *frames as f64 / secs.max(1e-9),
+            );
+            writeln!(f, "{name:32} {of_frame:>12.2} {share:>8} {rate:>16.0}")?;
         }
         Ok(())
     }

@@ -304,7 +304,7 @@ fn over_vmc(
 }
 
 /// Fills roles from the index's training clips, unless a mapping file has had its say, and says what stays missing.
-fn adapt(imported: &mut Take, index: &MotionIndex, path: &Path, complete: bool) {
+pub fn adapt(imported: &mut Take, index: &MotionIndex, path: &Path, complete: bool) {
     if complete {
         index.complete_roles(&mut imported.roles, &imported.clip.skeleton);
     }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use anyhow::Result;
+use anyhow::{Context, Result};
 use morec_db::MotionDb;
 use morec_db::labels::{DbSample, SampleFilter, SampleId, SampleState};
 
@@ -67,9 +67,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     if let (Some(number), Some(start), Some(stop)) = (args.moved, args.start, args.stop) {
         let mut db = database::open(&args.db)?;
         db.move_sample(SampleId(number), start, stop, "user")?;
-        let samples = db.samples(&SampleFilter::default())?;
-        let moved = samples.into_iter().filter(|s| s.id.0 == number);
-        return print(&moved.collect::<Vec<_>>(), args.json);
+        return print(&[db.sample(SampleId(number))?], args.json);
     }
     let db = database::open_read_only(&args.db)?;
     let samples = db.samples(&filter(args, &db)?)?;
@@ -91,17 +89,12 @@ fn filter(args: &Args, db: &MotionDb) -> Result<SampleFilter> {
 
 fn remove(args: &Args) -> Result<ExitCode> {
     let mut db = database::open(&args.db)?;
-    let there = db.samples(&SampleFilter::default())?;
-    if let Some(number) = args
-        .remove
-        .iter()
-        .find(|n| !there.iter().any(|s| s.id.0 == **n))
-    {
-        anyhow::bail!("there is no sample {number}; nothing was removed");
-    }
     let ids: Vec<SampleId> = args.remove.iter().copied().map(SampleId).collect();
+    let removed = ids.iter().map(|id| db.sample(*id));
+    let removed: Vec<DbSample> = removed
+        .collect::<Result<_, _>>()
+        .context("nothing was removed")?;
     db.remove_samples(&ids)?;
-    let removed: Vec<DbSample> = there.into_iter().filter(|s| ids.contains(&s.id)).collect();
     if !args.json {
         eprintln!("morec: removed:");
     }

@@ -1,0 +1,96 @@
+//! `morec bench`: how fast this machine recognises.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::{Context, Result, bail};
+use morec::import::{ImportOptions, Take};
+use morec::index::MotionIndex;
+use morec::live::RecognizerCache;
+
+use super::recognize::{adapt, open_index};
+use crate::files::{ReadArgs, expand, mapping, open, say_doubts};
+use crate::progress::SlowProgress;
+use crate::stats::Stats;
+
+/// Measure how fast clips are recognised, stage by stage.
+///
+/// Recognises all clips again and again on one core and prints the pass of median time: microseconds a frame, share of the whole path
+/// and frames a second of each stage. Stages run once more by themselves, so their sum differs from the whole path, where a
+/// recogniser is laid out once for all clips of the same bones. Other programs that run at the same time count, too.
+#[derive(clap::Args)]
+#[command(after_help = "Example: morec bench signs.index new/")]
+pub struct Args {
+    /// The index, as `morec train` writes it
+    index: PathBuf,
+    /// Clips, or folders of clips
+    #[arg(required = true, value_name = "CLIP")]
+    clips: Vec<PathBuf>,
+    /// Recognise all clips N times
+    #[arg(long, value_name = "N", default_value = "5", value_parser = clap::value_parser!(u16).range(1..))]
+    passes: u16,
+    /// Roles of joints, where inference fails: lines of `role<TAB>joint name`
+    #[arg(long, value_name = "FILE")]
+    roles: Option<PathBuf>,
+    #[command(flatten)]
+    read: ReadArgs,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<ExitCode> {
+    let index = open_index(&args.index)?;
+    let mut read = Stats::default();
+    let takes = takes(args, &index, &mut read)?;
+    if takes.iter().all(|take| take.clip.frames == 0) {
+        bail!("no frame of motion in the clips; nothing to measure");
+    }
+    let recognizers = RecognizerCache::new(&index.model);
+    let mut passes = Vec::new();
+    let mut progress = SlowProgress::new(usize::from(args.passes), "measuring");
+    for _ in 0..args.passes {
+        let mut stats = read.clone();
+        for take in &takes {
+            let (clip, rest) = (&take.clip, take.rest());
+            let found = stats.recognising(clip.frames, || {
+                recognizers.recognize_clip(clip, &take.roles, rest)
+            });
+            found.with_context(|| clip.name.clone())?;
+            stats.stages(&index.model, take)?;
+        }
+        passes.push(stats);
+        progress.step();
+    }
+    drop(progress);
+    passes.sort_by_key(Stats::whole);
+    let micros = |stats: &Stats| stats.whole().as_secs_f64() * 1e6 / stats.frames() as f64;
+    let (least, most) = (&passes[0], &passes[passes.len() - 1]);
+    print!("{}", passes[passes.len() / 2]);
+    println!(
+        "\nmedian of {} passes; the whole path took {:.2} to {:.2} µs a frame",
+        passes.len(),
+        micros(least),
+        micros(most)
+    );
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Everything in the clips, with the time that reading took.
+fn takes(args: &Args, index: &MotionIndex, stats: &mut Stats) -> Result<Vec<Take>> {
+    let options = ImportOptions {
+        mapping: mapping(args.roles.as_deref())?,
+        ..ImportOptions::default()
+    };
+    let mut all = Vec::new();
+    for path in expand(&args.clips)? {
+        let opened = stats.reading(|| open(&path, &args.read))?;
+        let takes = opened.into_takes(&options);
+        let mut takes = takes.with_context(|| path.display().to_string())?;
+        say_doubts(&path, &takes);
+        let complete = options.mapping.is_none();
+        takes
+            .iter_mut()
+            .for_each(|take| adapt(take, index, &path, complete));
+        all.extend(takes);
+    }
+    Ok(all)
+}
