@@ -1,6 +1,6 @@
 //! Samples: added, judged, listed.
 
-use rusqlite::{Connection, Row, params};
+use rusqlite::{Connection, OptionalExtension, Row, params};
 
 use super::plan::LabelOptions;
 use super::sample::{Added, DbSample, NewSample, SampleFilter, SampleId, SampleState};
@@ -29,15 +29,32 @@ fn sample(row: &Row<'_>) -> rusqlite::Result<DbSample> {
     })
 }
 
+/// Everything of samples; a condition follows.
+const SELECT: &str = "SELECT s.id, s.clip, c.name AS clip_name, c.subject, n.name AS class, s.start_secs, s.stop_secs, s.whole_clip, \
+     s.state, s.score, s.set_by, s.set_secs, c.rate_hz FROM samples s JOIN clips c ON c.id = s.clip JOIN classes n ON n.id = s.class";
+
+fn find(conn: &Connection, id: SampleId) -> Result<DbSample, DbError> {
+    let sql = format!("{SELECT} WHERE s.id = ?1");
+    let found = conn.prepare_cached(&sql)?.query_row([id.0], sample);
+    let found = found.optional()?;
+    found.ok_or_else(|| DbError::unknown("sample", &format!("#{}", id.0)))
+}
+
 impl MotionDb {
+    /// The sample of a number.
+    ///
+    /// # Errors
+    /// There is none.
+    pub fn sample(&self, id: SampleId) -> Result<DbSample, DbError> {
+        find(&self.conn, id)
+    }
+
     /// The samples of a filter, by clip and time.
     pub fn samples(&self, filter: &SampleFilter) -> Result<Vec<DbSample>, DbError> {
-        let mut statement = self.conn.prepare_cached(
-            "SELECT s.id, s.clip, c.name AS clip_name, c.subject, n.name AS class, s.start_secs, s.stop_secs, s.whole_clip, \
-             s.state, s.score, s.set_by, s.set_secs, c.rate_hz FROM samples s JOIN clips c ON c.id = s.clip JOIN classes n ON n.id = s.class \
-             WHERE (?1 IS NULL OR s.clip = ?1) AND (?2 IS NULL OR n.name = ?2) AND (?3 IS NULL OR s.state = ?3) \
+        let mut statement = self.conn.prepare_cached(&format!(
+            "{SELECT} WHERE (?1 IS NULL OR s.clip = ?1) AND (?2 IS NULL OR n.name = ?2) AND (?3 IS NULL OR s.state = ?3) \
              ORDER BY c.name, s.start_secs, s.stop_secs, n.name",
-        )?;
+        ))?;
         let given = params![
             filter.clip.map(|c| c.0),
             filter.class,
@@ -152,30 +169,26 @@ impl MotionDb {
         stop_secs: f64,
         by: &str,
     ) -> Result<(), DbError> {
-        let unknown = || DbError::unknown("sample", &format!("#{}", id.0));
-        let all = self.samples(&SampleFilter::default())?;
-        let old = all.iter().find(|s| s.id == id).ok_or_else(unknown)?;
-        let there = all.iter().find(|s| {
-            s.id != id
-                && (s.clip, &s.class) == (old.clip, &old.class)
-                && (s.start_secs, s.stop_secs) == (start_secs, stop_secs)
-        });
-        if let Some(other) = there {
-            return Err(DbError::Invalid(format!(
-                "sample {} of {} is there already: number {}",
-                old.class, old.clip_name, other.id.0
-            )));
-        }
-        let moved = NewSample {
-            clip: old.clip,
-            class: old.class.clone(),
-            start_secs,
-            stop_secs,
-            whole_clip: false,
-            state: old.state,
-            score: old.score,
-        };
         self.edit(&format!("move sample {}", id.0), |conn| {
+            // Read where nobody else writes: what another program made of the sample stays.
+            let old = find(conn, id)?;
+            let sql = "SELECT o.id FROM samples s JOIN samples o ON o.clip = s.clip AND o.class = s.class \
+                 WHERE s.id = ?1 AND o.id <> s.id AND o.start_secs = ?2 AND o.stop_secs = ?3";
+            let mut there = conn.prepare_cached(sql)?;
+            let there = there.query_row(params![id.0, start_secs, stop_secs], |row| row.get(0));
+            let there: Option<i64> = there.optional()?;
+            if let Some(other) = there {
+                return Err(DbError::Invalid(format!(
+                    "sample {} of {} is there already: number {other}",
+                    old.class, old.clip_name
+                )));
+            }
+            let moved = NewSample {
+                start_secs,
+                stop_secs,
+                whole_clip: false,
+                ..NewSample::from(&old)
+            };
             alter(conn, id, &moved, by)
         })
     }

@@ -356,3 +356,33 @@ fn samples_are_moved_by_number() {
     let starts: Vec<String> = seen(&db).1.into_iter().map(|row| row.2).collect();
     assert_eq!(starts, ["0", "1.5"]);
 }
+
+/// Another program gives the sample other classes while it is moved: each stays until that program gives the next.
+#[test]
+fn a_move_leaves_another_programs_class() {
+    let (folder, mut db) = database_of_waves(1);
+    db.add_samples(&[sample("walk", 0, SampleState::Accepted)], "me")
+        .unwrap();
+    let mut other = MotionDb::open(&folder.path().join("test.mdb")).unwrap();
+    let is_done = std::sync::atomic::AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        scope.spawn(|| {
+            for start in (1..).take_while(|_| !is_done.load(std::sync::atomic::Ordering::Relaxed)) {
+                let start = f64::from(start % 7) / 10.0 + 1.0;
+                db.move_sample(SampleId(1), start, start + 0.5, "me")
+                    .unwrap();
+            }
+        });
+        for turn in 0..150 {
+            let class = ["run", "walk"][turn % 2];
+            other.split_class(&[SampleId(1)], class).unwrap();
+            std::thread::sleep(std::time::Duration::from_millis(1));
+            let now = other.sample(SampleId(1)).unwrap().class;
+            if now != class {
+                is_done.store(true, std::sync::atomic::Ordering::Relaxed);
+            }
+            assert_eq!(now, class, "in turn {turn}");
+        }
+        is_done.store(true, std::sync::atomic::Ordering::Relaxed);
+    });
+}
