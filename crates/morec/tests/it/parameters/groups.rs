@@ -207,7 +207,7 @@ fn offline() -> Vec<Group> {
         ),
         group!(
             "### Compression (`SmoothParams`)",
-            "../../../src/smooth/params.rs",
+            "../../../../mocap/src/smooth/params.rs",
             "SmoothParams",
             "SmoothParams.",
             SmoothParams::default()
