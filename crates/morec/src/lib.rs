@@ -167,6 +167,8 @@ pub mod player;
 pub mod plot;
 #[cfg(feature = "report")]
 pub mod report;
+#[cfg(feature = "report")]
+pub mod reproduce;
 
 #[cfg(test)]
 #[path = "../../mocap/src/test_bodies.rs"]
@@ -201,8 +203,6 @@ pub use mocap::{
 };
 #[cfg(feature = "formats")]
 pub use mocap::{ImportOptions, Take, fitting, formats, import, smooth};
-#[cfg(feature = "report")]
-pub use thesis::reproduce;
 #[cfg(feature = "live")]
 pub use thesis::{pca, pivots, svrdm};
 #[cfg(feature = "train")]

@@ -11,7 +11,7 @@ use crate::index::IndexError;
 use crate::labels::Sample;
 use crate::segment::SegmentError;
 use crate::thesis::pivots::{NoPivots, PivotMap, PivotSet, PoseParams, pose_rows_of_clip};
-use crate::thesis::train::{SvrdmOptions, SvrdmTrainParams};
+use crate::train::thesis::{SvrdmOptions, SvrdmTrainParams};
 use crate::train::{TrainClip, TrainError};
 
 /// Data of the study.

@@ -13,9 +13,9 @@ use crate::labels::Sample;
 use crate::plot::HeatMap;
 use crate::report::pictures::{branch_picture, tree_picture};
 use crate::thesis::svrdm::{SampleClassifier, SvrdmModel};
-use crate::thesis::train::{Estimated, SvrdmOptions, train_svrdm};
 use crate::thesis::train_tree::{BranchReport, FeatureSample};
 use crate::train::LabelSet;
+use crate::train::thesis::{Estimated, SvrdmOptions, train_svrdm};
 
 use super::study::{Picture, ReproduceError, Setting, Study, frames_of, rows_of};
 

@@ -11,7 +11,7 @@ use crate::plot::{Bar, LaneChart};
 use crate::thesis::svrdm::{ConfidenceMap, SvrdmEngine, SvrdmModel};
 use crate::train::StreamKind;
 
-use crate::thesis::train::SvrdmOptions;
+use crate::train::thesis::SvrdmOptions;
 
 use super::study::{Picture, ReproduceError, Setting, Study, rows_of};
 
