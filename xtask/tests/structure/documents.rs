@@ -69,15 +69,19 @@ fn architecture_names_every_crate() {
     assert_eq!(listed, there);
 }
 
-/// Variants of the library's enum of formats.
+/// Variants of the library's enum of formats; each has a descriptor.
 fn formats() -> usize {
     let text = read("crates/mocap/src/formats/probe/mod.rs");
     let (_, body) = text.split_once("pub enum Format {").unwrap();
     let (body, _) = body.split_once("\n}").unwrap();
-    let variants = body.lines().map(str::trim);
-    variants
+    let variants: Vec<_> = (body.lines().map(str::trim))
         .filter(|line| line.ends_with(',') && !line.starts_with("//"))
-        .count()
+        .collect();
+    for variant in &variants {
+        let row = format!("        format: Format::{variant}");
+        assert_eq!(text.matches(&row).count(), 1, "descriptors of {variant}");
+    }
+    variants.len()
 }
 
 #[test]
@@ -259,7 +263,10 @@ fn documents_stay_short() {
 #[test]
 fn rust_in_documents_is_compiled() {
     let library = |path: &str| match path.strip_suffix("/README.md") {
-        Some(folder) => (read(&format!("{folder}/src/lib.rs")), "../README.md".to_owned()),
+        Some(folder) => (
+            read(&format!("{folder}/src/lib.rs")),
+            "../README.md".to_owned(),
+        ),
         None => (read("crates/morec/src/lib.rs"), format!("../../../{path}")),
     };
     let mut compiled = 0;

@@ -14,6 +14,7 @@ use crate::smooth::MAGIC;
 /// A format that can be read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Format {
     /// Biovision: skeleton and motion in one file.
     Bvh,
@@ -64,150 +65,183 @@ pub enum Format {
 impl Format {
     /// Its name in tables and databases; never changes.
     pub fn name(self) -> &'static str {
-        match self {
-            Format::Bvh => "bvh",
-            Format::Asf => "asf",
-            Format::Amc => "amc",
-            Format::Mclip => "mclip",
-            Format::C3d => "c3d",
-            Format::Trc => "trc",
-            Format::Jsonl => "jsonl",
-            Format::Table => "table",
-            Format::Mvnx => "mvnx",
-            Format::Gltf => "gltf",
-            Format::Fbx => "fbx",
-            Format::Smpl => "smpl",
-            Format::Mocopi => "mocopi",
-            Format::NtuSkeleton => "ntu_skeleton",
-            Format::Landmarks => "landmarks",
-            Format::Numpy => "numpy",
-            Format::Smd => "smd",
-            Format::Htr => "htr",
-            Format::Csm => "csm",
-            Format::OpenSimMotion => "opensim_motion",
-            Format::OpenSimModel => "opensim_model",
-            Format::DeepMimic => "deepmimic",
-        }
+        self.descriptor().name
+    }
+
+    /// What it is called in tables for people: `BVH`.
+    pub fn title(self) -> &'static str {
+        self.descriptor().title
+    }
+
+    /// What a file of it is called within a sentence: `a BVH clip`.
+    pub fn noun(self) -> &'static str {
+        self.descriptor().noun
+    }
+
+    fn descriptor(self) -> &'static FormatDescriptor {
+        let own = READ.iter().find(|descriptor| descriptor.format == self);
+        // Every format has one: the structural tests count them.
+        own.unwrap_or(&READ[0])
     }
 }
 
-struct Readable {
+/// All that is known of a format but its reader.
+struct FormatDescriptor {
     format: Format,
-    extension: &'static str,
+    /// See [`Format::name`].
+    name: &'static str,
+    /// See [`Format::title`].
+    title: &'static str,
+    /// See [`Format::noun`].
+    noun: &'static str,
+    /// Endings of files, in lower case.
+    endings: &'static [&'static str],
+    /// True of content that shows it.
     looks_so: fn(&Head) -> bool,
 }
 
 /// Every format that is read, in the order in which its content is asked for.
-const READ: &[Readable] = &[
-    Readable {
+const READ: &[FormatDescriptor] = &[
+    FormatDescriptor {
         format: Format::Mclip,
-        extension: "mclip",
+        name: "mclip",
+        title: "MCLIP (curves)",
+        noun: "a stored clip",
+        endings: &["mclip"],
         looks_so: |h| h.bytes.starts_with(MAGIC),
     },
-    Readable {
+    FormatDescriptor {
         format: Format::Bvh,
-        extension: "bvh",
+        name: "bvh",
+        title: "BVH",
+        noun: "a BVH clip",
+        endings: &["bvh"],
         looks_so: is_bvh,
     },
-    Readable {
+    FormatDescriptor {
         format: Format::Asf,
-        extension: "asf",
+        name: "asf",
+        title: "ASF (skeleton only)",
+        noun: "an ASF skeleton",
+        endings: &["asf"],
         looks_so: is_asf,
     },
-    Readable {
+    FormatDescriptor {
         format: Format::Amc,
-        extension: "amc",
+        name: "amc",
+        title: "AMC",
+        noun: "an AMC motion",
+        endings: &["amc"],
         looks_so: is_amc,
     },
-    Readable {
+    FormatDescriptor {
         format: Format::Fbx,
-        extension: "fbx",
+        name: "fbx",
+        title: "FBX",
+        noun: "an FBX scene",
+        endings: &["fbx"],
         looks_so: |h| {
             h.starts("Kaydara FBX Binary") || h.starts("; FBX") || h.starts("FBXHeaderExtension")
         },
     },
-    Readable {
+    FormatDescriptor {
         format: Format::Gltf,
-        extension: "gltf",
-        looks_so: is_gltf,
+        name: "gltf",
+        title: "glTF",
+        noun: "a glTF scene",
+        endings: &["gltf", "glb", "vrm", "vrma"],
+        looks_so: |h| h.bytes.starts_with(b"glTF") || is_gltf(h),
     },
-    Readable {
-        format: Format::Gltf,
-        extension: "glb",
-        looks_so: |h| h.bytes.starts_with(b"glTF"),
-    },
-    Readable {
-        format: Format::Gltf,
-        extension: "vrm",
-        looks_so: |_| false,
-    },
-    Readable {
-        format: Format::Gltf,
-        extension: "vrma",
-        looks_so: |_| false,
-    },
-    Readable {
+    FormatDescriptor {
         format: Format::Mvnx,
-        extension: "mvnx",
+        name: "mvnx",
+        title: "MVNX",
+        noun: "an MVNX recording",
+        endings: &["mvnx"],
         looks_so: |h| h.starts("<") && h.contains(b"<mvnx"),
     },
-    Readable {
+    FormatDescriptor {
         format: Format::Smpl,
-        extension: "npz",
+        name: "smpl",
+        title: "SMPL poses (npz)",
+        noun: "an archive of SMPL poses",
+        endings: &["npz"],
         looks_so: is_numpy_archive,
     },
-    Readable {
+    FormatDescriptor {
         format: Format::Mocopi,
-        extension: "mocopi",
+        name: "mocopi",
+        title: "mocopi packets",
+        noun: "recorded mocopi packets",
+        endings: &["mocopi"],
         looks_so: |h| mocopi::looks_so(h.bytes),
     },
-    Readable {
+    FormatDescriptor {
         format: Format::Trc,
-        extension: "trc",
+        name: "trc",
+        title: "TRC",
+        noun: "a TRC recording",
+        endings: &["trc"],
         looks_so: is_trc,
     },
-    Readable {
+    FormatDescriptor {
         format: Format::C3d,
-        extension: "c3d",
+        name: "c3d",
+        title: "C3D",
+        noun: "a C3D recording",
+        endings: &["c3d"],
         looks_so: |h| {
             h.bytes.len() >= 512 && matches!(h.bytes, [1..128, 0x50, ..]) && h.is_binary()
         },
     },
-    Readable {
+    FormatDescriptor {
         format: Format::Jsonl,
-        extension: "jsonl",
+        name: "jsonl",
+        title: "JSON lines",
+        noun: "lines of JSON",
+        endings: &["jsonl", "ndjson"],
         looks_so: is_jsonl,
     },
-    Readable {
-        format: Format::Jsonl,
-        extension: "ndjson",
-        looks_so: |_| false,
-    },
-    Readable {
+    FormatDescriptor {
         format: Format::NtuSkeleton,
-        extension: "skeleton",
+        name: "ntu_skeleton",
+        title: "Kinect joints (NTU)",
+        noun: "a recording of a Kinect",
+        endings: &["skeleton"],
         looks_so: |h| !h.is_binary() && super::ntu::looks_so(h.bytes),
     },
-    Readable {
+    FormatDescriptor {
         format: Format::DeepMimic,
+        name: "deepmimic",
+        title: "DeepMimic motion",
+        noun: "a motion of DeepMimic",
         // Its files end in .txt or .json: content alone decides.
-        extension: "deepmimic",
+        endings: &["deepmimic"],
         looks_so: |h| super::deepmimic::looks_so(h.bytes),
     },
-    Readable {
+    FormatDescriptor {
         format: Format::Landmarks,
+        name: "landmarks",
+        title: "landmarks (JSON)",
+        noun: "JSON of landmarks",
         // Most files that end in .json are no motion: content alone decides.
-        extension: "landmarks",
+        endings: &["landmarks"],
         looks_so: |h| !h.is_binary() && super::landmarks::looks_so(h.bytes),
     },
-    Readable {
+    FormatDescriptor {
         format: Format::Numpy,
-        extension: "npy",
+        name: "numpy",
+        title: "positions (NumPy)",
+        noun: "a NumPy array",
+        endings: &["npy"],
         looks_so: |h| h.bytes.starts_with(b"\x93NUMPY"),
     },
-    Readable {
+    FormatDescriptor {
         format: Format::Smd,
-        extension: "smd",
+        name: "smd",
+        title: "SMD",
+        noun: "an SMD animation",
+        endings: &["smd"],
         looks_so: |h| {
             !h.is_binary()
                 && h.lines().take(20).any(|l| l.starts_with(b"version 1"))
@@ -216,58 +250,53 @@ const READ: &[Readable] = &[
                 && !h.contains(b"vertexanimation")
         },
     },
-    Readable {
+    FormatDescriptor {
         format: Format::Htr,
-        extension: "htr",
+        name: "htr",
+        title: "HTR",
+        noun: "an HTR motion",
+        endings: &["htr", "htr2"],
         looks_so: |h| {
             let says = |word: &str| h.lines().take(200).any(|l| holds(l, word));
             !h.is_binary() && says("[segmentnames&hierarchy]") && !says("filetype gtr")
         },
     },
-    Readable {
-        format: Format::Htr,
-        extension: "htr2",
-        looks_so: |_| false,
-    },
-    Readable {
+    FormatDescriptor {
         format: Format::Csm,
-        extension: "csm",
+        name: "csm",
+        title: "CSM",
+        noun: "a CSM recording",
+        endings: &["csm"],
         looks_so: |h| {
             let says = |word: &str| h.lines().take(200).any(|l| holds(l, word));
             !h.is_binary() && says("$order") && says("$points")
         },
     },
-    Readable {
+    FormatDescriptor {
         format: Format::OpenSimMotion,
-        extension: "mot",
+        name: "opensim_motion",
+        title: "OpenSim motion",
+        noun: "an OpenSim motion",
+        endings: &["mot", "sto"],
         looks_so: |h| !h.is_binary() && is_opensim(h) && !unread::has_markers(h),
     },
-    Readable {
-        format: Format::OpenSimMotion,
-        extension: "sto",
-        looks_so: |_| false,
-    },
-    Readable {
+    FormatDescriptor {
         format: Format::OpenSimModel,
-        extension: "osim",
+        name: "opensim_model",
+        title: "OpenSim model",
+        noun: "an OpenSim model",
+        endings: &["osim"],
         looks_so: |h| h.starts("<") && h.contains(b"<OpenSimDocument"),
     },
-    Readable {
+    FormatDescriptor {
         format: Format::Table,
-        extension: "csv",
+        name: "table",
+        title: "table of positions",
+        noun: "a table",
+        endings: &["csv", "tsv", "tab"],
         looks_so: |h| {
             !h.is_binary() && (!is_opensim(h) || unread::has_markers(h)) && table::looks_so(h.bytes)
         },
-    },
-    Readable {
-        format: Format::Table,
-        extension: "tsv",
-        looks_so: |_| false,
-    },
-    Readable {
-        format: Format::Table,
-        extension: "tab",
-        looks_so: |_| false,
     },
 ];
 
@@ -324,9 +353,8 @@ const EXPECTED: &str = "BVH, AMC, FBX, glTF, VRM, MVNX, AMASS, OpenSim MOT, C3D,
 /// The format that a file's ending promises.
 pub fn format_of_name(name: &str) -> Option<Format> {
     let (_, extension) = name.rsplit_once('.')?;
-    READ.iter()
-        .find(|r| r.extension.eq_ignore_ascii_case(extension))
-        .map(|r| r.format)
+    let ends = |ending: &&str| ending.eq_ignore_ascii_case(extension);
+    (READ.iter().find(|read| read.endings.iter().any(ends))).map(|read| read.format)
 }
 
 /// `HIERARCHY` at the start of one of the first lines (junk before it is met), or `MOTION` alone.
