@@ -5,7 +5,7 @@ use libfuzzer_sys::fuzz_target;
 use morec::formats::acclaim::{AmcOptions, read_amc, read_asf};
 use morec_fuzz::{LIMITS, check};
 
-const ARM: &[u8] = include_bytes!("../../crates/morec/testdata/acclaim/arm.asf");
+const ARM: &[u8] = include_bytes!("../../crates/mocap/testdata/acclaim/arm.asf");
 
 fuzz_target!(|bytes: &[u8]| {
     let (arm, _) = read_asf(ARM, &LIMITS).expect("the arm is a skeleton");

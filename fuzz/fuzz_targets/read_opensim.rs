@@ -5,8 +5,8 @@ use libfuzzer_sys::fuzz_target;
 use morec::formats::opensim::{read_model, read_motion};
 use morec_fuzz::{LIMITS, check_rotations};
 
-const LEG: &[u8] = include_bytes!("../../crates/morec/testdata/opensim/leg.osim");
-const KICK: &[u8] = include_bytes!("../../crates/morec/testdata/opensim/kick.mot");
+const LEG: &[u8] = include_bytes!("../../crates/mocap/testdata/opensim/leg.osim");
+const KICK: &[u8] = include_bytes!("../../crates/mocap/testdata/opensim/kick.mot");
 
 fuzz_target!(|bytes: &[u8]| {
     let (leg, _) = read_model(LEG, &LIMITS).expect("the leg is a model");

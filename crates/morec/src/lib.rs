@@ -119,31 +119,11 @@
 #![warn(clippy::missing_errors_doc, clippy::missing_panics_doc)]
 
 pub mod classes;
-pub mod clip;
-mod coder;
 pub mod features;
-pub mod humanoid;
-pub mod kinematics;
-pub mod math;
-mod parse_error;
-pub mod progress;
-pub mod resample;
-pub mod rng;
-pub mod roles;
 
 #[cfg(any(feature = "formats", feature = "live"))]
 mod error;
 
-#[cfg(feature = "files")]
-pub mod files;
-#[cfg(feature = "formats")]
-pub mod fitting;
-#[cfg(feature = "formats")]
-pub mod formats;
-#[cfg(feature = "formats")]
-pub mod import;
-#[cfg(feature = "formats")]
-pub mod smooth;
 #[cfg(feature = "files")]
 pub mod tables;
 
@@ -187,7 +167,12 @@ pub mod player;
 pub mod plot;
 #[cfg(feature = "report")]
 pub mod report;
+#[cfg(feature = "report")]
+pub mod reproduce;
 
+#[cfg(test)]
+#[path = "../../mocap/src/test_bodies.rs"]
+mod test_bodies;
 #[cfg(test)]
 #[path = "../tests/testing/mod.rs"]
 mod testing;
@@ -202,21 +187,22 @@ mod documents {
 }
 
 pub use classes::{ClassId, ClassInfo};
-pub use clip::{Clip, Skeleton};
 #[cfg(any(feature = "formats", feature = "live"))]
 pub use error::Error;
-pub use features::{BoneSet, KeyPose};
-#[cfg(feature = "formats")]
-pub use import::{ImportOptions, Take};
 #[cfg(feature = "live")]
 pub use index::MotionIndex;
 #[cfg(feature = "train")]
 pub use labels::Labels;
 #[cfg(feature = "live")]
 pub use live::{Detection, Event, Recognizer, Session};
-pub use parse_error::{ParseError, Place, Warning};
-#[cfg(feature = "report")]
-pub use thesis::reproduce;
+#[cfg(feature = "files")]
+pub use mocap::files;
+pub use mocap::{
+    BoneSet, Clip, KeyPose, ParseError, Place, Skeleton, Warning, clip, humanoid, kinematics, math,
+    pose, progress, resample, rng, roles,
+};
+#[cfg(feature = "formats")]
+pub use mocap::{ImportOptions, Take, fitting, formats, import, smooth};
 #[cfg(feature = "live")]
 pub use thesis::{pca, pivots, svrdm};
 #[cfg(feature = "train")]

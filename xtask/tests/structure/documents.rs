@@ -26,7 +26,9 @@ fn architecture_names_the_folders_of_every_crate() {
     let of_library = tables.iter().find(|t| t.header == ["folder", "does"]);
     let rows = of_library.map_or(&[][..], |table| &table.rows);
     let listed: BTreeSet<_> = rows.iter().flat_map(|row| named(row[0])).collect();
-    assert_eq!(listed, folders("crates/morec/src"));
+    let libraries = ["crates/mocap/src", "crates/morec/src"];
+    let there: BTreeSet<_> = libraries.into_iter().flat_map(folders).collect();
+    assert_eq!(listed, there);
 
     let others = tables
         .iter()
@@ -34,7 +36,7 @@ fn architecture_names_the_folders_of_every_crate() {
     let rows = others.map_or(&[][..], |table| &table.rows);
     let mut crates: Vec<_> = folders("crates")
         .into_iter()
-        .filter(|name| name != "morec")
+        .filter(|name| !["mocap", "morec"].contains(&&**name))
         .map(|name| (format!("crates/{name}/src"), name))
         .collect();
     crates.push(("xtask/src".to_owned(), "xtask".to_owned()));
@@ -67,15 +69,19 @@ fn architecture_names_every_crate() {
     assert_eq!(listed, there);
 }
 
-/// Variants of the library's enum of formats.
+/// Variants of the library's enum of formats; each has a descriptor.
 fn formats() -> usize {
-    let text = read("crates/morec/src/formats/probe/mod.rs");
+    let text = read("crates/mocap/src/formats/probe/mod.rs");
     let (_, body) = text.split_once("pub enum Format {").unwrap();
     let (body, _) = body.split_once("\n}").unwrap();
-    let variants = body.lines().map(str::trim);
-    variants
+    let variants: Vec<_> = (body.lines().map(str::trim))
         .filter(|line| line.ends_with(',') && !line.starts_with("//"))
-        .count()
+        .collect();
+    for variant in &variants {
+        let row = format!("        format: Format::{variant}");
+        assert_eq!(text.matches(&row).count(), 1, "descriptors of {variant}");
+    }
+    variants.len()
 }
 
 #[test]
@@ -256,7 +262,13 @@ fn documents_stay_short() {
 
 #[test]
 fn rust_in_documents_is_compiled() {
-    let library = read("crates/morec/src/lib.rs");
+    let library = |path: &str| match path.strip_suffix("/README.md") {
+        Some(folder) => (
+            read(&format!("{folder}/src/lib.rs")),
+            "../README.md".to_owned(),
+        ),
+        None => (read("crates/morec/src/lib.rs"), format!("../../../{path}")),
+    };
     let mut compiled = 0;
     for (path, text) in sources::documents() {
         let blocks: Vec<_> = text
@@ -270,11 +282,12 @@ fn rust_in_documents_is_compiled() {
             blocks.iter().all(|block| !block.contains("ignore")),
             "{path}: {blocks:?}"
         );
+        let (text, named) = library(&path);
         assert!(
-            library.contains(&format!("include_str!(\"../../../{path}\")")),
+            text.contains(&format!("include_str!(\"{named}\")")),
             "{path}"
         );
         compiled += 1;
     }
-    assert!(compiled >= 2);
+    assert!(compiled >= 3);
 }

@@ -196,7 +196,7 @@ fn a_slow_source_can_be_stopped_at_once_and_made_faster() {
 #[test]
 fn an_amc_finds_its_skeleton_and_a_source_without_a_body_is_refused() {
     let (_turn, files) = turn();
-    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../morec/testdata/acclaim");
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../mocap/testdata/acclaim");
     let (with, without) = (files.path("with"), files.path("without"));
     for folder in [&with, &without] {
         std::fs::create_dir_all(folder).unwrap();

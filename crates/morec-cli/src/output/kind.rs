@@ -1,6 +1,6 @@
 //! Kind of a file by its first bytes, in words for people.
 
-use morec::formats::probe::{Format, probe};
+use morec::formats::probe::probe;
 
 /// An SQLite database, of morec or another program.
 pub const DATABASE: &str = "an SQLite database";
@@ -22,28 +22,7 @@ pub fn of(head: &[u8]) -> Option<&'static str> {
         return Some(kind);
     }
     match probe(head, "") {
-        Ok(Format::Bvh) => Some("a BVH clip"),
-        Ok(Format::Mclip) => Some("a stored clip"),
-        Ok(Format::Asf) => Some("an ASF skeleton"),
-        Ok(Format::Amc) => Some("an AMC motion"),
-        Ok(Format::C3d) => Some("a C3D recording"),
-        Ok(Format::Trc) => Some("a TRC recording"),
-        Ok(Format::Jsonl) => Some("lines of JSON"),
-        Ok(Format::Table) => Some("a table"),
-        Ok(Format::Mvnx) => Some("an MVNX recording"),
-        Ok(Format::Gltf) => Some("a glTF scene"),
-        Ok(Format::Fbx) => Some("an FBX scene"),
-        Ok(Format::Smpl) => Some("an archive of SMPL poses"),
-        Ok(Format::NtuSkeleton) => Some("a recording of a Kinect"),
-        Ok(Format::Landmarks) => Some("JSON of landmarks"),
-        Ok(Format::Numpy) => Some("a NumPy array"),
-        Ok(Format::Htr) => Some("an HTR motion"),
-        Ok(Format::Csm) => Some("a CSM recording"),
-        Ok(Format::Smd) => Some("an SMD animation"),
-        Ok(Format::OpenSimMotion) => Some("an OpenSim motion"),
-        Ok(Format::DeepMimic) => Some("a motion of DeepMimic"),
-        Ok(Format::OpenSimModel) => Some("an OpenSim model"),
-        Ok(Format::Mocopi) => Some("recorded mocopi packets"),
+        Ok(format) => Some(format.noun()),
         Err(_) => Some(text.map_or("a file of another kind", of_text)),
     }
 }

@@ -5,11 +5,11 @@ use std::process::{Command, Stdio};
 
 use tempfile::TempDir;
 
-pub const WAVE_BVH: &str = include_str!("../../../morec/testdata/acclaim/wave.bvh");
+pub const WAVE_BVH: &str = include_str!("../../../mocap/testdata/acclaim/wave.bvh");
 /// Hips, knee and foot in centimetres.
-pub const KNEE_FBX: &str = include_str!("../../../morec/testdata/fbx/knee.fbx");
-pub const ARM_ASF: &str = include_str!("../../../morec/testdata/acclaim/arm.asf");
-pub const WAVE_AMC: &str = include_str!("../../../morec/testdata/acclaim/wave.amc");
+pub const KNEE_FBX: &str = include_str!("../../../mocap/testdata/fbx/knee.fbx");
+pub const ARM_ASF: &str = include_str!("../../../mocap/testdata/acclaim/arm.asf");
+pub const WAVE_AMC: &str = include_str!("../../../mocap/testdata/acclaim/wave.amc");
 
 #[path = "../../../morec/tests/testing/mod.rs"]
 mod testing;

@@ -1,7 +1,7 @@
 //! How well a motion was performed: its bones against those of the nearest sample.
 
 use crate::clip::{Clip, Span};
-use crate::features::{ALL_BONES, BoneSet, Rows, all_bones_of_clip, rows_of_clip};
+use crate::features::{ALL_BONES, BONE_WEIGHTS, BoneSet, Rows, all_bones_of_clip, rows_of_clip};
 use crate::live::{Detection, Model};
 use crate::roles::RoleMap;
 use crate::templates::TemplateModel;
@@ -89,8 +89,7 @@ impl ComparedBones {
             let angles = path
                 .iter()
                 .map(|&(i, j)| angle_at(sample, i, stretch, j, slot));
-            let bone = ALL_BONES[bone];
-            (bone.name, bone.weight, angles.collect())
+            (ALL_BONES[bone].name, BONE_WEIGHTS[bone], angles.collect())
         };
         Self {
             bones: bones.indices().enumerate().map(of_bone).collect(),

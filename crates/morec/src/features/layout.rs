@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::bones::{ALL_BONES, BODY_BONES, BONES, BoneSet};
+use super::{ALL_BONES, BODY_BONES, BONES, BoneSet};
 
 /// Layout of a feature row over `b` bones: a direction for each (3 b values), a velocity for each (3 b), then root motion (4).
 ///

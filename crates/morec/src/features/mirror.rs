@@ -1,8 +1,8 @@
 //! The mirror image of feature rows.
 
-use super::bones::{ALL_BONES, BoneKind, BoneSet};
 use super::layout::RowLayout;
 use super::rows::Rows;
+use super::{ALL_BONES, BoneKind, BoneSet};
 
 /// The bone of [`ALL_BONES`] on the other side of the body; the same for bones of the middle.
 pub fn opposite_bone(bone: usize) -> usize {

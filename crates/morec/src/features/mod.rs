@@ -8,10 +8,7 @@
 //! says where each value stands, and nothing else does.
 //! The same [`FeatureStream`] makes the rows of training clips and of live streams.
 
-mod bones;
 pub(crate) mod grid;
-mod hand;
-mod key_pose;
 mod layout;
 mod mirror;
 mod noise;
@@ -19,26 +16,25 @@ mod observe;
 mod of_clip;
 mod packed;
 mod params;
-mod profile;
 mod retime;
 mod rows;
 mod smooth;
 mod spikes;
 mod stream;
+mod weights;
 
-pub use bones::{ALL_BONES, BODY_BONES, BONES, Bone, BoneKind, BoneSet};
 pub use grid::MAX_GAP_SECS;
-#[cfg(test)]
-pub(crate) use hand::flat_hand;
-pub use hand::{Hand, HandPoints, PalmFrame};
-pub use key_pose::KeyPose;
 pub use layout::RowLayout;
 pub use mirror::{mirrored_rows, opposite_bone, reflected_direction};
+pub use mocap::pose::{
+    ALL_BONES, BODY_BONES, BONES, Bone, BoneKind, BoneSet, Hand, HandPoints, KeyPose, PalmFrame,
+    Profile, all_bones_of_clip, bones_of_clip, for_each_pose, shows_hips,
+};
 pub(crate) use noise::USUAL_NOISE_GAIN;
 pub use observe::{Observation, Observer};
-pub use of_clip::{all_bones_of_clip, bones_of_clip, for_each_pose, rows_of_clip, shows_hips};
+pub use of_clip::rows_of_clip;
 pub use params::{FeatureParams, HeadingLine};
-pub use profile::Profile;
 pub use retime::retimed_rows;
 pub use rows::Rows;
 pub use stream::{FeatureStream, Pushed};
+pub use weights::BONE_WEIGHTS;

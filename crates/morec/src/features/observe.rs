@@ -3,10 +3,9 @@
 use crate::math::{Vec3, slerp_direction};
 use crate::roles::{ARMS, Role};
 
-use super::bones::{ALL_BONES, BONES, Bone, BoneKind, BoneSet};
-use super::hand::{Hand, PalmFrame};
-use super::profile::Profile;
-use super::{HeadingLine, KeyPose};
+use super::{
+    ALL_BONES, BONES, Bone, BoneKind, BoneSet, Hand, HeadingLine, KeyPose, PalmFrame, Profile,
+};
 
 /// One frame's bones in the frames they are given in, and where the root is.
 ///

@@ -5,7 +5,7 @@
 //! coordinates of its velocity give the third; and motion goes on as it began. What nothing foretells goes through an
 //! adaptive range coder. The first `u32` is the number of rows.
 
-use crate::coder::{Coder, Reader, Whole, Writer};
+use mocap::coder::{Coder, Reader, Whole, Writer};
 
 use super::retime::unsaturated;
 use super::{BoneSet, FeatureParams, RowLayout, Rows};

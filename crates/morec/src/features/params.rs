@@ -1,5 +1,7 @@
 //! The parameters that turn observations into feature rows.
 
+use super::Profile;
+
 /// The line of the body whose turning about the vertical gives its heading, and where its root is; none for performers without a
 /// body.
 #[derive(
@@ -59,6 +61,27 @@ pub struct FeatureParams {
 /// Indexes that say nothing of it gain by it: on clean streams nothing changes.
 fn follows_noise() -> bool {
     true
+}
+
+impl FeatureParams {
+    /// The usual ones of performers of this kind.
+    pub fn usual(profile: Profile) -> Self {
+        let body = Self::default();
+        let sensor = Self {
+            heading: HeadingLine::Sensor,
+            ..body.clone()
+        };
+        match profile {
+            Profile::Body => body,
+            Profile::Points3 => sensor,
+            // Fingers are faster for their length than limbs, and a hand's travel tells a push from a wave.
+            Profile::Hand | Profile::Hands => Self {
+                velocity_saturation: 4.0,
+                root_weight: 0.6,
+                ..sensor
+            },
+        }
+    }
 }
 
 impl Default for FeatureParams {

@@ -1,6 +1,6 @@
 //! Feature rows of the same motion at another speed.
 
-use super::bones::BoneSet;
+use super::BoneSet;
 use super::layout::RowLayout;
 use super::params::FeatureParams;
 use super::rows::Rows;

@@ -6,11 +6,11 @@ use nalgebra::Vector4;
 
 use crate::math::Vec3;
 
-use super::bones::{ALL_BONES, BONES, BoneSet};
 use super::layout::RowLayout;
 use super::noise::{Filter, NOISE_GAINS, NoiseMeter, PROBE, WIDEST_FRAMES, filters};
 use super::observe::{Observation, heading_from_world};
 use super::params::FeatureParams;
+use super::{BONE_WEIGHTS, BONES, BoneSet};
 
 /// A frame as the filters want it.
 #[derive(Debug, Clone, Copy)]
@@ -213,7 +213,7 @@ impl Smoother {
         let [then, here, soon] =
             [before, frame, after].map(|frame| self.directions(frame, &kernels.directions));
         for (slot, bone) in self.bones.indices().enumerate() {
-            let weight = ALL_BONES[bone].weight;
+            let weight = BONE_WEIGHTS[bone];
             let at = bone - self.span.start;
             let position = here[at] * weight;
             let velocity = (soon[at] - then[at]) * (weight * per_secs);

@@ -3,8 +3,7 @@
 use crate::math::Vec3;
 use crate::roles::Role;
 
-use super::KeyPose;
-use super::profile::Profile;
+use super::{KeyPose, Profile};
 
 /// Faster than this, in metres a second for a leg of 0.85 m, no joint moves relative to the hips, or to the shoulders before hips are
 /// seen: thrown balls leave the hand at up to 45, but their hands, seen at 120 Hz, stay below 25. For a hand of 19 cm it is 6.3 m/s

@@ -1,13 +1,13 @@
 //! From a stream of poses at any rate to feature rows at the model's.
 
-use super::bones::BoneSet;
+use mocap::pose::lone_left_as_right;
+
 use super::grid::Grid;
-use super::hand::lone_left_as_right;
 use super::observe::{Observation, Observer};
 use super::params::FeatureParams;
 use super::smooth::Smoother;
 use super::spikes::SpikeFilter;
-use super::{KeyPose, Profile, RowLayout};
+use super::{BoneSet, KeyPose, Profile, RowLayout};
 
 /// Effect of a pose on the stream.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

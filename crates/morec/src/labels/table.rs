@@ -1,7 +1,7 @@
 //! Tables of tab-separated text: the part that all of them share.
 
 use crate::formats::{ParseError, Place, Warning};
-use crate::parse_error::shortened;
+use mocap::shortened;
 
 /// A table whose header has been read.
 pub(super) struct Table<'a> {

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::features::{ALL_BONES, BoneSet, FeatureParams, Rows};
+use crate::features::{ALL_BONES, BONE_WEIGHTS, BoneSet, FeatureParams, Rows};
 
 /// Kind of stillness.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
@@ -42,7 +42,7 @@ pub fn still_stretches(
     features: &FeatureParams,
     params: &StillParams,
 ) -> Vec<(Range<usize>, StillKind)> {
-    let weights: Vec<f64> = bones.indices().map(|b| ALL_BONES[b].weight).collect();
+    let weights: Vec<f64> = bones.indices().map(|b| BONE_WEIGHTS[b]).collect();
     let speed = |t: usize| -> f64 {
         let (before, after) = (t.saturating_sub(1), (t + 1).min(rows.len() - 1));
         let secs = (after - before).max(1) as f64 / features.tick_hz();
@@ -88,7 +88,7 @@ fn is_t_pose(row: &[f32], bones: BoneSet) -> bool {
             .position(|b| b.name == name)
             .filter(|b| bones.contains(*b))?;
         let at = bones.indices().position(|b| b == bone)?;
-        let weight = ALL_BONES[bone].weight as f32;
+        let weight = BONE_WEIGHTS[bone] as f32;
         Some([0, 1, 2].map(|i| row[3 * at + i] / weight))
     };
     let along =
@@ -120,7 +120,7 @@ mod tests {
                 [swing.sin(), -swing.cos(), 0.0]
             };
             for i in 0..3 {
-                row[3 * b + i] = bone.weight as f32 * direction[i];
+                row[3 * b + i] = BONE_WEIGHTS[b] as f32 * direction[i];
             }
         }
         row

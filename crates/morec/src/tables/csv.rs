@@ -3,7 +3,6 @@
 use std::io::{self, Write};
 
 use super::{Features, for_each_frame};
-use crate::formats::points::is_gap_at;
 use crate::import::Take;
 
 /// Content of a table's rows.
@@ -55,7 +54,7 @@ fn positions(take: &Take, out: &mut dyn Write) -> io::Result<()> {
     for_each_frame(clip, |frame, pose| {
         write!(out, "{:.6}", frame as f64 / clip.rate_hz)?;
         for (joint, at) in pose.positions.iter().enumerate() {
-            if is_gap_at(clip, joint, frame) {
+            if clip.is_gap_at(joint, frame) {
                 write!(out, ",,,")?;
             } else {
                 write!(out, ",{:.6},{:.6},{:.6}", at.x, at.y, at.z)?;

@@ -5,7 +5,6 @@ use std::io::{self, Cursor, Write};
 use zip::write::{SimpleFileOptions, ZipWriter};
 
 use super::{Features, for_each_frame};
-use crate::formats::points::is_gap_at;
 use crate::import::Take;
 use crate::roles::Role;
 
@@ -38,7 +37,7 @@ pub fn write(take: &Take, out: &mut dyn Write) -> io::Result<()> {
     let mut values: Vec<f32> = Vec::with_capacity(frames * joints * 3);
     for_each_frame(clip, |frame, pose| {
         for (joint, at) in pose.positions.iter().enumerate() {
-            match is_gap_at(clip, joint, frame) {
+            match clip.is_gap_at(joint, frame) {
                 true => values.extend([f32::NAN; 3]),
                 false => values.extend([at.x as f32, at.y as f32, at.z as f32]),
             }

@@ -1,7 +1,8 @@
 use std::io::Read;
 
 use super::*;
-use crate::formats::{Limits, table};
+use crate::formats::{Limits, numpy, table};
+use crate::kinematics::WorldPose;
 
 use crate::synth;
 
@@ -103,4 +104,29 @@ fn features_are_named_one_by_one() {
     let dim =
         crate::features::RowLayout::of(crate::features::BoneSet::of_roles(&waving().roles)).dim();
     assert_eq!(names.len(), dim);
+}
+
+#[test]
+fn archives_are_read_back() {
+    let take = waving();
+    let mut bytes = Vec::new();
+    write_npz(&take, &mut bytes).unwrap();
+    let clip = numpy::read(&bytes, "again", None, &Limits::default())
+        .unwrap()
+        .clips
+        .remove(0);
+    assert_eq!(
+        (clip.frames, clip.rate_hz),
+        (take.clip.frames, take.clip.rate_hz)
+    );
+    assert!(clip.has_rotations());
+    for frame in [0, clip.frames / 2, clip.frames - 1] {
+        let (a, b) = (
+            WorldPose::of(&clip, frame),
+            WorldPose::of(&take.clip, frame),
+        );
+        for (a, b) in a.positions.iter().zip(&b.positions) {
+            assert!((a - b).norm() < 1e-5, "{a} {b}");
+        }
+    }
 }

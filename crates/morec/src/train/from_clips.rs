@@ -207,7 +207,7 @@ fn features(params: &FeatureParams, profile: Profile, hipless: bool) -> FeatureP
         },
         Profile::Body => params.clone(),
         _ => {
-            let (usual, own) = (FeatureParams::default(), profile.features());
+            let (usual, own) = (FeatureParams::default(), FeatureParams::usual(profile));
             let choose =
                 |given: f64, usual: f64, own: f64| if given == usual { own } else { given };
             FeatureParams {

@@ -22,12 +22,13 @@ mod ridge;
 mod scatter;
 mod set;
 mod templates;
+pub mod thesis;
 mod thresholds;
 mod trainer;
 mod trim;
 mod verifier;
 
-pub use crate::thesis::{train as thesis, train_tree as svrdm};
+pub use crate::thesis::train_tree as svrdm;
 pub use align::align;
 pub use alike::AlikeClasses;
 pub use clips::{everyday_clips, train_clips};

@@ -113,7 +113,7 @@ fn a_changed_number_is_a_checksum_error() {
 fn foreign_files_are_called_foreign() {
     let mut plain = br#"{"__metadata__":{"format":"pt"}}"#.to_vec();
     plain.splice(0..0, (plain.len() as u64).to_le_bytes());
-    let bvh = include_bytes!("../../testdata/bvh/plain.bvh");
+    let bvh = include_bytes!("../../../mocap/testdata/bvh/plain.bvh");
     for foreign in [&[][..], b"PK\x03\x04", &[0xff; 64], bvh, &plain] {
         let error = MotionIndex::from_bytes(foreign).unwrap_err();
         assert!(matches!(error, IndexError::Foreign(_)), "{error}");

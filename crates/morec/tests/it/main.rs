@@ -4,9 +4,6 @@
 #![allow(clippy::unwrap_used, clippy::print_stderr)]
 
 mod alike;
-mod bvh_real;
-mod bvh_roundtrip;
-mod bvh_traps;
 mod cases;
 mod conformance;
 mod cuts;
@@ -29,7 +26,6 @@ mod pose_golden;
 mod positions;
 mod sensitivity;
 mod session;
-mod smooth_real;
 mod stages;
 mod strangers;
 mod svrdm;

@@ -128,7 +128,7 @@ impl InspectReport {
     }
 
     fn write_clip(&self, out: &mut dyn Write, clip: &ClipReport) -> io::Result<()> {
-        let format = format_name(self.format);
+        let format = self.format.title();
         match &self.skeleton {
             Some(skeleton) => writeln!(
                 out,
@@ -258,7 +258,7 @@ impl ClipReport {
         writeln!(
             out,
             "  {}, {} joints, {}; up {}, {}, rest pose {}; roles {}{}",
-            format_name(format),
+            format.title(),
             self.joints.len(),
             self.length(),
             self.facts.up,
@@ -410,33 +410,6 @@ fn of_file(finding: &Finding) -> (String, String) {
         finding => return (finding.severity().to_string(), finding.to_string()),
     };
     ("warning".to_owned(), text.to_owned())
-}
-
-fn format_name(format: Format) -> &'static str {
-    match format {
-        Format::Bvh => "BVH",
-        Format::Asf => "ASF (skeleton only)",
-        Format::Amc => "AMC",
-        Format::Mclip => "MCLIP (curves)",
-        Format::C3d => "C3D",
-        Format::Trc => "TRC",
-        Format::Jsonl => "JSON lines",
-        Format::Table => "table of positions",
-        Format::Mvnx => "MVNX",
-        Format::Gltf => "glTF",
-        Format::Fbx => "FBX",
-        Format::Smpl => "SMPL poses (npz)",
-        Format::NtuSkeleton => "Kinect joints (NTU)",
-        Format::Landmarks => "landmarks (JSON)",
-        Format::Numpy => "positions (NumPy)",
-        Format::Smd => "SMD",
-        Format::Htr => "HTR",
-        Format::Csm => "CSM",
-        Format::OpenSimMotion => "OpenSim motion",
-        Format::OpenSimModel => "OpenSim model",
-        Format::DeepMimic => "DeepMimic motion",
-        Format::Mocopi => "mocopi packets",
-    }
 }
 
 /// Half-open, as spans are everywhere; the first ten.

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result, anyhow, bail};
 use morec::clip::{Clip, Skeleton};
+use morec::report::pictures::channel_chart;
 use morec::smooth::{ChannelKind, CompressedClip};
 
 use crate::files::some_of;
@@ -25,8 +26,7 @@ const CHANNELS: [(&str, ChannelKind, Option<usize>); 8] = [
 pub fn write(clip: &Clip, compressed: &CompressedClip, channel: &str, path: &Path) -> Result<()> {
     let (joint, kind, axis) = find(&clip.skeleton, channel)?;
     let name = &clip.skeleton.joints()[joint].name;
-    let chart = compressed
-        .chart(clip, joint, kind, axis)
+    let chart = channel_chart(compressed, clip, joint, kind, axis)
         .ok_or_else(|| anyhow!("--plot {channel}: {name} does not move in its parent's frame"))?;
     check_picture(path)?;
     write_whole(path, |out| out.write_all(chart.svg().as_bytes()))

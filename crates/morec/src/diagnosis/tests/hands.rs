@@ -1,9 +1,11 @@
 //! Hands: their size, what of them is missing, losses and exchanged sides.
 
-use crate::diagnosis::{Diagnoser, Diagnosis, Finding};
-use crate::features::{Hand, KeyPose, Profile, flat_hand};
+use crate::diagnosis::{Diagnoser, Diagnosis, Finding, Severity, diagnose_clip};
+use crate::features::{Hand, KeyPose, Profile};
+use crate::import::Take;
 use crate::math::Vec3;
 use crate::roles::Role;
+use crate::test_bodies::{at_a_desk, clip_of_hands, flat_hand};
 
 /// A hand that opens and closes and goes round.
 fn moving(hand: Hand, secs: f64, scale: f64) -> KeyPose {
@@ -101,4 +103,19 @@ fn hands_that_change_places_are_told() {
         f.to_string()
             .starts_with("left and right hand change places 18 times a minute")
     }));
+}
+
+#[test]
+fn clips_of_half_a_body_and_of_hands_are_in_order() {
+    let found = |clip| {
+        let take = Take::new(clip).unwrap();
+        diagnose_clip(&take.clip, &take.roles, take.rest())
+    };
+    let half = found(at_a_desk("Neck"));
+    let worst = half.findings().worst().map(|finding| finding.severity());
+    assert_eq!(worst, Some(Severity::Info));
+    for hands in [&[Hand::Left][..], &[Hand::Right], &Hand::BOTH] {
+        let found = found(clip_of_hands(hands, |hand, at| format!("{hand:?}_{at}")));
+        assert_eq!(found.findings().len(), 0, "{:?}", found.findings());
+    }
 }

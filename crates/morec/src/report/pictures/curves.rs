@@ -8,91 +8,89 @@ use crate::smooth::{Bezier, ChannelKind, ChannelValue, CompressedClip, Curve};
 const POINTS_A_FRAME: f64 = 4.0;
 const NAMES: [&str; 4] = ["x", "y", "z", "w"];
 
-impl CompressedClip {
-    /// A chart of a joint's rotation (as a quaternion) or position over time: samples of `source` (the clip that
-    /// was compressed), curves, keyframes. With `axis` (0 to 3 for x, y, z, w) only that component, and the curves'
-    /// control points with it. `None` if there is no such channel. O(frames).
-    pub fn chart(
-        &self,
-        source: &Clip,
-        joint: usize,
-        kind: ChannelKind,
-        axis: Option<usize>,
-    ) -> Option<Chart> {
-        let curve = self.curve(joint, kind)?;
-        let components = match kind {
-            ChannelKind::Rotation => 0..4,
-            ChannelKind::Position => 0..3,
-        };
-        let components = match axis {
-            Some(axis) if components.contains(&axis) => axis..axis + 1,
-            Some(_) => return None,
-            None => components,
-        };
-        let what = match kind {
-            ChannelKind::Rotation => "rotation",
-            ChannelKind::Position => "position",
-        };
-        let name = &self.skeleton().joints()[joint].name;
-        let title = format!(
-            "{}: {what} of {name}, {} keyframes",
-            self.name(),
-            curve.keyframes()
+/// A chart of a joint's rotation (as a quaternion) or position over time: samples of `source` (the clip that
+/// was compressed), curves, keyframes. With `axis` (0 to 3 for x, y, z, w) only that component, and the curves'
+/// control points with it. `None` if there is no such channel. O(frames).
+pub fn channel_chart(
+    compressed: &CompressedClip,
+    source: &Clip,
+    joint: usize,
+    kind: ChannelKind,
+    axis: Option<usize>,
+) -> Option<Chart> {
+    let curve = compressed.curve(joint, kind)?;
+    let components = match kind {
+        ChannelKind::Rotation => 0..4,
+        ChannelKind::Position => 0..3,
+    };
+    let components = match axis {
+        Some(axis) if components.contains(&axis) => axis..axis + 1,
+        Some(_) => return None,
+        None => components,
+    };
+    let what = match kind {
+        ChannelKind::Rotation => "rotation",
+        ChannelKind::Position => "position",
+    };
+    let name = &compressed.skeleton().joints()[joint].name;
+    let title = format!(
+        "{}: {what} of {name}, {} keyframes",
+        compressed.name(),
+        curve.keyframes()
+    );
+    let unit = if kind == ChannelKind::Rotation {
+        "quaternion"
+    } else {
+        "units of the clip"
+    };
+    let mut chart = Chart::new(title).axes("seconds", unit);
+    let samples = samples(source, curve);
+    let drawn = drawn(compressed, curve);
+    for c in components {
+        let at = |i: usize| i as f64 / compressed.source_rate_hz();
+        chart = chart.line(
+            NAMES[c],
+            samples.iter().enumerate().map(|(i, p)| (at(i), p[c])),
         );
-        let unit = if kind == ChannelKind::Rotation {
-            "quaternion"
-        } else {
-            "units of the clip"
-        };
-        let mut chart = Chart::new(title).axes("seconds", unit);
-        let samples = samples(source, curve);
-        let drawn = self.drawn(curve);
-        for c in components {
-            let at = |i: usize| i as f64 / self.source_rate_hz();
-            chart = chart.line(
-                NAMES[c],
-                samples.iter().enumerate().map(|(i, p)| (at(i), p[c])),
-            );
-            chart = chart.line(
-                &format!("{} curves", NAMES[c]),
-                drawn.iter().map(|(t, p)| (*t, p[c])),
-            );
-            if axis.is_some() {
-                chart = chart.points("control points", self.control_points(curve, c));
-            }
+        chart = chart.line(
+            &format!("{} curves", NAMES[c]),
+            drawn.iter().map(|(t, p)| (*t, p[c])),
+        );
+        if axis.is_some() {
+            chart = chart.points("control points", control_points(compressed, curve, c));
         }
-        let first = std::iter::once(0.0);
-        let keys = first.chain(self.beziers(curve).map(|bezier| bezier.stop_secs));
-        Some(chart.marks("keyframes", keys))
     }
+    let first = std::iter::once(0.0);
+    let keys = first.chain(compressed.beziers(curve).map(|bezier| bezier.stop_secs));
+    Some(chart.marks("keyframes", keys))
+}
 
-    /// The curve, finely.
-    fn drawn(&self, curve: &Curve) -> Vec<(f64, ChannelValue)> {
-        let last = self.source_frames().saturating_sub(1) as f64;
-        let places = (0..=(last * POINTS_A_FRAME) as usize).map(|i| i as f64 / POINTS_A_FRAME);
-        let mut drawn = Vec::new();
-        curve.along(places, |point| {
-            drawn.push((
-                drawn.len() as f64 / POINTS_A_FRAME / self.source_rate_hz(),
-                point,
-            ))
-        });
-        drawn
-    }
+/// The curve, finely.
+fn drawn(compressed: &CompressedClip, curve: &Curve) -> Vec<(f64, ChannelValue)> {
+    let last = compressed.source_frames().saturating_sub(1) as f64;
+    let places = (0..=(last * POINTS_A_FRAME) as usize).map(|i| i as f64 / POINTS_A_FRAME);
+    let mut drawn = Vec::new();
+    curve.along(places, |point| {
+        drawn.push((
+            drawn.len() as f64 / POINTS_A_FRAME / compressed.source_rate_hz(),
+            point,
+        ))
+    });
+    drawn
+}
 
-    /// Inner control points, at the thirds of their curves' times.
-    fn control_points(&self, curve: &Curve, component: usize) -> Vec<(f64, f64)> {
-        let inner = |bezier: Bezier| {
-            let third = (bezier.stop_secs - bezier.start_secs) / 3.0;
-            [1, 2].map(|i| {
-                (
-                    bezier.start_secs + i as f64 * third,
-                    bezier.points[i][component],
-                )
-            })
-        };
-        self.beziers(curve).flat_map(inner).collect()
-    }
+/// Inner control points, at the thirds of their curves' times.
+fn control_points(compressed: &CompressedClip, curve: &Curve, component: usize) -> Vec<(f64, f64)> {
+    let inner = |bezier: Bezier| {
+        let third = (bezier.stop_secs - bezier.start_secs) / 3.0;
+        [1, 2].map(|i| {
+            (
+                bezier.start_secs + i as f64 * third,
+                bezier.points[i][component],
+            )
+        })
+    };
+    compressed.beziers(curve).flat_map(inner).collect()
 }
 
 /// The channel's samples, with the signs that its curves have.
@@ -121,24 +119,16 @@ fn samples(source: &Clip, curve: &Curve) -> Vec<ChannelValue> {
 
 #[cfg(test)]
 mod tests {
-    use crate::math::{Axis, Vec3};
-    use crate::smooth::tests::one_joint;
-    use crate::smooth::{ChannelKind, SmoothParams, compress};
+    use super::*;
+    use crate::smooth::{SmoothParams, compress};
+    use crate::test_bodies::pushing;
 
     #[test]
     fn every_channel_can_be_drawn() {
-        let clip = one_joint(
-            60.0,
-            121,
-            |t| Axis::Y.rotation(4.0 * t),
-            |t| Vec3::new(t.sin(), t, 0.0),
-        );
+        let clip = pushing();
         let compressed = compress(&clip, &SmoothParams::default(), &()).unwrap();
-        let svg = |kind, axis| {
-            compressed
-                .chart(&clip, 0, kind, axis)
-                .map(|chart| chart.svg())
-        };
+        let svg =
+            |kind, axis| channel_chart(&compressed, &clip, 0, kind, axis).map(|chart| chart.svg());
         let all = svg(ChannelKind::Rotation, None).unwrap();
         assert!(
             all.contains("rotation of Hips")
@@ -153,10 +143,6 @@ mod tests {
             svg(ChannelKind::Position, Some(3)).is_none()
                 && svg(ChannelKind::Rotation, Some(4)).is_none()
         );
-        assert!(
-            compressed
-                .chart(&clip, 1, ChannelKind::Rotation, None)
-                .is_none()
-        );
+        assert!(channel_chart(&compressed, &clip, 1, ChannelKind::Rotation, None).is_none());
     }
 }

@@ -9,5 +9,6 @@ mod quality;
 #[cfg(test)]
 mod tests;
 
+pub use curves::channel_chart;
 pub use machines::{branch_picture, tree_picture};
 pub use quality::quality_chart;

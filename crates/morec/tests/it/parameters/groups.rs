@@ -96,7 +96,7 @@ fn svrdm() -> Vec<Group> {
             "## The method of 2009 (`--method svrdm`)\n\n`--svrdm tuned` is the default, `--svrdm faithful` has the \
              values of the thesis. Where the column \"tuned\" is empty, both are the same. The tuned values were chosen \
              on half splits of the referee clips (10 classes, seeds 1 to 6).\n\n### Training (`SvrdmTrainParams`)",
-            "../../../src/thesis/train/options.rs",
+            "../../../src/train/thesis/options.rs",
             "SvrdmTrainParams",
             ""
         ),
@@ -207,7 +207,7 @@ fn offline() -> Vec<Group> {
         ),
         group!(
             "### Compression (`SmoothParams`)",
-            "../../../src/smooth/params.rs",
+            "../../../../mocap/src/smooth/params.rs",
             "SmoothParams",
             "SmoothParams.",
             SmoothParams::default()

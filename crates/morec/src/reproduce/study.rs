@@ -1,0 +1,116 @@
+//! Data and settings of the study, and what its parts share.
+
+use std::ops::Range;
+
+use serde::Serialize;
+
+use crate::crossval::CrossvalError;
+use crate::eval::EvalError;
+use crate::features::Rows;
+use crate::index::IndexError;
+use crate::labels::Sample;
+use crate::segment::SegmentError;
+use crate::thesis::pivots::{NoPivots, PivotMap, PivotSet, PoseParams, pose_rows_of_clip};
+use crate::train::thesis::{SvrdmOptions, SvrdmTrainParams};
+use crate::train::{TrainClip, TrainError};
+
+/// Data of the study.
+#[derive(Debug, Clone)]
+pub struct Study<'a> {
+    /// Labelled clips; clips named as background too.
+    pub clips: &'a [TrainClip],
+    /// Their samples.
+    pub samples: &'a [Sample],
+    /// The classes.
+    pub classes: &'a [String],
+    /// Clips that hold none of them.
+    pub unknown: &'a [TrainClip],
+    /// Seeds of the half splits.
+    pub seeds: &'a [u64],
+    /// Options of training, by setting.
+    pub settings: &'a [(Setting, SvrdmOptions)],
+}
+
+/// The two settings.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Setting {
+    /// The thesis's own parameters.
+    Faithful,
+    /// Made to accept what was not seen.
+    Tuned,
+}
+
+impl Setting {
+    /// As it is written.
+    pub fn name(self) -> &'static str {
+        match self {
+            Setting::Faithful => "faithful",
+            Setting::Tuned => "tuned",
+        }
+    }
+
+    /// The parameters of training.
+    pub fn params(self) -> SvrdmTrainParams {
+        match self {
+            Setting::Faithful => SvrdmTrainParams::faithful(),
+            Setting::Tuned => SvrdmTrainParams::tuned(),
+        }
+    }
+}
+
+/// A picture to be kept beside the page.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Picture {
+    /// Name of its file, without ending.
+    pub name: String,
+    /// Caption of the picture.
+    pub caption: String,
+    /// The picture.
+    pub svg: String,
+    /// Data of the picture, as tab-separated text with a header, where that is not in [`Reproduction`](super::Reproduction).
+    pub table: Option<String>,
+}
+
+/// Why it cannot be done.
+#[derive(Debug, thiserror::Error)]
+#[allow(missing_docs)] // The messages say it all.
+pub enum ReproduceError {
+    #[error("cancelled")]
+    Cancelled,
+    #[error("clip {clip}: {source}")]
+    Pivots { clip: String, source: NoPivots },
+    #[error("clip {clip}: {source}")]
+    Segment { clip: String, source: SegmentError },
+    #[error(transparent)]
+    Train(#[from] TrainError),
+    #[error(transparent)]
+    Crossval(#[from] CrossvalError),
+    #[error(transparent)]
+    Eval(#[from] EvalError),
+    #[error(transparent)]
+    Index(#[from] IndexError),
+    #[error("{0}")]
+    Other(String),
+}
+
+/// The pose rows of a clip.
+pub(super) fn rows_of(
+    clip: &TrainClip,
+    set: &PivotSet,
+    params: &PoseParams,
+) -> Result<Rows, ReproduceError> {
+    let map = PivotMap::of_clip(set, &clip.clip, &clip.roles).map_err(|source| {
+        ReproduceError::Pivots {
+            clip: clip.name.clone(),
+            source,
+        }
+    })?;
+    Ok(pose_rows_of_clip(&clip.clip, set, &map, &clip.rest, params))
+}
+
+/// The frames of a sample among `count` rows at `rate_hz`.
+pub(super) fn frames_of(sample: &Sample, rate_hz: f64, count: usize) -> Range<usize> {
+    let frame = |secs: f64| ((secs * rate_hz).round() as usize).min(count);
+    frame(sample.start_secs)..frame(sample.stop_secs)
+}
