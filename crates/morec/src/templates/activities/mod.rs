@@ -16,6 +16,7 @@ use crate::features::RowLayout;
 use super::ReferenceRows;
 
 pub(super) use detector::ActivityDetector;
+#[cfg(feature = "train")]
 pub(crate) use windows::{STEP_TICKS, windows_of};
 
 /// An activity of fewer windows than this is none.
