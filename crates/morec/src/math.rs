@@ -7,6 +7,33 @@ pub type Vec3 = Vector3<f64>;
 /// A rotation; named `a_from_b`, it takes coordinates in frame `b` to coordinates in frame `a`.
 pub type Quat = UnitQuaternion<f64>;
 
+/// Functions that the standard library takes from the system, whose last digits differ from one to the other: these are the same
+/// to the bit everywhere. What is not here (root, rounding, products) is exact in the standard library, too.
+// Layers use some of them each.
+#[allow(dead_code)]
+pub(crate) mod portable {
+    use nalgebra::{ComplexField, RealField};
+
+    macro_rules! functions {
+        ($($kind:ident: $($name:ident($($argument:ident),*)),*;)*) => {
+            $($(#[inline]
+            pub(crate) fn $name<F: RealField + Copy>(x: F, $($argument: F),*) -> F {
+                $kind::$name(x, $($argument),*)
+            })*)*
+        };
+    }
+
+    functions! {
+        ComplexField: sin(), acos(), exp(), ln(), powf(exponent), hypot(y);
+        RealField: atan2(x_axis);
+    }
+
+    #[inline]
+    pub(crate) fn sin_cos<F: RealField + Copy>(angle_rad: F) -> (F, F) {
+        ComplexField::sin_cos(angle_rad)
+    }
+}
+
 /// A coordinate axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -108,9 +135,12 @@ fn slerp_weights(cos: f64, t: f64) -> (f64, f64) {
     if !(-1.0 + 1e-9..=1.0 - 1e-9).contains(&cos) {
         return (1.0 - t, t);
     }
-    let angle = cos.acos();
-    let sin = angle.sin();
-    (((1.0 - t) * angle).sin() / sin, (t * angle).sin() / sin)
+    let angle = portable::acos(cos);
+    let sin = portable::sin(angle);
+    (
+        portable::sin((1.0 - t) * angle) / sin,
+        portable::sin(t * angle) / sin,
+    )
 }
 
 #[cfg(test)]

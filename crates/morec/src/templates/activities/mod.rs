@@ -12,6 +12,7 @@ mod windows;
 
 use crate::classes::ClassId;
 use crate::features::RowLayout;
+use crate::math::portable;
 
 use super::ReferenceRows;
 
@@ -84,7 +85,7 @@ impl Activities {
 
     /// For a rate of false alarms a minute.
     pub(super) fn with_sensitivity(&self, alarms_per_minute: f64) -> Self {
-        let share = (alarms_per_minute / USUAL_RATE).powf(SHARE_EXPONENT) as f32;
+        let share = portable::powf(alarms_per_minute / USUAL_RATE, SHARE_EXPONENT) as f32;
         Self {
             share,
             ..self.clone()
