@@ -1,7 +1,7 @@
 // The page: buttons, pictures and lists around `teaching.js`.
 import * as morec from "./vendor/morec/morec.js";
 import { trainInWorker } from "./vendor/morec/worker.js";
-import { LINES, camera, film, recorded } from "./sources.js";
+import { camera, drawLandmarks, film, recorded } from "./sources.js";
 import { Teaching } from "./teaching.js";
 
 const MEDIAPIPE = "./vendor/mediapipe";
@@ -52,16 +52,7 @@ function draw(positions, landmarks) {
   drawing.fillStyle = drawing.strokeStyle = getComputedStyle(canvas).getPropertyValue("--accent");
   drawing.lineWidth = 4;
   if (landmarks) {
-    const video = at("video");
-    const scale = Math.min(canvas.width / video.videoWidth, canvas.height / video.videoHeight);
-    const [width, height] = [video.videoWidth * scale, video.videoHeight * scale];
-    const place = ({ x, y }) => [(canvas.width - width) / 2 + x * width, (canvas.height - height) / 2 + y * height];
-    drawing.beginPath();
-    for (const [from, to] of LINES) {
-      drawing.moveTo(...place(landmarks[from]));
-      drawing.lineTo(...place(landmarks[to]));
-    }
-    drawing.stroke();
+    drawLandmarks(drawing, at("video"), landmarks);
     return;
   }
   const scale = canvas.height / 2.4;

@@ -7,6 +7,9 @@ use std::str::FromStr;
 use crate::LiveError;
 use crate::error::Context;
 
+/// The address of the camera of this machine.
+const WEBCAM: &str = "webcam";
+
 /// A source or a sink, not yet opened.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Address {
@@ -23,8 +26,13 @@ impl FromStr for Address {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let wrong = || format!("expected KIND://PLACE, as vmc://127.0.0.1:39539, found {text}");
+        // A webcam needs no place: any free port will do.
+        let whole = match text.split('?').next() {
+            Some(WEBCAM) => text.replacen(WEBCAM, "webcam://127.0.0.1:0", 1),
+            _ => text.to_owned(),
+        };
         // json:- and json:FILE are no URLs, and neither are these all.
-        let (kind, rest) = text.split_once(':').ok_or_else(wrong)?;
+        let (kind, rest) = whole.split_once(':').ok_or_else(wrong)?;
         let rest = rest.strip_prefix("//").unwrap_or(rest);
         let (place, options) = rest.split_once('?').unwrap_or((rest, ""));
         if kind.is_empty() || place.is_empty() {

@@ -77,14 +77,16 @@ impl JsonSource {
         address.allow(&[])?;
         let notices = Notices::default();
         let (lines, at) = Lines::listen(address.socket()?, &notices)?;
-        let source = Self {
+        openness(at).into_iter().for_each(|text| notices.tell(text));
+        Ok((Self::of_connections(lines, notices), at))
+    }
+
+    /// Lines of whoever connects; what is wrong with connections is in `notices`.
+    pub(crate) fn of_connections(lines: Lines, notices: Notices) -> Self {
+        Self {
             notices,
             ..Self::new(lines, false)
-        };
-        openness(at)
-            .into_iter()
-            .for_each(|text| source.notices.tell(text));
-        Ok((source, at))
+        }
     }
 
     fn new(lines: Lines, ends: bool) -> Self {

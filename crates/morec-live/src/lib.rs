@@ -45,6 +45,7 @@ mod summary;
 mod threads;
 mod unnamed;
 mod vmc;
+mod webcam;
 mod websocket;
 
 pub use address::Address;

@@ -2,6 +2,7 @@
 
 use std::io::{BufRead, BufReader, ErrorKind, Read};
 use std::net::{IpAddr, SocketAddr, TcpListener, TcpStream};
+use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -17,7 +18,7 @@ const WAITING: usize = 128;
 /// However long they are, they take little memory.
 const _: () = assert!(WAITING as u64 * LONGEST <= 8 << 20);
 /// A connection over which no whole line has come for so long is closed.
-const SILENCE: Duration = Duration::from_secs(30);
+pub const SILENCE: Duration = Duration::from_secs(30);
 
 /// Something that came.
 pub enum Came {
@@ -37,6 +38,9 @@ pub enum Came {
     /// Nothing will come.
     Ended,
 }
+
+/// Serves a connection, by its number, to its end, on a thread of its own; lines go to the sender.
+pub type Attend = dyn Fn(u64, TcpStream, &SyncSender<Came>) + Send + Sync;
 
 /// A source of lines.
 pub struct Lines {
@@ -58,6 +62,15 @@ impl Lines {
     /// Whoever connects to `address` over TCP. Returns where it listens, too; connections that find no place are named in
     /// `notices`.
     pub fn listen(address: SocketAddr, notices: &Notices) -> Result<(Self, SocketAddr), LiveError> {
+        Self::serve(address, notices, Arc::new(read))
+    }
+
+    /// The same for connections that bring their lines in another way.
+    pub fn serve(
+        address: SocketAddr,
+        notices: &Notices,
+        attend: Arc<Attend>,
+    ) -> Result<(Self, SocketAddr), LiveError> {
         let listener = TcpListener::bind(address)
             .with_context(|| format!("cannot listen at {address} (TCP)"))?;
         let at = listener.local_addr().context("TCP socket")?;
@@ -65,7 +78,7 @@ impl Lines {
         let places = ConnectionPlaces::default();
         let (open, notices) = (places.clone(), notices.clone());
         spawn("connections", move || {
-            accept(&listener, &sender, &open, &notices)
+            accept(&listener, &sender, &open, &notices, &attend)
         })?;
         Ok((Self { came, places }, at))
     }
@@ -109,6 +122,7 @@ fn accept(
     sender: &SyncSender<Came>,
     places: &ConnectionPlaces,
     notices: &Notices,
+    attend: &Arc<Attend>,
 ) {
     for (number, stream) in (1..).zip(listener.incoming()) {
         let Ok(stream) = stream else {
@@ -126,20 +140,25 @@ fn accept(
             ));
             continue;
         }
-        let (sender, open) = (sender.clone(), places.clone());
+        let (sender, open, attend) = (sender.clone(), places.clone(), attend.clone());
         let job = move || {
-            let patient = Patient {
-                stream,
-                since: Instant::now(),
-                silence: SILENCE,
-            };
-            forward(number, BufReader::new(patient), &sender);
+            attend(number, stream, &sender);
             open.leave(number);
         };
         if spawn("a connection", job).is_err() {
             places.leave(number);
         }
     }
+}
+
+/// A connection that brings nothing but lines.
+fn read(number: u64, stream: TcpStream, sender: &SyncSender<Came>) {
+    let patient = Patient {
+        stream,
+        since: Instant::now(),
+        silence: SILENCE,
+    };
+    forward(number, BufReader::new(patient), sender);
 }
 
 /// A connection that must bring a whole line in time: one that sends nothing, or a byte now and then, holds no place.

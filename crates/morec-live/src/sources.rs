@@ -14,6 +14,7 @@ use crate::axis::{AxisSource, axis_skeleton};
 use crate::clip::ClipSource;
 use crate::json::JsonSource;
 use crate::vmc::VmcSource;
+use crate::webcam::webcam;
 use crate::{Address, LiveError, Notices};
 
 /// Options of opening a source.
@@ -27,6 +28,8 @@ pub struct SourceOptions<'a> {
     pub skip_t_pose: bool,
     /// A BVH file of the program at `axis://`, for how bones hang together and how long they are.
     pub axis_skeleton: Option<PathBuf>,
+    /// The folder of MediaPipe's files, for the page at `webcam`.
+    pub mediapipe: Option<PathBuf>,
     /// Roles of joints of clips, where inference fails.
     pub roles: Option<Mapping>,
     /// The index that will recognise: it knows the roles of joints of its own clips.
@@ -45,6 +48,7 @@ impl Default for SourceOptions<'_> {
             actors,
             skip_t_pose,
             axis_skeleton: None,
+            mediapipe: None,
             roles: None,
             index: None,
         }
@@ -64,7 +68,7 @@ pub struct OpenSource {
 }
 
 /// Opens the source at `address`: `vmc://HOST:PORT`, `axis://HOST:PORT`, `axis+udp://HOST:PORT`, `json:-`,
-/// `json+tcp://HOST:PORT` or `clip://FILE`.
+/// `json+tcp://HOST:PORT`, `webcam`, `webcam://HOST:PORT` or `clip://FILE`.
 ///
 /// # Errors
 /// Another address, an option that the source does not have, a socket that cannot be opened, a file that cannot be read.
@@ -108,6 +112,12 @@ pub fn open_source(
                 notices,
             ))
         }
+        "webcam" => {
+            let (source, at) = webcam(address, options.mediapipe.as_deref())?;
+            let notices = source.notices();
+            let name = format!("webcam://{at}");
+            Ok(opened(source, OverflowPolicy::Drop, name, notices))
+        }
         "clip" => {
             let reader = FileReader {
                 import: ImportOptions {
@@ -129,7 +139,7 @@ pub fn open_source(
             ))
         }
         other => Err(LiveError::Address(format!(
-            "{address}: no source is called {other}; there are vmc://HOST:PORT, axis://HOST:PORT, axis+udp://HOST:PORT, json:-, json+tcp://HOST:PORT, clip://FILE"
+            "{address}: no source is called {other}; there are vmc://HOST:PORT, axis://HOST:PORT, axis+udp://HOST:PORT, json:-, json+tcp://HOST:PORT, webcam, clip://FILE"
         ))),
     }
 }

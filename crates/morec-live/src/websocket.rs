@@ -17,7 +17,7 @@ use std::time::{Duration, Instant};
 
 use tungstenite::{Error, Message};
 
-use self::greet::{Socket, greet};
+use self::greet::{LISTENER, Socket, greet};
 use crate::error::Context;
 use crate::{Address, LiveError, NamedEvent, Sink};
 
@@ -141,7 +141,7 @@ fn accept(listener: &TcpListener, hall: &SharedHall, origin: Option<&str>) {
 
 /// A listener from its hello to its end.
 fn attend(number: u64, stream: TcpStream, hall: &SharedHall, origin: Option<&str>) {
-    let socket = greet(stream, origin);
+    let socket = greet(stream, origin, LISTENER);
     let (sender, events) = sync_channel(WAITING);
     {
         let mut hall = hall.lock();

@@ -1,37 +1,19 @@
-//! The native half of `tests/conformance.mjs`: writes clips and labels of a few cases into a folder, what native morec
-//! learns and finds in them, and how long it takes.
+//! The native half of `tests/conformance.test.mjs` and of `.ci/platforms`: writes clips and labels of a few cases into a folder,
+//! what native morec learns and finds in them, and how long it takes.
 //!
 //!     cargo run --release -p morec-wasm --example conformance -- target/wasm/cases
 
-use std::error::Error;
+#[path = "cases/mod.rs"]
+mod cases;
+
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
-use morec::files::FileReader;
 use morec::formats::bvh;
-use morec::roles::Role;
 use morec::synth::{DatabaseSpec, database};
-use morec::{ImportOptions, KeyPose, Labels, MotionIndex, Take, Trainer};
-use morec_wasm::{DetectionRow, PointOptions, PointStream};
-use serde::Serialize;
+use morec::{Labels, Trainer};
 
-type Outcome<T> = Result<T, Box<dyn Error>>;
-
-/// What both sides do: learn from some files, recognise others.
-#[derive(Serialize)]
-struct Case {
-    name: &'static str,
-    /// Table of labels.
-    labels: String,
-    learn: Vec<PathBuf>,
-    recognise: Vec<PathBuf>,
-    /// For each file in `recognise`.
-    detections: Vec<serde_json::Value>,
-    /// Microseconds a push of their frames.
-    push_us: f64,
-    frames: usize,
-}
+use cases::{Case, Outcome, takes};
 
 fn main() -> Outcome<()> {
     let folder = std::env::args_os().nth(1).ok_or("expected a folder")?;
@@ -105,73 +87,14 @@ fn real(data: &Path) -> Outcome<Case> {
     Ok(Case::new("sessions", labels, learn, recognise))
 }
 
-impl Case {
-    fn new(
-        name: &'static str,
-        labels: String,
-        learn: Vec<PathBuf>,
-        recognise: Vec<PathBuf>,
-    ) -> Self {
-        Self {
-            name,
-            labels,
-            learn,
-            recognise,
-            detections: Vec::new(),
-            push_us: 0.0,
-            frames: 0,
-        }
-    }
-}
-
+/// Writes the index and what it finds.
 fn finish(case: &mut Case, folder: &Path) -> Outcome<()> {
     let labels = Labels::read(case.labels.as_bytes())?;
     let index = Trainer::new().labels(&labels).train(&takes(&case.learn)?)?;
-    fs::write(
-        folder.join(format!("{}.index", case.name)),
-        index.to_bytes()?,
-    )?;
-    let mut secs = 0.0;
-    for path in &case.recognise {
-        for take in takes(std::slice::from_ref(path))? {
-            let found = index.recognize(&take)?;
-            let rows: Vec<DetectionRow<'_>> = found.iter().map(DetectionRow::from).collect();
-            case.detections.push(serde_json::to_value(rows)?);
-            secs += push_secs(&index, &take)?;
-            case.frames += take.clip.frames;
-        }
-    }
-    case.push_us = 1e6 * secs / case.frames as f64;
+    fs::write(case.index_file(folder), index.to_bytes()?)?;
+    case.detections = case.found_by(&index)?;
+    case.push_us = case.push_us_of(&index)?;
     Ok(())
-}
-
-/// Seconds that pushing every pose of `take` takes, as the package pushes it.
-fn push_secs(index: &MotionIndex, take: &Take) -> Outcome<f64> {
-    let points = Role::ALL.map(Role::name);
-    let mut stream = PointStream::new(index, &points, &PointOptions::default())?;
-    let poses = take.poses();
-    let begun = Instant::now();
-    for (time_secs, pose) in &poses {
-        fill(stream.values(), pose);
-        stream.push(*time_secs, *time_secs);
-    }
-    Ok(begun.elapsed().as_secs_f64())
-}
-
-fn fill(values: &mut [f64], pose: &KeyPose) {
-    for (at, role) in values.chunks_exact_mut(3).zip(Role::ALL) {
-        let known = pose.get(role).map(|p| [p.x, p.y, p.z]);
-        at.copy_from_slice(&known.unwrap_or([f64::NAN; 3]));
-    }
-}
-
-fn takes(files: &[PathBuf]) -> Outcome<Vec<Take>> {
-    let mut takes = Vec::new();
-    for path in files {
-        let parsed = FileReader::default().parse(path, &fs::read(path)?)?;
-        takes.extend(parsed.into_takes(&ImportOptions::default())?);
-    }
-    Ok(takes)
 }
 
 fn stem(path: &Path) -> String {

@@ -4,7 +4,7 @@ use super::body::BodyMeasures;
 use super::options::Stated;
 use super::signed_axis::SignedAxis;
 use crate::clip::Clip;
-use crate::math::{Axis, Quat, Vec3, same_hemisphere};
+use crate::math::{Axis, Quat, Vec3, portable, same_hemisphere};
 
 /// The axis that the format states, unless the body clearly stands along another; else the one the body tells.
 pub(super) fn choose(
@@ -113,7 +113,7 @@ fn lying(body: &BodyMeasures, notes: &mut Vec<String>) -> SignedAxis {
                 (Axis::Z, false) => 0.1,
                 _ => 0.0,
             };
-            scores.push((stands + 0.5 * (-10.0 * spread).exp() + usual, up));
+            scores.push((stands + 0.5 * portable::exp(-10.0 * spread) + usual, up));
         }
     }
     scores.sort_by(|a, b| b.0.total_cmp(&a.0));

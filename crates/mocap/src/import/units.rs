@@ -6,6 +6,7 @@ use super::body::BodyMeasures;
 use super::options::Stated;
 use super::signed_axis::SignedAxis;
 use crate::clip::Clip;
+use crate::math::portable;
 use crate::roles::proportions as human;
 
 /// Units that files are written in: name, metres.
@@ -139,7 +140,7 @@ fn taken_for_metres(
 
 /// The known unit, and its metres, in which a body of this size comes nearest to an adult's.
 fn nearest_known(size: f64) -> (&'static str, f64) {
-    let away = |metres: f64| (size * metres).ln().abs();
+    let away = |metres: f64| portable::ln(size * metres).abs();
     let nearest = |a: &&(&str, f64), b: &&(&str, f64)| away(a.1).total_cmp(&away(b.1));
     UNITS.iter().min_by(nearest).copied().unwrap_or(("m", 1.0))
 }

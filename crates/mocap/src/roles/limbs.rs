@@ -7,6 +7,7 @@
 use super::meaning::{NameMeaning, Side};
 use super::proportions as human;
 use super::tree::JointTree;
+use crate::math::portable;
 
 /// The joints of one limb.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -142,7 +143,7 @@ fn separation(chains: &[Chain; 2], place: ChainSplit) -> f64 {
         Part::Leg => human::BETWEEN_HIPS,
         Part::Arm { .. } => human::BETWEEN_SHOULDERS,
     };
-    0.7 * (between / (length * usual)).ln().abs().min(MOST)
+    0.7 * portable::ln(between / (length * usual)).abs().min(MOST)
 }
 
 /// The joints down one limb.
@@ -232,14 +233,14 @@ impl<'a> Chain<'a> {
             true => -0.5,
             false => self.named_end(kind(place.end)),
         };
-        let share = ((upper + lower) / self.whole).ln();
+        let share = portable::ln((upper + lower) / self.whole);
         let shape = match self.part {
-            Part::Leg => 2.0 * (upper / lower / human::THIGH_TO_SHIN).ln().abs() - share,
+            Part::Leg => 2.0 * portable::ln(upper / lower / human::THIGH_TO_SHIN).abs() - share,
             Part::Arm { leg } => {
                 let of_leg = leg.map_or(0.0, |leg| {
-                    ((upper + lower) / (leg * human::ARM_TO_LEG)).ln().abs()
+                    portable::ln((upper + lower) / (leg * human::ARM_TO_LEG)).abs()
                 });
-                2.0 * (upper / lower / human::ARM_TO_FOREARM).ln().abs() - 0.5 * share
+                2.0 * portable::ln(upper / lower / human::ARM_TO_FOREARM).abs() - 0.5 * share
                     + 1.2 * of_leg
             }
         };

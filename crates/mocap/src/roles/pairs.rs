@@ -4,7 +4,7 @@ use super::RoleMap;
 use super::limbs::{self, Limb, Part};
 use super::proportions as human;
 use super::tree::{JointTree, MirroredPair};
-use crate::math::Vec3;
+use crate::math::{Vec3, portable};
 
 /// Roles that were found, with notes about guesses.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -138,7 +138,7 @@ fn person(tree: &JointTree, legs: &FoundPair, arms: &FoundPair) -> f64 {
         let hips = legs.middle(tree.positions, |limb| limb.upper)?;
         let shoulders = arms.middle(tree.positions, |limb| limb.upper)?;
         let trunk = (shoulders - hips).norm() / (length(tree, legs)? * human::TRUNK_TO_LEG);
-        Some(trunk.max(1e-6).ln().abs().min(3.0))
+        Some(portable::ln(trunk.max(1e-6)).abs().min(3.0))
     };
     let against_feet = |pose: &Vec<Vec3>| {
         let hips = legs.middle(pose, |limb| limb.upper)?;

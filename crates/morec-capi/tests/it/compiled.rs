@@ -28,7 +28,7 @@ fn lines(found: &[Detection]) -> String {
 }
 
 /// A stream as `stream.c` reads it, and what is in it.
-fn stream(path: &Path) -> String {
+pub fn stream(path: &Path) -> String {
     let (bones, poses) = made::poses(&kit::take(60.0));
     let mut text = String::new();
     for (time_secs, pose) in &poses {

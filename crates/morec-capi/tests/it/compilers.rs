@@ -124,7 +124,7 @@ impl Link {
 }
 
 /// Path of the library that was built with these tests: beside them.
-fn libraries() -> PathBuf {
+pub fn libraries() -> PathBuf {
     std::env::current_exe()
         .unwrap()
         .parent()

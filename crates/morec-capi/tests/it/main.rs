@@ -28,3 +28,4 @@ mod made;
 #[allow(dead_code)]
 #[path = "../../../morec/tests/testing/mod.rs"]
 mod testing;
+mod unity;

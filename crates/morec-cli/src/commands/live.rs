@@ -29,6 +29,8 @@ use morec_live::summary;
 ///   axis://127.0.0.1:7001   the BVH broadcast of Axis Neuron or Axis Studio at this address; axis+udp:// listens
 ///   json:-                  poses as lines of JSON on standard input
 ///   json+tcp://127.0.0.1:9000 the same from whoever connects
+///   webcam                  this machine's camera, by a page that opens in the browser and the files that --mediapipe
+///                           names; webcam://127.0.0.1:8000 serves the page there and leaves opening it to you
 ///   clip://FILE             a clip, in real time; ?speed=4 (0: as fast as it goes), ?loop, ?loss=0.05, ?jitter=20
 ///
 /// A line of JSON is a pose: {"t": 1.25, "positions": {"hips": [0, 0.92, 0], "left_hand": [0.7, 1.4, 0.1]}}, t in

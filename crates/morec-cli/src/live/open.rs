@@ -1,6 +1,7 @@
 //! Sources as they are typed, opened.
 
 use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
 
 use anyhow::Result;
 use morec::index::MotionIndex;
@@ -23,6 +24,9 @@ pub struct TrackerArgs {
     /// 1.7 m]
     #[arg(long, value_name = "BVH")]
     pub skeleton: Option<PathBuf>,
+    /// The folder of MediaPipe's files, for --listen webcam: an unpacked `npm pack @mediapipe/pose`
+    #[arg(long, value_name = "DIR")]
+    pub mediapipe: Option<PathBuf>,
     /// Take T-poses that are too exact to be a person's, too: else they are a sender's that lost its tracker
     #[arg(long)]
     pub keep_t_pose: bool,
@@ -45,11 +49,31 @@ impl TrackerArgs {
             actors: self.actors.into(),
             skip_t_pose: !self.keep_t_pose,
             axis_skeleton: self.skeleton.clone(),
+            mediapipe: self.mediapipe.clone(),
             roles: mapping(self.roles.as_deref())?,
             index,
         };
         let opened = open_source(address, &options)?;
         eprintln!("morec: listening to {}", opened.name);
+        if let Some(at) = opened.name.strip_prefix("webcam://") {
+            let page = format!("http://{at}/");
+            eprintln!("morec: its page is {page}");
+            if address.to_string() == "webcam" {
+                show_page(&page);
+            }
+        }
         Ok(opened)
     }
+}
+
+/// Shows a page in the user's browser, if there is one: its address has been said.
+fn show_page(page: &str) {
+    let (program, words): (_, &[&str]) = match std::env::consts::OS {
+        "windows" => ("cmd", &["/C", "start", ""]),
+        "macos" => ("open", &[]),
+        _ => ("xdg-open", &[]),
+    };
+    let mut command = Command::new(program);
+    command.args(words).arg(page).stdin(Stdio::null());
+    let _ = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn();
 }

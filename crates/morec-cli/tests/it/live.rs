@@ -152,6 +152,52 @@ fn lines_over_tcp_are_poses_and_connections_come_and_go() {
     );
 }
 
+/// A WebSocket without a library: says hello, and sends short text messages.
+#[cfg(unix)]
+fn send_texts(at: &str, path: &str, texts: &[&str]) {
+    let mut stream = TcpStream::connect(at).unwrap();
+    write!(
+        stream,
+        "GET {path} HTTP/1.1\r\nHost: {at}\r\nConnection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n\
+        Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n"
+    )
+    .unwrap();
+    let mut answer = Vec::new();
+    while !answer.ends_with(b"\r\n\r\n") {
+        let mut byte = [0];
+        stream.read_exact(&mut byte).unwrap();
+        answer.extend(byte);
+    }
+    for text in texts {
+        // A whole text, its length in two bytes, under a mask of zeros.
+        let [high, low] = u16::try_from(text.len()).unwrap().to_be_bytes();
+        let head = [0x81, 0x80 | 126, high, low, 0, 0, 0, 0];
+        stream
+            .write_all(&[&head, text.as_bytes()].concat())
+            .unwrap();
+    }
+}
+
+#[test]
+#[cfg(unix)]
+fn recorded_poses_from_the_cameras_page_are_a_stream_like_any_other() {
+    let folder = folder();
+    let to_lines = "record --listen clip://person.bvh?speed=0 -o take.jsonl --count-down 0";
+    let recorded = folder.morec(&to_lines.split(' ').collect::<Vec<_>>());
+    assert_eq!(recorded.code, Some(0), "{recorded:?}");
+    let lines = std::fs::read_to_string(folder.path().join("take.jsonl")).unwrap();
+    let lines: Vec<&str> = lines.lines().collect();
+    std::fs::write(folder.path().join("pose.js"), "").unwrap();
+    let live = Live::start(&folder, "webcam://127.0.0.1:0", &["--mediapipe", "."]);
+    send_texts(&live.at, "/poses", &lines);
+    // Until everything has arrived; if it never does, the counts below say so.
+    std::thread::sleep(Duration::from_secs(3));
+    let summary = live.interrupt();
+    let poses = lines.iter().filter(|l| l.contains("positions")).count();
+    assert!(poses > 100);
+    assert_eq!(count(&summary, " frames,"), poses as u64, "{summary}");
+}
+
 #[test]
 fn a_clip_ends_by_itself_and_what_cannot_be_opened_says_why() {
     let folder = folder();
@@ -163,6 +209,7 @@ fn a_clip_ends_by_itself_and_what_cannot_be_opened_says_why() {
         ("vmc://nowhere", "terminal:-", "HOST:PORT"),
         ("clip://absent.bvh", "terminal:-", "absent.bvh"),
         ("clip://person.bvh?sped=2", "terminal:-", "no option sped"),
+        ("webcam", "terminal:-", "npm pack @mediapipe/pose"),
         ("clip://person.bvh", "midi:1", "no sink is called midi"),
     ] {
         let ran = folder.morec(&["live", "v1.index", "--listen", listen, "--emit", emit]);

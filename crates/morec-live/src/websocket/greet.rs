@@ -9,8 +9,8 @@ use tungstenite::http::StatusCode;
 use tungstenite::protocol::WebSocketConfig;
 use tungstenite::{WebSocket, accept_hdr_with_config};
 
-/// Limit for a listener's whole handshake, or for taking a packet.
-const PATIENCE: Duration = Duration::from_secs(2);
+/// Limit for a whole handshake, or for taking a packet.
+pub const PATIENCE: Duration = Duration::from_secs(2);
 /// A listener says pings and goodbyes; nothing that it sends is read.
 const LARGEST_MESSAGE: usize = 4096;
 
@@ -45,30 +45,45 @@ impl Write for Timed {
     }
 }
 
-/// Says hello; `None` if the other side does not, in time, or may not listen.
-pub fn greet(stream: TcpStream, origin: Option<&str>) -> Option<Socket> {
+/// What the other side may do after the handshake.
+#[derive(Debug, Clone, Copy)]
+pub struct Manners {
+    /// Bytes of a message.
+    pub largest: usize,
+    /// How long reading waits for one.
+    pub wait: Duration,
+}
+
+/// Whoever only listens.
+pub const LISTENER: Manners = Manners {
+    largest: LARGEST_MESSAGE,
+    wait: Duration::from_millis(1),
+};
+
+/// Says hello; `None` if the other side does not, in time, or may not connect: a page of neither this machine nor `origin`.
+pub fn greet(stream: TcpStream, origin: Option<&str>, manners: Manners) -> Option<Socket> {
     stream.set_write_timeout(Some(PATIENCE)).ok()?;
     stream.set_nodelay(true).ok()?;
     let timed = Timed {
         stream,
         until: Some(Instant::now() + PATIENCE),
     };
-    let mut socket = shake_hands(timed, origin)?;
-    // From here on reading is only for pings and goodbyes.
+    let mut socket = shake_hands(timed, origin, manners.largest)?;
     let timed = socket.get_mut();
     timed.until = None;
-    timed
-        .stream
-        .set_read_timeout(Some(Duration::from_millis(1)))
-        .ok()?;
+    timed.stream.set_read_timeout(Some(manners.wait)).ok()?;
     Some(socket)
 }
 
 /// The handshake over any stream; `None` if it fails.
-fn shake_hands<S: Read + Write>(stream: S, origin: Option<&str>) -> Option<WebSocket<S>> {
+fn shake_hands<S: Read + Write>(
+    stream: S,
+    origin: Option<&str>,
+    largest: usize,
+) -> Option<WebSocket<S>> {
     let config = WebSocketConfig::default()
-        .max_message_size(Some(LARGEST_MESSAGE))
-        .max_frame_size(Some(LARGEST_MESSAGE));
+        .max_message_size(Some(largest))
+        .max_frame_size(Some(largest));
     #[allow(clippy::result_large_err)] // The handshake's own type.
     let check = |request: &Request, response: Response| match may_listen(request, origin) {
         true => Ok(response),
@@ -100,7 +115,8 @@ pub fn heard(bytes: &[u8]) -> Vec<usize> {
             Ok(())
         }
     }
-    let Some(mut socket) = shake_hands(Said(bytes), Some("https://studio.example")) else {
+    let origin = Some("https://studio.example");
+    let Some(mut socket) = shake_hands(Said(bytes), origin, LARGEST_MESSAGE) else {
         return Vec::new();
     };
     std::iter::from_fn(|| Some(socket.read().ok()?.len())).collect()

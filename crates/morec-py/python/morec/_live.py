@@ -26,7 +26,8 @@ class listen:
     address : str
         As of ``morec live --listen``: ``vmc://HOST:PORT`` (VMC senders on a UDP port, 39539 by convention),
         ``axis://HOST:PORT`` and ``axis+udp://HOST:PORT`` (broadcasts of Axis programs), ``json:-`` and ``json+tcp://HOST:PORT``
-        (lines of JSON), ``clip://FILE`` (a clip as if somebody performed it).
+        (lines of JSON), ``webcam://127.0.0.1:8000?mediapipe=DIR`` (the camera, by a page there), ``clip://FILE`` (a clip as if somebody
+        performed it).
     index : Index
     actors : int
         Performers that are followed at once.

@@ -7,6 +7,7 @@ mod params;
 mod tests;
 
 use crate::classes::ClassId;
+use crate::math::portable;
 
 pub use decoder::{Decoder, ScoredCandidate};
 pub use params::{CandidatePolicy, DecodeParams, TYPICAL_SPREAD};
@@ -59,7 +60,7 @@ impl Candidate {
     /// See [`TickDetection::separation`].
     pub fn separation(&self) -> f32 {
         let nearest = self.distance.max(f32::MIN_POSITIVE);
-        (self.other.max(nearest) / nearest).ln().min(1.0)
+        portable::ln(self.other.max(nearest) / nearest).min(1.0)
     }
 }
 

@@ -1,6 +1,6 @@
 //! From joint positions to bone directions as the performer sees them.
 
-use crate::math::{Vec3, slerp_direction};
+use crate::math::{Vec3, portable, slerp_direction};
 use crate::roles::{ARMS, Role};
 
 use super::{
@@ -129,7 +129,7 @@ impl Observer {
         self.hips_seen |= self.heading == HeadingLine::Hips
             && pair(pose, Role::LeftThigh, Role::RightThigh).is_some();
         let yaw_rad = self.yaw(pose)?;
-        let (sin, cos) = yaw_rad.sin_cos();
+        let (sin, cos) = portable::sin_cos(yaw_rad);
         let root = self.root(pose)?;
         self.measure_length(pose);
         let unit_length = self.unit_length().unwrap_or(1.0);
@@ -181,10 +181,10 @@ impl Observer {
         };
         let lateral = left - right;
         // Hips seen straight from the side of the vertical have no heading.
-        if lateral.x.hypot(lateral.z) < 1e-9 {
+        if portable::hypot(lateral.x, lateral.z) < 1e-9 {
             return last;
         }
-        let yaw = (-lateral.z).atan2(lateral.x);
+        let yaw = portable::atan2(-lateral.z, lateral.x);
         Some(match last {
             Some(previous) => {
                 let turn = yaw - previous;

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use nalgebra::Vector4;
 
-use crate::math::Vec3;
+use crate::math::{Vec3, portable};
 
 use super::layout::RowLayout;
 use super::noise::{Filter, NOISE_GAINS, NoiseMeter, PROBE, WIDEST_FRAMES, filters};
@@ -33,7 +33,7 @@ impl FilterInput {
         Self {
             root,
             yaw_rad,
-            sin_cos: yaw_rad.sin_cos(),
+            sin_cos: portable::sin_cos(yaw_rad),
             unit_length,
         }
     }
@@ -99,7 +99,7 @@ impl Kernels {
 /// Weights of a sampled Gaussian from its centre outwards, `cut + 1` values, the whole normalised to 1.
 fn half_gaussian(sigma: f64, cut: usize) -> Vec<f64> {
     let raw: Vec<f64> = (0..=cut)
-        .map(|i| (-0.5 * (i as f64 / sigma).powi(2)).exp())
+        .map(|i| portable::exp(-0.5 * (i as f64 / sigma).powi(2)))
         .collect();
     let sum = raw[0] + 2.0 * raw[1..].iter().sum::<f64>();
     raw.iter().map(|w| w / sum).collect()

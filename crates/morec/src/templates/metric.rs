@@ -5,6 +5,7 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, SymmetricEigen};
 
 use crate::features::Rows;
+use crate::math::portable;
 
 use super::kernel;
 
@@ -86,11 +87,11 @@ impl Metric {
         // Packing to single precision can push the smallest eigenvalue below zero; it then counts as tiny.
         let floor = eigen.eigenvalues.amax() * 1e-9 + f64::MIN_POSITIVE;
         let scaled = DMatrix::from_fn(dim, dim, |i, j| {
-            eigen.eigenvectors[(i, j)] * eigen.eigenvalues[j].max(floor).powf(-0.5)
+            eigen.eigenvectors[(i, j)] * portable::powf(eigen.eigenvalues[j].max(floor), -0.5)
         });
-        let map = &scaled * eigen.eigenvectors.transpose();
+        let map = product(&scaled, &eigen.eigenvectors.transpose());
         let total = total.unpack();
-        let after = (&map * &total * map.transpose()).trace();
+        let after = product(&map, &total).dot(&map);
         let scale = if after > 0.0 {
             (total.trace() / after).sqrt()
         } else {
@@ -127,6 +128,15 @@ impl Metric {
         }
         out
     }
+}
+
+/// `a b`, column by column. `nalgebra`'s own product fuses multiplications with sums where the processor can, and its bits differ with it.
+fn product(a: &DMatrix<f64>, b: &DMatrix<f64>) -> DMatrix<f64> {
+    let mut out = DMatrix::zeros(a.nrows(), b.ncols());
+    for (mut column, of_b) in out.column_iter_mut().zip(b.column_iter()) {
+        column.gemv(1.0, a, &of_b, 0.0);
+    }
+    out
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use crate::classes::{ClassId, ClassInfo};
 use crate::decode::{CandidatePolicy, DecodeParams};
 use crate::features::{BoneSet, FeatureParams, RowLayout, Rows};
+use crate::math::portable;
 
 use super::{
     Activities, Calibration, Exemplars, HeldPoses, OperatingPoint, PackedSymmetric, PerformerKind,
@@ -264,7 +265,7 @@ impl TemplateModel {
         let total = self.total.restricted(&keep);
         let left = total.unpack().trace() / self.total.unpack().trace();
         // A normalised distance has lost that share of its scale already.
-        let share = left.powf(1.0 - f64::from(self.decode.spread_exponent));
+        let share = portable::powf(left, 1.0 - f64::from(self.decode.spread_exponent));
         let pick = |rows: &Rows| {
             let values = rows
                 .iter()

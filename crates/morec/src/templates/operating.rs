@@ -1,5 +1,7 @@
 //! The operating point of a trained model: how often it may raise a false alarm, and what a score means.
 
+use crate::math::portable;
+
 /// Threshold for a rate of false alarms.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct OperatingPoint {
@@ -25,8 +27,8 @@ pub fn threshold_at(points: &[OperatingPoint], alarms_per_minute: f64) -> Option
         return Some(last.threshold);
     };
     let a = points[after - 1];
-    let share = (alarms_per_minute / a.alarms_per_minute).ln()
-        / (b.alarms_per_minute / a.alarms_per_minute).ln();
+    let share = portable::ln(alarms_per_minute / a.alarms_per_minute)
+        / portable::ln(b.alarms_per_minute / a.alarms_per_minute);
     Some(a.threshold + (b.threshold - a.threshold) * share as f32)
 }
 
@@ -88,10 +90,10 @@ impl Calibration {
     /// at rest.
     pub fn probability(&self, margin: f64, separation: f32, rest_share: f32) -> f64 {
         let margin = margin.clamp(1e-3, 1.0 - 1e-3);
-        let logit = (margin / (1.0 - margin)).ln();
+        let logit = portable::ln(margin / (1.0 - margin));
         let clear = self.separation_weight * f64::from(separation);
         let at_rest = self.rest_weight * f64::from(rest_share);
-        1.0 / (1.0 + (-(self.slope * logit + clear - at_rest + self.offset)).exp())
+        1.0 / (1.0 + portable::exp(-(self.slope * logit + clear - at_rest + self.offset)))
     }
 }
 

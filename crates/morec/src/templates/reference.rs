@@ -2,6 +2,7 @@
 
 use crate::classes::ClassId;
 use crate::features::Rows;
+use crate::math::portable;
 
 use super::{Metric, PackedSymmetric};
 
@@ -83,5 +84,5 @@ impl ReferenceRows {
 
 /// [`TickDetection::separation`](crate::decode::TickDetection::separation) of what is at this share of the distance from anything else.
 pub(super) fn separation(share: f64) -> f32 {
-    -(share.max(1e-3).ln()).clamp(0.0, 1.0) as f32
+    -portable::ln(share.max(1e-3)).clamp(0.0, 1.0) as f32
 }

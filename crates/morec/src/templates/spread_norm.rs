@@ -1,6 +1,7 @@
 //! Divisors that make distances of small and of large motions comparable.
 
 use crate::decode::TYPICAL_SPREAD;
+use crate::math::portable;
 
 /// Smaller spreads, as shares of the typical one, count as this.
 const LEAST_SPREAD: f32 = 1e-3;
@@ -20,10 +21,7 @@ impl SpreadNorm {
         if self.exponent == 0.0 {
             scale
         } else {
-            scale
-                * (spread / self.typical)
-                    .max(LEAST_SPREAD)
-                    .powf(self.exponent)
+            scale * portable::power((spread / self.typical).max(LEAST_SPREAD), self.exponent)
         }
     }
 }

@@ -9,6 +9,7 @@ use std::sync::Arc;
 use crate::classes::ClassId;
 use crate::decode::Candidate;
 use crate::features::Rows;
+use crate::math::portable;
 
 use super::Metric;
 use super::OperatingPoint;
@@ -54,7 +55,8 @@ impl Evidence {
 
     /// Three logarithmic ratios, each bounded: to the threshold, to other classes, to negatives.
     pub fn ratios(&self, threshold: f64) -> [f64; 3] {
-        let bounded = |ratio: f64| ratio.max(1e-3).ln().clamp(NEAR_ENOUGH.ln(), 2.0);
+        let bounded =
+            |ratio: f64| portable::ln(ratio.max(1e-3)).clamp(portable::ln(NEAR_ENOUGH), 2.0);
         let (other, negative) = (
             self.other.clamp(1e-3, NOTHING_NEAR),
             self.negative.clamp(1e-3, NOTHING_NEAR),
@@ -293,7 +295,7 @@ fn kernel_sum(exemplars: &Exemplars, apart: &[f32], beside: &[f32; 4]) -> f64 {
     let all = apart.iter().zip(&exemplars.beside).zip(&exemplars.weights);
     all.map(|((apart, other), weight)| {
         let distance = apart / SHAPE_ROWS as f32 + squared_distance(other, beside);
-        f64::from(weight * (-exemplars.sharpness * distance).exp())
+        f64::from(weight * portable::exp(-exemplars.sharpness * distance))
     })
     .sum()
 }

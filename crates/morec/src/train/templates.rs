@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use crate::classes::ClassInfo;
 use crate::decode::TYPICAL_SPREAD;
 use crate::features::{BoneSet, Profile, Rows};
+use crate::math::portable;
 use crate::progress::Progress;
 use crate::templates::{
     ALARM_RATES, Calibration, Match, MatchGate, Metric, OperatingPoint, PackedSymmetric,
@@ -283,7 +284,7 @@ impl TrainingContext<'_> {
     /// background comes near.
     fn most_at(&self, rate: f64) -> f64 {
         let params = self.params;
-        params.max_threshold * (rate / params.alarms_per_minute).powf(CAP_EXPONENT)
+        params.max_threshold * portable::powf(rate / params.alarms_per_minute, CAP_EXPONENT)
     }
 
     /// Bound of all thresholds; 0 where none comes from a rate of false alarms.

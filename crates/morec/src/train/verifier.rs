@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use crate::classes::ClassId;
 use crate::features::Rows;
+use crate::math::portable;
 use crate::templates::{
     ALARM_RATES, Exemplars, LinearScore, Metric, OperatingPoint, SHAPE_ROWS, Verifier,
     shape_distance, shape_of, squared_distance,
@@ -250,7 +251,7 @@ impl ClassProblem<'_> {
             .collect();
         let distances = pairwise(&mapped, &beside);
         let sharpness = 1.0 / (2.0 * spread(&distances));
-        let matrix = distances.map(|d| (-sharpness * d).exp());
+        let matrix = distances.map(|d| portable::exp(-sharpness * d));
         let residuals: Vec<f64> = members.iter().map(|&i| self.residuals[i]).collect();
         let weights = balanced(&targets, MOST_WEIGHT);
         let fit = kernel(

@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use super::arctangent::atan2_all;
-use crate::math::Quat;
+use crate::math::{Quat, portable};
 
 /// Angles `[z, y, x]` in radians of some joints, frame after frame, with `Rz·Ry·Rx` the joint's rotation.
 ///
@@ -68,7 +68,7 @@ fn set_points(rotation: &Quat, ys: &mut [f64], xs: &mut [f64]) {
 fn locked(rotation: &Quat, pitch: f64, last: [f64; 3]) -> [f64; 3] {
     let [x, y, z, w] = [rotation.i, rotation.j, rotation.k, rotation.w];
     let middle = [2.0 * (x * y - w * z), 1.0 - 2.0 * (x * x + z * z)];
-    let difference = (-middle[0]).atan2(middle[1]);
+    let difference = portable::atan2(-middle[0], middle[1]);
     let roll = last[2];
     nearest([difference + pitch.signum() * roll, pitch, roll], last)
 }

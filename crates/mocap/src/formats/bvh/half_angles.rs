@@ -5,6 +5,8 @@
 
 use multiversion::multiversion;
 
+use crate::math::portable;
+
 /// Sines and cosines of half angles, one of each for every column of a row.
 #[derive(Debug, Default)]
 pub(super) struct HalfAngles {
@@ -25,7 +27,7 @@ impl HalfAngles {
         if angles_deg.iter().any(is_far) {
             let far = angles_deg.iter().enumerate().filter(|(_, a)| is_far(a));
             for (column, angle) in far {
-                let (sin, cos) = (angle.to_radians() * 0.5).sin_cos();
+                let (sin, cos) = portable::sin_cos(angle.to_radians() * 0.5);
                 self.sines[column] = sin;
                 self.cosines[column] = cos;
             }

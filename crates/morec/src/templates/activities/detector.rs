@@ -5,6 +5,7 @@ use std::sync::Arc;
 use crate::classes::ClassId;
 use crate::decode::TickDetection;
 use crate::features::{RowLayout, Rows};
+use crate::math::portable;
 
 use super::repetitions::RepetitionCounter;
 use super::windows::{STEP_TICKS, SlidingWindow, windows_of};
@@ -344,7 +345,7 @@ impl BestPath {
         for (state, total) in self.totals.iter_mut().enumerate() {
             let from = if *total >= changed { state } else { best };
             before[state] = from as u16;
-            *total = total.max(changed) - f64::from(distances[state]).ln();
+            *total = total.max(changed) - portable::ln(f64::from(distances[state]));
         }
         let most = self.totals.iter().copied().fold(f64::MIN, f64::max);
         self.totals.iter_mut().for_each(|total| *total -= most);

@@ -12,12 +12,14 @@ mod windows;
 
 use crate::classes::ClassId;
 use crate::features::RowLayout;
+use crate::math::portable;
 
 use super::ReferenceRows;
 
 pub(super) use detector::ActivityDetector;
+pub(crate) use windows::STEP_TICKS;
 #[cfg(feature = "train")]
-pub(crate) use windows::{STEP_TICKS, windows_of};
+pub(crate) use windows::windows_of;
 
 /// An activity of fewer windows than this is none.
 const LEAST_WINDOWS: usize = 8;
@@ -85,7 +87,7 @@ impl Activities {
 
     /// For a rate of false alarms a minute.
     pub(super) fn with_sensitivity(&self, alarms_per_minute: f64) -> Self {
-        let share = (alarms_per_minute / USUAL_RATE).powf(SHARE_EXPONENT) as f32;
+        let share = portable::powf(alarms_per_minute / USUAL_RATE, SHARE_EXPONENT) as f32;
         Self {
             share,
             ..self.clone()

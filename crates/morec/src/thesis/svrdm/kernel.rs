@@ -1,5 +1,7 @@
 //! The Gaussian kernel, in the thesis's convention for its width.
 
+use crate::math::portable;
+
 /// `‖a − b‖²`. O(n), no allocation.
 pub fn squared_distance(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum()
@@ -22,7 +24,7 @@ impl Gaussian {
 
     /// The kernel of two vectors this squared distance apart: 1 at 0, down to 0.
     pub fn of_squared(self, squared_distance: f64) -> f64 {
-        (self.exponent * squared_distance).exp()
+        portable::exp(self.exponent * squared_distance)
     }
 
     /// `K(a, b)`.

@@ -1,6 +1,7 @@
 //! Confidence that a segment is a class (thesis, §4.6.5, Eq. 4.5).
 
 use crate::classes::ClassId;
+use crate::math::portable;
 
 use super::edr::{Edr, least_ratio};
 use super::rows_edr::RowsEdr;
@@ -32,13 +33,13 @@ pub fn confidence(edr: f64, length_secs: f64, mean_secs: f64, spread: f64) -> f6
 
 /// The first factor of Eq. 4.5.
 fn sigmoid(edr: f64) -> f64 {
-    1.0 - 0.9 / (1.0 + (-30.0 * edr + 15.0).exp())
+    1.0 - 0.9 / (1.0 + portable::exp(-30.0 * edr + 15.0))
 }
 
 /// The second factor of Eq. 4.5.
 fn length_prior(length_secs: f64, mean_secs: f64, spread: f64) -> f64 {
     let deviation = (length_secs - mean_secs) / (spread * mean_secs);
-    (-0.5 * deviation * deviation).exp()
+    portable::exp(-0.5 * deviation * deviation)
 }
 
 /// One class's profiles, among those of all.

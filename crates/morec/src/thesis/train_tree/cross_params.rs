@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::math::portable;
+
 /// Parameters of the cross-validation of widths.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct CrossParams {
@@ -55,6 +57,6 @@ impl Multiples {
     pub(super) fn of(self, unit: f64) -> impl Iterator<Item = f64> {
         let last = self.count.saturating_sub(1).max(1) as f64;
         (0..self.count.max(1))
-            .map(move |i| unit * self.low * (self.high / self.low).powf(i as f64 / last))
+            .map(move |i| unit * self.low * portable::powf(self.high / self.low, i as f64 / last))
     }
 }

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::math::portable;
+
 use super::cross_params::CrossParams;
 use super::gram::{Distances, SAME};
 use super::svrm::{MachineParams, on_boundary, svrm};
@@ -108,7 +110,7 @@ impl Sweep {
             Sweep::Geometric { low, high, count } => {
                 let (from, ratio) = (low * least, high * most / (low * least));
                 (0..count)
-                    .map(|i| from * ratio.powf(even(i, count)))
+                    .map(|i| from * portable::powf(ratio, even(i, count)))
                     .collect()
             }
             Sweep::Linear { low, high, count } => (0..count)

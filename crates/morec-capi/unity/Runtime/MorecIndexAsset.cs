@@ -1,0 +1,14 @@
+#if UNITY_5_3_OR_NEWER
+using UnityEngine;
+
+namespace Morec
+{
+    /// <summary>An index file in the project.</summary>
+    public sealed class MorecIndexAsset : ScriptableObject
+    {
+        [HideInInspector] public byte[] bytes;
+        /// <summary>Names of the classes, to be read in the inspector.</summary>
+        public string[] classes;
+    }
+}
+#endif

@@ -1,0 +1,141 @@
+#if UNITY_5_3_OR_NEWER
+using System;
+using UnityEngine;
+using UnityEngine.Events;
+
+namespace Morec
+{
+    /// <summary>A motion of the performer; times in seconds of Time.timeAsDouble.</summary>
+    [Serializable]
+    public struct RecognisedMotion
+    {
+        public string name;
+        /// <summary>Its start, updates and end share it.</summary>
+        public ulong number;
+        /// <summary>Of an end: 0 just accepted, 1 identical to a sample.</summary>
+        public double score;
+        public double progress, startSecs, stopSecs;
+        /// <summary>Repetitions of an activity so far; 0 where nothing is counted.</summary>
+        public uint repetitions;
+    }
+
+    [Serializable]
+    public sealed class MotionUnityEvent : UnityEvent<RecognisedMotion> { }
+
+    /// <summary>Recognises the motions of a humanoid, or of the given transforms, in every frame.</summary>
+    [AddComponentMenu("morec/Morec Recognizer")]
+    public sealed class MorecRecognizer : MonoBehaviour
+    {
+        public MorecIndexAsset index;
+        [Tooltip("A humanoid whose bones are the joints; its own if none is given.")]
+        public Animator animator;
+        [Tooltip("Instead of a humanoid: a transform for each part of the body, in the order of MorecRole; empty where there is none.")]
+        public Transform[] joints = new Transform[0];
+        [Tooltip("False alarms a minute that background motion may raise; 0 as trained.")]
+        [Range(0, 1)] public float alarmsPerMinute;
+        [Min(0)] public float refractorySecs;
+        [Tooltip("Final: every motion ends once, and nothing is taken back.")]
+        public MotionUnityEvent onEnd = new MotionUnityEvent();
+        [Tooltip("Tentative: something seems to be under way.")]
+        public MotionUnityEvent onStart = new MotionUnityEvent();
+        public MotionUnityEvent onUpdate = new MotionUnityEvent();
+        public MotionUnityEvent onCancel = new MotionUnityEvent();
+
+        /// <summary>Bones of a humanoid in the order of MorecRole.</summary>
+        static readonly HumanBodyBones[] Bones =
+        {
+            HumanBodyBones.Hips,
+            HumanBodyBones.LeftUpperLeg, HumanBodyBones.LeftLowerLeg, HumanBodyBones.LeftFoot,
+            HumanBodyBones.RightUpperLeg, HumanBodyBones.RightLowerLeg, HumanBodyBones.RightFoot,
+            HumanBodyBones.Spine, HumanBodyBones.Neck, HumanBodyBones.Head,
+            HumanBodyBones.LeftShoulder, HumanBodyBones.LeftUpperArm, HumanBodyBones.LeftLowerArm, HumanBodyBones.LeftHand,
+            HumanBodyBones.RightShoulder, HumanBodyBones.RightUpperArm, HumanBodyBones.RightLowerArm, HumanBodyBones.RightHand,
+        };
+
+        readonly Transform[] parts = new Transform[MotionStream.Roles];
+        MotionIndex opened;
+        MotionStream stream;
+        Action<MorecEvent> said;
+
+        /// <summary>What is wrong with the stream, a sentence a line; empty if nothing is.</summary>
+        public string Diagnosis { get { return stream == null ? "" : stream.Diagnosis(); } }
+
+        void OnEnable()
+        {
+            if (index == null)
+            {
+                Debug.LogError("Morec Recognizer: no index is given.", this);
+                enabled = false;
+                return;
+            }
+            var options = new StreamOptions
+            {
+                leftHanded = true, early = true, alarmsPerMinute = alarmsPerMinute, refractorySecs = refractorySecs,
+            };
+            try
+            {
+                opened = new MotionIndex(index.bytes);
+                stream = new MotionStream(opened, options, FindParts());
+                said = Say;
+            }
+            catch (MorecException error)
+            {
+                Debug.LogError("Morec Recognizer: " + error.Message, this);
+                enabled = false;
+            }
+        }
+
+        void OnDisable()
+        {
+            if (stream != null) stream.Dispose();
+            if (opened != null) opened.Dispose();
+            stream = null;
+            opened = null;
+        }
+
+        /// <summary>Finds the transforms; bit `r` for each role `r` that has one.</summary>
+        uint FindParts()
+        {
+            var humanoid = animator != null ? animator : GetComponent<Animator>();
+            uint roles = 0;
+            for (var role = 0; role < parts.Length; role++)
+            {
+                var bone = joints.Length == 0 && humanoid != null ? humanoid.GetBoneTransform(Bones[role]) : null;
+                parts[role] = role < joints.Length ? joints[role] : bone;
+                if (parts[role] != null) roles |= 1u << role;
+            }
+            return roles;
+        }
+
+        /// <summary>After animation and tracking have moved the joints.</summary>
+        void LateUpdate()
+        {
+            if (stream == null) return;
+            for (var role = 0; role < parts.Length; role++)
+            {
+                var at = parts[role] != null ? parts[role].position : new Vector3(float.NaN, float.NaN, float.NaN);
+                stream.positions[3 * role] = at.x;
+                stream.positions[3 * role + 1] = at.y;
+                stream.positions[3 * role + 2] = at.z;
+            }
+            stream.Push(Time.timeAsDouble, said);
+        }
+
+        void Say(MorecEvent e)
+        {
+            var motion = new RecognisedMotion
+            {
+                name = opened.ClassName(e.class_id), number = e.motion, score = e.score, progress = e.progress,
+                startSecs = e.start_secs, stopSecs = e.stop_secs, repetitions = e.repetitions,
+            };
+            switch ((MorecPhase)e.phase)
+            {
+                case MorecPhase.Start: onStart.Invoke(motion); break;
+                case MorecPhase.Update: onUpdate.Invoke(motion); break;
+                case MorecPhase.Cancel: onCancel.Invoke(motion); break;
+                case MorecPhase.End: onEnd.Invoke(motion); break;
+            }
+        }
+    }
+}
+#endif

@@ -1,0 +1,101 @@
+using System;
+using System.Runtime.InteropServices;
+using System.Text;
+
+namespace Morec
+{
+    /// <summary>How a stream is recognised.</summary>
+    public struct StreamOptions
+    {
+        /// <summary>True for axes as Unity's; false for right-handed ones.</summary>
+        public bool leftHanded;
+        /// <summary>Starts, updates and cancellations beside the ends.</summary>
+        public bool early;
+        /// <summary>False alarms a minute that background motion may raise, 0.1 strict to 1 generous; 0 as trained.</summary>
+        public double alarmsPerMinute;
+        /// <summary>Least seconds between two ends of one class.</summary>
+        public double refractorySecs;
+    }
+
+    /// <summary>One performer's motions, recognised as they come. Y is up; any one unit of length will do.</summary>
+    public sealed class MotionStream : IDisposable
+    {
+        /// <summary>Parts of the body; they are numbered as MorecRole.</summary>
+        public const int Roles = Native.MOREC_ROLE_COUNT;
+
+        /// <summary>x, y, z of each role; NaN where it is not seen. Filled in before Push.</summary>
+        public readonly double[] positions = new double[3 * Roles];
+
+        IntPtr handle;
+        GCHandle pinned;
+        MorecFrame frame;
+        readonly MorecEvent[] events = new MorecEvent[32];
+
+        /// <summary>A stream of the roles whose bit is set in `roles`; 0 for all.</summary>
+        public MotionStream(MotionIndex index, StreamOptions options, uint roles)
+        {
+            var given = new MorecOptions
+            {
+                struct_size = Native.SizeOf<MorecOptions>(),
+                handedness = (int)(options.leftHanded ? MorecHandedness.Left : MorecHandedness.Right),
+                roles = roles,
+                flags = options.early ? (uint)Native.MOREC_EARLY_EVENTS : 0,
+                alarms_per_minute = options.alarmsPerMinute,
+                refractory_secs = options.refractorySecs,
+            };
+            MorecException.Check(Native.morec_recognizer_create(index.Handle, ref given, out handle));
+            pinned = GCHandle.Alloc(positions, GCHandleType.Pinned);
+            frame = new MorecFrame
+            {
+                struct_size = Native.SizeOf<MorecFrame>(),
+                joint_count = (UIntPtr)Roles,
+                positions = pinned.AddrOfPinnedObject(),
+                space = (int)MorecSpace.World,
+            };
+        }
+
+        /// <summary>Takes the pose in `positions`; each event that it settles is given to `said`. Allocates nothing.</summary>
+        public void Push(double timeSecs, Action<MorecEvent> said)
+        {
+            frame.time_secs = timeSecs;
+            MorecException.Check(Native.morec_recognizer_push(handle, ref frame));
+            Poll(said);
+        }
+
+        /// <summary>Ends the stream: what its last moments hold. The next pose begins a new one.</summary>
+        public void Finish(Action<MorecEvent> said)
+        {
+            MorecException.Check(Native.morec_recognizer_finish(handle));
+            Poll(said);
+        }
+
+        void Poll(Action<MorecEvent> said)
+        {
+            UIntPtr count;
+            do
+            {
+                var capacity = (UIntPtr)events.Length;
+                MorecException.Check(Native.morec_recognizer_poll(handle, events, Native.SizeOf<MorecEvent>(), capacity, out count));
+                for (var i = 0; i < (int)count; i++) said(events[i]);
+            } while ((int)count == events.Length);
+        }
+
+        /// <summary>What is wrong with the stream, a sentence a line with what to do; empty if nothing is.</summary>
+        public string Diagnosis()
+        {
+            UIntPtr needed;
+            Native.morec_recognizer_diagnosis_text(handle, null, UIntPtr.Zero, out needed);
+            var bytes = new byte[(int)needed + 1024];
+            MorecException.Check(Native.morec_recognizer_diagnosis_text(handle, bytes, (UIntPtr)bytes.Length, out needed));
+            return Encoding.UTF8.GetString(bytes, 0, (int)needed - 1);
+        }
+
+        public void Dispose()
+        {
+            if (handle == IntPtr.Zero) return;
+            Native.morec_recognizer_destroy(handle);
+            handle = IntPtr.Zero;
+            pinned.Free();
+        }
+    }
+}

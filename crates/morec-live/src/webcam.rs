@@ -1,0 +1,177 @@
+//! The camera of this machine: a page in the browser finds poses in its picture and sends them as lines of JSON over a WebSocket.
+//!
+//! The page is served here, and so are MediaPipe's files, from a folder that the user names. Nobody but this machine is answered.
+
+use std::io::{Read, Write};
+use std::net::{SocketAddr, TcpStream};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::mpsc::SyncSender;
+use std::thread;
+use std::time::{Duration, Instant};
+
+use tungstenite::Message;
+
+use crate::json::JsonSource;
+use crate::lines::{Came, LONGEST, Lines, SILENCE};
+use crate::websocket::greet::{Manners, PATIENCE, greet};
+use crate::{Address, LiveError, Notices};
+
+/// The page's own files: path, type, content.
+const PAGE: [(&str, &str, &str); 3] = [
+    ("/", "text/html", include_str!("webcam/index.html")),
+    (
+        "/page.js",
+        "text/javascript",
+        include_str!("webcam/page.js"),
+    ),
+    (
+        "/camera.js",
+        "text/javascript",
+        include_str!("webcam/camera.js"),
+    ),
+];
+/// Where the page finds MediaPipe's files.
+const MEDIAPIPE: &str = "/mediapipe/";
+/// The file by which a folder is known to have them.
+const KNOWN_BY: &str = "pose.js";
+/// A longer request is none of a browser's.
+const LARGEST_HEAD: usize = 1 << 13;
+
+/// Opens `webcam` (a free port of this machine) or `webcam://HOST:PORT`. Returns where the page is, too.
+///
+/// # Errors
+/// No folder with MediaPipe's files, another machine's address, a port that is taken.
+pub fn webcam(
+    address: &Address,
+    mediapipe: Option<&Path>,
+) -> Result<(JsonSource, SocketAddr), LiveError> {
+    address.allow(&["mediapipe"])?;
+    let at = address.socket()?;
+    if !at.ip().is_loopback() {
+        return Err(LiveError::Address(format!(
+            "{address}: browsers give the camera to pages of this machine only, as webcam://127.0.0.1:8000"
+        )));
+    }
+    let named = address.text("mediapipe").map(Path::new);
+    let folder = with_mediapipe(named.or(mediapipe))?;
+    let notices = Notices::default();
+    let attend = move |number, stream, sender: &SyncSender<Came>| {
+        // Whoever goes away in the middle is none of our business.
+        let _ = answer(number, stream, sender, &folder);
+    };
+    let (lines, at) = Lines::serve(at, &notices, Arc::new(attend))?;
+    Ok((JsonSource::of_connections(lines, notices), at))
+}
+
+fn with_mediapipe(folder: Option<&Path>) -> Result<PathBuf, LiveError> {
+    const HOW: &str = "the page needs MediaPipe's files, which do not come with morec: `npm pack @mediapipe/pose` gets them as \
+        mediapipe-pose-….tgz, `tar xzf` unpacks that into the folder `package`, and `--mediapipe package`, or webcam?mediapipe=package, names it";
+    match folder {
+        Some(folder) if folder.join(KNOWN_BY).is_file() => Ok(folder.to_owned()),
+        Some(folder) => Err(LiveError::Address(format!(
+            "{} has no {KNOWN_BY}: {HOW}",
+            folder.display()
+        ))),
+        None => Err(LiveError::Address(format!("webcam: {HOW}"))),
+    }
+}
+
+/// Serves one connection: a file, or lines over a WebSocket until it ends.
+fn answer(
+    number: u64,
+    mut stream: TcpStream,
+    sender: &SyncSender<Came>,
+    folder: &Path,
+) -> std::io::Result<()> {
+    let Some(head) = head_of(&stream)? else {
+        return Ok(());
+    };
+    if head.to_ascii_lowercase().contains("\nupgrade: websocket") {
+        take_lines(number, stream, sender);
+        return Ok(());
+    }
+    // What is left unread would reset the connection and what was written on it.
+    stream.read_exact(&mut vec![0; head.len()])?;
+    let asked = head.strip_prefix("GET ").unwrap_or_default();
+    let path = asked.split([' ', '?']).next().unwrap_or_default();
+    let (status, kind, content) = match file_at(path, folder) {
+        Some((kind, content)) => ("200 OK", kind, content),
+        None => ("404 Not Found", "text/plain", b"no such file".to_vec()),
+    };
+    let length = content.len();
+    write!(
+        stream,
+        "HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {length}\r\nConnection: close\r\n\r\n"
+    )?;
+    stream.write_all(&content)
+}
+
+/// The head of a request, which stays unread: a WebSocket's handshake begins with it. `None` if it does not come whole in time.
+fn head_of(stream: &TcpStream) -> std::io::Result<Option<String>> {
+    let until = Instant::now() + PATIENCE;
+    stream.set_read_timeout(Some(PATIENCE))?;
+    stream.set_write_timeout(Some(PATIENCE))?;
+    let mut bytes = vec![0; LARGEST_HEAD];
+    loop {
+        let count = stream.peek(&mut bytes)?;
+        let head = String::from_utf8_lossy(&bytes[..count]);
+        if let Some(end) = head.find("\r\n\r\n") {
+            return Ok(head.is_ascii().then(|| head[..end + 4].to_owned()));
+        }
+        if count == 0 || count == LARGEST_HEAD || Instant::now() > until {
+            return Ok(None);
+        }
+        // The rest is on its way.
+        thread::sleep(Duration::from_millis(5));
+    }
+}
+
+/// Type and content of a file of the page or of MediaPipe.
+fn file_at(path: &str, folder: &Path) -> Option<(&'static str, Vec<u8>)> {
+    if let Some((_, kind, content)) = PAGE.iter().find(|(known, ..)| *known == path) {
+        return Some((kind, content.as_bytes().to_vec()));
+    }
+    let name = path.strip_prefix(MEDIAPIPE)?;
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "._-".contains(c);
+    if name.starts_with('.') || !name.chars().all(is_plain) {
+        return None;
+    }
+    let kind = match name.rsplit('.').next() {
+        Some("js") => "text/javascript",
+        Some("wasm") => "application/wasm",
+        _ => "application/octet-stream",
+    };
+    Some((kind, std::fs::read(folder.join(name)).ok()?))
+}
+
+/// Lines from a page of this machine, each a text message.
+fn take_lines(number: u64, stream: TcpStream, sender: &SyncSender<Came>) {
+    let manners = Manners {
+        largest: LONGEST as usize,
+        wait: SILENCE,
+    };
+    let Some(mut socket) = greet(stream, None, manners) else {
+        return;
+    };
+    let mut lines = 0;
+    while let Ok(message) = socket.read() {
+        let Message::Text(text) = message else {
+            continue;
+        };
+        lines += 1;
+        let came = Came::Line {
+            connection: number,
+            number: lines,
+            text: Some(text.as_str().to_owned()),
+        };
+        if sender.send(came).is_err() {
+            return;
+        }
+    }
+    // If nobody takes it, nobody needs to know.
+    let _ = sender.send(Came::Closed(number));
+}
+
+#[cfg(test)]
+mod tests;

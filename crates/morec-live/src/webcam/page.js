@@ -1,0 +1,32 @@
+// The page of `--listen webcam`: poses go to morec as lines of JSON.
+import { camera, drawLandmarks } from "./camera.js";
+
+const at = (id) => document.getElementById(id);
+const say = (text) => (at("state").textContent = text);
+const drawing = at("drawing").getContext("2d");
+let socket = null;
+let tried = -Infinity;
+
+/** The connection to morec; if it ended, tried anew once a second. */
+function connection() {
+  if (!(socket?.readyState <= WebSocket.OPEN) && performance.now() - tried > 1000) {
+    tried = performance.now();
+    socket = new WebSocket(`ws://${location.host}/poses`);
+    socket.onclose = () => say("morec has ended, or does not answer.");
+    socket.onopen = () => say("morec listens.");
+  }
+  return socket;
+}
+
+function take(secs, positions, landmarks) {
+  const { canvas } = drawing;
+  [canvas.width, canvas.height] = [canvas.clientWidth, canvas.clientHeight];
+  drawing.strokeStyle = getComputedStyle(canvas).getPropertyValue("--accent");
+  drawing.lineWidth = 4;
+  drawLandmarks(drawing, at("video"), landmarks);
+  const { readyState } = connection();
+  if (readyState === WebSocket.OPEN && Object.keys(positions).length > 0) socket.send(JSON.stringify({ t: secs, positions }));
+}
+
+connection();
+camera(at("video"), "mediapipe")(take, new AbortController().signal).catch((error) => say(String(error?.message ?? error)));
