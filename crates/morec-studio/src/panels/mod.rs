@@ -16,6 +16,7 @@ mod groups;
 mod help;
 mod history;
 mod import_report;
+mod kinds;
 mod label;
 mod label_files;
 mod leave;
