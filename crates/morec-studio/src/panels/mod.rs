@@ -11,6 +11,7 @@ mod compare;
 mod curves;
 mod cuts;
 mod details;
+mod deviation;
 mod drop;
 mod groups;
 mod help;
