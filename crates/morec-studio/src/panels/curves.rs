@@ -9,7 +9,7 @@ use super::{Out, widgets};
 use crate::state::{Command, PlayCommand, State};
 use crate::theme::Colours;
 
-/// The track of the angle reaches up to at least so many degrees: what is hardly off shall look so.
+/// The track of the angle reaches up to at least this many degrees: what is hardly off shall look like it.
 const LEAST_DEGREES: f64 = 20.0;
 /// Name of the track of the misfit.
 const MISFIT: &str = "Misfit (thesis)";

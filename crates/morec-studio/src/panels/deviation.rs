@@ -9,7 +9,7 @@ use crate::theme::Colours;
 
 /// Bones that are listed.
 const MOST: usize = 8;
-/// The longest bar is at least so many degrees: what is hardly off shall look so.
+/// The longest bar is at least this many degrees: what is hardly off shall look like it.
 const LEAST_DEGREES: f64 = 30.0;
 const ROW: f32 = 19.0;
 

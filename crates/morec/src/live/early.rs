@@ -107,7 +107,7 @@ impl EarlyTracker {
         }
     }
 
-    /// Tells the repetitions up to the `count`th, which was over at `stop_secs`, that were not told yet. More than one were found at once,
+    /// Tells the repetitions up to the `count`th, which was over at `stop_secs`, that were not reported yet. More than one were found at once,
     /// and lasted a period each.
     fn tell_repetitions(
         &mut self,
@@ -137,7 +137,7 @@ impl EarlyTracker {
         self.repeated = Some(told);
     }
 
-    /// What was told of the repetitions of this activity.
+    /// What was reported of the repetitions of this activity.
     fn repeated_in(&self, of: &EarlyDetection) -> RepeatedActivity {
         let is_same = |told: &RepeatedActivity| {
             told.class == of.class && (told.start_secs - of.start_secs).abs() < SAME_START_SECS
@@ -235,7 +235,7 @@ mod tests {
         }
     }
 
-    /// A jog from 10 s on, at so many seconds.
+    /// A jog from 10 s on, as seen at a time in seconds.
     fn jogs(seen_secs: f64) -> EarlyDetection {
         let turns = (seen_secs - 10.0) / 2.0;
         // The period shows after three seconds, and what is certain is two seconds old.

@@ -57,7 +57,7 @@ fn report(
     .html()
 }
 
-/// Of two seconds from 1.5 s on, so many degrees off on average.
+/// Of two seconds from 1.5 s on, and this far off on average.
 fn performance(off_degrees: f64) -> Performance {
     let bone = |bone, off_degrees| BoneDeviation {
         bone,

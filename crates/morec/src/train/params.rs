@@ -91,7 +91,7 @@ pub struct TrainParams {
     pub kinds: BTreeMap<String, ClassKind>,
 }
 
-/// A class whose longest sample lasts so many seconds goes on. Gestures with a pause or with repetitions, which templates recognise better,
+/// A class whose longest sample lasts this many seconds goes on. Gestures with a pause or with repetitions, which templates recognise better,
 /// last up to five.
 const LONG_SECS: f64 = 6.0;
 
