@@ -307,7 +307,7 @@ mod tests {
             let numbers = repetitions.iter().map(|e| e.repetitions.unwrap().count);
             assert_eq!(numbers.collect::<Vec<_>>(), [1, 2, 3, 4, 5]);
             assert!(repetitions.iter().all(|e| e.motion == jog.motion));
-            assert_eq!(events.len(), if early { 19 } else { 7 });
+            assert_eq!(events.len(), if early { 18 } else { 7 });
         }
     }
 
