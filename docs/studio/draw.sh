@@ -12,6 +12,7 @@ draw() { file=$1; panel=$2; at=$3; shift 3; "$STUDIO" --screenshot "docs/studio/
 draw library library 24.2
 draw label label 24.2
 draw label_light label 24.2 --light
+draw well label 24.2 --like wave
 draw classes classes 24.2
 draw like classes 24.2 --like wave
 draw train train 24.2

@@ -147,6 +147,7 @@ fn run_test(model: &Model, trial: &Trial<'_>, test: &TrialTest<'_>) -> Result<Te
         stop_secs: d.stop_secs,
         score: Some(d.score),
         reported_secs: Some(d.reported_secs),
+        repetitions: d.repetitions.map(|r| r.count),
     };
     Ok(Tested {
         streams: vec![StreamInfo {

@@ -34,6 +34,11 @@
 #define MOREC_PERFORMER_TEACHER 4
 
 /**
+ * Each repetition of an activity is an event of its own.
+ */
+#define MOREC_REPETITION_EVENTS 8
+
+/**
  * Number of parts of the body; they are numbered from 0.
  */
 #define MOREC_ROLE_COUNT 18
@@ -260,6 +265,11 @@ enum MorecPhase
      * It has happened. Final: nothing that ended is taken back, and every motion ends once.
      */
     MOREC_PHASE_END = 3,
+    /**
+     * One more repetition of an activity is over, from the event's start to its stop; `repetitions` is its number. Only with
+     * `MOREC_REPETITION_EVENTS`. (Not in the first version.)
+     */
+    MOREC_PHASE_REPETITION = 4,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -513,7 +523,7 @@ typedef struct MorecOptions {
      */
     uint32_t roles;
     /**
-     * `MOREC_EARLY_EVENTS`, and one of `MOREC_PERFORMER_ANYONE` and `MOREC_PERFORMER_TEACHER`; or 0.
+     * `MOREC_EARLY_EVENTS`, `MOREC_REPETITION_EVENTS`, and one of `MOREC_PERFORMER_ANYONE` and `MOREC_PERFORMER_TEACHER`; or 0.
      */
     uint32_t flags;
     /**

@@ -14,6 +14,9 @@ pub enum MorecPhase {
     Cancel = 2,
     /// It has happened. Final: nothing that ended is taken back, and every motion ends once.
     End = 3,
+    /// One more repetition of an activity is over, from the event's start to its stop; `repetitions` is its number. Only with
+    /// `MOREC_REPETITION_EVENTS`. (Not in the first version.)
+    Repetition = 4,
 }
 
 /// Something said of a motion. Times are seconds on the clock of the frames, if not said otherwise.
@@ -58,6 +61,7 @@ impl From<&Event> for MorecEvent {
             Phase::Update => MorecPhase::Update,
             Phase::Cancel => MorecPhase::Cancel,
             Phase::End => MorecPhase::End,
+            Phase::Repetition => MorecPhase::Repetition,
         };
         Self {
             phase: phase as i32,

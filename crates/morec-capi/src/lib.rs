@@ -48,10 +48,10 @@ pub use index::{
     morec_index_from_memory, morec_index_load,
 };
 pub use recognizer::{
-    MOREC_EARLY_EVENTS, MOREC_PERFORMER_ANYONE, MOREC_PERFORMER_TEACHER, MorecOptions, MorecStats,
-    morec_recognizer_create, morec_recognizer_destroy, morec_recognizer_finish,
-    morec_recognizer_joint_of_role, morec_recognizer_poll, morec_recognizer_push,
-    morec_recognizer_reset, morec_recognizer_stats,
+    MOREC_EARLY_EVENTS, MOREC_PERFORMER_ANYONE, MOREC_PERFORMER_TEACHER, MOREC_REPETITION_EVENTS,
+    MorecOptions, MorecStats, morec_recognizer_create, morec_recognizer_destroy,
+    morec_recognizer_finish, morec_recognizer_joint_of_role, morec_recognizer_poll,
+    morec_recognizer_push, morec_recognizer_reset, morec_recognizer_stats,
 };
 pub use skeleton::MorecSkeleton;
 pub use status::{MorecStatus, morec_last_error, morec_status_text};

@@ -27,6 +27,9 @@ pub const MOREC_PERFORMER_ANYONE: u32 = 2;
 /// The person who taught performs: recognition stays as strict as it begins.
 pub const MOREC_PERFORMER_TEACHER: u32 = 4;
 
+/// Each repetition of an activity is an event of its own.
+pub const MOREC_REPETITION_EVENTS: u32 = 8;
+
 /// Options of a recogniser.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
@@ -41,7 +44,7 @@ pub struct MorecOptions {
     pub skeleton: *const MorecSkeleton,
     /// For a stream of roles: bit `r` for each `MorecRole` `r` that it shows; 0 for all.
     pub roles: u32,
-    /// `MOREC_EARLY_EVENTS`, and one of `MOREC_PERFORMER_ANYONE` and `MOREC_PERFORMER_TEACHER`; or 0.
+    /// `MOREC_EARLY_EVENTS`, `MOREC_REPETITION_EVENTS`, and one of `MOREC_PERFORMER_ANYONE` and `MOREC_PERFORMER_TEACHER`; or 0.
     pub flags: u32,
     /// Events that can wait to be polled, 128 to 1048576; 0 for 256. Memory is taken for as many.
     pub event_capacity: usize,
@@ -162,7 +165,10 @@ fn with_performer(index: Arc<MotionIndex>, flags: u32) -> Result<Arc<MotionIndex
 }
 
 fn stream_options(c: &MorecOptions) -> Result<StreamOptions, CallError> {
-    let known = MOREC_EARLY_EVENTS | MOREC_PERFORMER_ANYONE | MOREC_PERFORMER_TEACHER;
+    let known = MOREC_EARLY_EVENTS
+        | MOREC_REPETITION_EVENTS
+        | MOREC_PERFORMER_ANYONE
+        | MOREC_PERFORMER_TEACHER;
     if c.flags & !known != 0 {
         return Err(CallError::invalid(format!(
             "flags is {:#x}, which this release does not know",
@@ -179,6 +185,7 @@ fn stream_options(c: &MorecOptions) -> Result<StreamOptions, CallError> {
         convention: Convention::new(c.handedness, c.up_axis)?,
         events: EventOptions {
             early: c.flags & MOREC_EARLY_EVENTS != 0,
+            each_repetition: c.flags & MOREC_REPETITION_EVENTS != 0,
             refractory_secs: c.refractory_secs,
         },
         event_capacity: c.event_capacity,

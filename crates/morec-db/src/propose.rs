@@ -25,6 +25,7 @@ mod confidence;
 mod material;
 mod options;
 mod questions;
+mod stretches;
 mod views;
 
 pub use options::ProposeOptions;
@@ -33,6 +34,7 @@ pub use questions::most_informative;
 use candidates::{ClassDistances, ProposalCandidate};
 use confidence::{Confidence, Judgement, NEAR_NOTHING};
 use material::{JudgedSpan, ProposalData, overlap};
+use stretches::joined;
 use views::{chosen, views};
 
 /// A stretch that may show a class.
@@ -205,7 +207,12 @@ fn in_clip(
                 candidate.ticks = everything.clone();
             }
             let answered = |j: &&JudgedSpan| match j.accepted {
-                true => j.whole || whole || overlap_share(&j.ticks, &candidate.ticks) > 0.5,
+                true => j.whole || whole || overlap_share(&j.label, &candidate.ticks) > 0.5,
+                // A piece of an activity lies within what was rejected.
+                false if material.activity[class] => {
+                    j.class == Some(class)
+                        && (j.whole || overlap_share(&j.label, &candidate.ticks) > 0.5)
+                }
                 false => {
                     j.class == Some(class) && (j.whole || overlap(&j.ticks, &candidate.ticks) > 0.5)
                 }
@@ -237,7 +244,8 @@ fn in_clip(
         whole_clip: material.whole[c.class],
         score: score as f32,
     };
-    kept.into_iter()
+    joined(kept, |class| material.activity[class])
+        .into_iter()
         .map(proposal)
         .filter(|p| p.stop_secs > p.start_secs)
         .collect()

@@ -201,6 +201,7 @@ impl PyCrossval {
             timelines: &timelines,
             training: &self.training,
             misses: &self.tested.misses,
+            performances: &[],
             sensitivities: &self.sensitivities,
             perturbed: &self.perturbed,
             motion: None,
@@ -239,6 +240,7 @@ pub fn evaluate<'py>(
             stop_secs,
             score,
             reported_secs,
+            repetitions: None,
         };
     let streams: Vec<_> = streams.into_iter().map(stream).collect();
     let truth: Vec<_> = truth.into_iter().map(label).collect();

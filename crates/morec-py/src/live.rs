@@ -49,6 +49,7 @@ impl LiveSession {
         actors: usize,
         mirror: bool,
         tentative: bool,
+        each_repetition: bool,
     ) -> PyResult<Self> {
         if !(1..=MAX_PERFORMERS).contains(&actors) {
             return Err(value_error(format!(
@@ -69,6 +70,7 @@ impl LiveSession {
             overload: opened.overload,
             events: EventOptions {
                 early: tentative,
+                each_repetition,
                 ..EventOptions::default()
             },
             ..SessionOptions::default()

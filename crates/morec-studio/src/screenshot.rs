@@ -14,6 +14,7 @@ use crate::state::{
     SimilarCommand, State, TimelineCommand, TrainCommand,
 };
 use crate::store::Store;
+use crate::stretch::Stretch;
 use crate::theme::Colours;
 
 /// A picture of a panel.
@@ -199,7 +200,7 @@ pub fn draw(paths: &[PathBuf], shot: &Shot) -> Result<ColorImage, String> {
     }
     prepare(&mut window, shot, is_kept);
     if let Some(class) = &shot.like {
-        search(&mut window, class)?;
+        search(&mut window, shot.panel, class)?;
     }
     Ok(window.picture())
 }
@@ -278,8 +279,9 @@ fn tree(window: &mut Headless) {
     }
 }
 
-/// Searches for what is like the first label of a class, and puts the nearest beside it, in the middle of both.
-fn search(window: &mut Headless, class: &str) -> Result<(), String> {
+/// Searches for what is like the first label of a class, and puts the nearest beside it, in the middle of both; in the panel Label the
+/// nearest of its class.
+fn search(window: &mut Headless, panel: Panel, class: &str) -> Result<(), String> {
     let state = &window.studio.state;
     let labels = state.shown_samples().iter();
     let Some(label) = labels.clone().find(|s| s.class == class).cloned() else {
@@ -289,9 +291,19 @@ fn search(window: &mut Headless, class: &str) -> Result<(), String> {
         id: Some(label.id),
         add: false,
     }));
-    window.command(Command::Similar(SimilarCommand::OfSelection));
-    window.settle();
-    window.command(Command::Compare(CompareCommand::Nearest));
+    if panel == Panel::Label {
+        let of = Stretch {
+            clip: label.clip,
+            start_secs: label.start_secs,
+            stop_secs: label.stop_secs,
+        };
+        let class = class.to_owned();
+        window.command(Command::Compare(CompareCommand::NearestOf { of, class }));
+    } else {
+        window.command(Command::Similar(SimilarCommand::OfSelection));
+        window.settle();
+        window.command(Command::Compare(CompareCommand::Nearest));
+    }
     window.settle();
     window.stop_at(0.5 * (label.start_secs + label.stop_secs));
     window.settle();

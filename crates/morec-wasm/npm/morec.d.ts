@@ -34,6 +34,8 @@ export interface RecognizerOptions {
   up?: "x" | "y" | "z" | "-x" | "-y" | "-z";
   /** Report what seems to be under way, too. True unless given. */
   early?: boolean;
+  /** Make each repetition of an activity an event of its own, of the phase `repetition`; not unless asked for. */
+  each_repetition?: boolean;
   /** A motion of the same class that ends less than this after the one before it is not reported, seconds. */
   refractory_secs?: number;
 }
@@ -54,7 +56,7 @@ export interface Detection {
 
 export interface MotionEvent extends Detection {
   /** `end` is final; the others say what seems to be under way. */
-  phase: "start" | "update" | "cancel" | "end";
+  phase: "start" | "update" | "repetition" | "cancel" | "end";
   /** A motion's start, updates and end share its number. */
   motion: number;
   /** Share of the motion that has been seen. */

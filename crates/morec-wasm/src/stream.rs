@@ -22,6 +22,8 @@ pub struct PointOptions {
     pub up: String,
     /// Report what seems to be under way, too.
     pub early: bool,
+    /// Make each repetition of an activity an event of its own, of the phase `repetition`.
+    pub each_repetition: bool,
     /// A motion of the same class that ends less than this after the one before it is not reported, seconds.
     pub refractory_secs: f64,
 }
@@ -31,6 +33,7 @@ impl Default for PointOptions {
         Self {
             up: "y".to_owned(),
             early: true,
+            each_repetition: false,
             refractory_secs: 0.0,
         }
     }
@@ -93,6 +96,7 @@ impl PointStream {
             .map_err(|error| error.to_string())?;
         let events = EventOptions {
             early: options.early,
+            each_repetition: options.each_repetition,
             refractory_secs: options.refractory_secs,
         };
         let mut performer = Performer::new(&index.model, PerformerId(0), &events);

@@ -39,6 +39,7 @@ pub fn run(
         overload: OverflowPolicy::Wait,
         events: EventOptions {
             early: true,
+            each_repetition: false,
             refractory_secs: 0.0,
         },
         ..layout.options()

@@ -104,6 +104,7 @@ fn play(
         OverflowPolicy::Wait
     };
     let events = EventOptions {
+        each_repetition: false,
         early: false,
         refractory_secs: 0.0,
     };

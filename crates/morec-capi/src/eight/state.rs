@@ -164,6 +164,7 @@ impl ThesisState {
         let options = SessionOptions {
             events: EventOptions {
                 early: false,
+                each_repetition: false,
                 ..Default::default()
             },
             overload: OverflowPolicy::Wait,

@@ -146,6 +146,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
             timelines: &timelines,
             training: &TrainedClass::count(&material.data.samples, &material.data.classes),
             misses: &tested.misses,
+            performances: &[],
             sensitivities: &sensitivities,
             perturbed: &perturbed,
             motion: reel.as_ref(),

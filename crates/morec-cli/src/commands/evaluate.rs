@@ -7,8 +7,11 @@ use std::process::ExitCode;
 
 use anyhow::{Context, bail};
 use morec::classes::ClassId;
-use morec::eval::{ClipDetection, Evaluation, GroundTruth, StreamInfo, event_pairs, timelines};
-use morec::explain::{Miss, Sought, explain};
+use morec::eval::{
+    ClipDetection, DetectionVerdict, Evaluation, GroundTruth, StreamInfo, Timeline, event_pairs,
+    timelines,
+};
+use morec::explain::{Miss, Performance, Sought, deviation, explain};
 use morec::formats::Warning;
 use morec::import::ImportOptions;
 use morec::labels::{ClipLength, Resolved, read_detections};
@@ -60,7 +63,8 @@ pub struct Args {
     /// of others only as unknown [default: every class of the labels]
     #[arg(long, value_delimiter = ',', value_name = "CLASSES")]
     classes: Vec<String>,
-    /// The index that recognised: says of each missed sample what kept it from being reported
+    /// The index that recognised: says of each missed sample what kept it from being reported, and in the report how well the others were
+    /// performed
     #[arg(long, value_name = "INDEX")]
     index: Option<PathBuf>,
     /// Print one JSON object instead of tables
@@ -105,13 +109,13 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         .collect();
 
     let evaluation = Evaluation::of(&cases.streams, &cases.truths, &founds)?;
-    let misses = match &args.index {
-        Some(index) => args.misses(index, &cases, &founds)?,
-        None => Vec::new(),
+    let timelines = timelines(&cases.streams, &cases.truths, &founds)?;
+    let (misses, performances) = match &args.index {
+        Some(index) => args.explained(index, &cases, &founds, &timelines)?,
+        None => Default::default(),
     };
     // Before anything is printed: whoever stops reading still gets the report.
     if let Some(path) = &args.report {
-        let timelines = timelines(&cases.streams, &cases.truths, &founds)?;
         let named = |path: &Path| path.display().to_string();
         let about = [
             ("labels".to_owned(), named(&args.labels)),
@@ -129,6 +133,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
             timelines: &timelines,
             training: &[],
             misses: &misses,
+            performances: &performances,
             sensitivities: &[],
             perturbed: &[],
             motion: reel.as_ref(),
@@ -149,13 +154,14 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 }
 
 impl Args {
-    /// Reasons why samples were missed. The clips are read once more, with their motion.
-    fn misses(
+    /// Reasons why samples were missed; for a report, how well the others were performed. The clips are read once more, with their motion.
+    fn explained(
         &self,
         index: &Path,
         cases: &Cases,
         founds: &[ClipDetection],
-    ) -> anyhow::Result<Vec<Miss>> {
+        timelines: &[Timeline],
+    ) -> anyhow::Result<(Vec<Miss>, Vec<Performance>)> {
         let model = open_index(index)?.model;
         // What is left out was said when they were recognised.
         let paths = files::expand_all(&self.clips)?.clips;
@@ -182,8 +188,40 @@ impl Args {
             let played = (&clip.clip, &clip.roles, &clip.rest);
             explain(&model, played, &sought, &detected)
         };
-        Ok(clips.par_iter().flat_map_iter(misses_in).collect())
+        let misses = clips.par_iter().flat_map_iter(misses_in).collect();
+        let drawn = if self.report.is_some() {
+            timelines
+        } else {
+            &[]
+        };
+        let performed = drawn.par_iter().flat_map_iter(|timeline| {
+            let clip = clips.iter().find(|c| c.clip.name == timeline.stream.clip);
+            clip.map_or_else(Vec::new, |loaded| performances(&model, loaded, timeline))
+        });
+        Ok((misses, performed.collect()))
     }
+}
+
+/// How well the motions of a clip were performed that were recognised rightly.
+fn performances(model: &Model, loaded: &LoadedClip, timeline: &Timeline) -> Vec<Performance> {
+    let right = timeline.founds.iter();
+    let right = right.filter(|(_, verdict)| *verdict == DetectionVerdict::Right);
+    let (named, detected): (Vec<&ClipDetection>, Vec<Detection>) = right
+        .filter_map(|(found, _)| Some((found, detection(model, found)?)))
+        .unzip();
+    let clip = &loaded.clip;
+    let deviations = deviation(model, (&clip.clip, &clip.roles, &clip.rest), &detected);
+    let performance = |(found, deviation): (&ClipDetection, Option<_>)| {
+        Some(Performance {
+            clip: found.clip.clone(),
+            class: found.class.clone(),
+            start_secs: found.start_secs,
+            stop_secs: found.stop_secs,
+            deviation: deviation?,
+        })
+    };
+    let named = named.into_iter().zip(deviations);
+    named.filter_map(performance).collect()
 }
 
 /// A row of a table of detections, where the index knows its class.

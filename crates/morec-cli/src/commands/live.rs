@@ -46,7 +46,8 @@ use morec_live::summary;
 ///   ws://HOST:PORT          whoever connects there with a WebSocket
 ///
 /// An event is a start (tentative), updates with progress (tentative), and then either an end (final, with score, start
-/// and stop) or a cancellation. One motion ends once, and nothing that ended is taken back. Ctrl-C ends the session.
+/// and stop) or a cancellation. One motion ends once, and nothing that ended is taken back. With --each-repetition, an
+/// activity also has a repetition (with its start and stop) each time one more is over. Ctrl-C ends the session.
 #[derive(clap::Args)]
 #[command(
     verbatim_doc_comment,
@@ -75,6 +76,9 @@ pub struct Args {
     /// Tell motions at their end only
     #[arg(long)]
     no_early: bool,
+    /// Make each repetition of an activity an event of its own
+    #[arg(long)]
+    each_repetition: bool,
     /// Distribution of recognition over threads; detections are the same
     #[arg(long, value_enum, default_value = "inline")]
     layout: LayoutArg,
@@ -203,6 +207,7 @@ fn listen(address: &Address, index: &MotionIndex, args: &Args) -> Result<Listeni
     let opened = args.tracker.open(address, Some(index))?;
     let events = EventOptions {
         early: !args.no_early,
+        each_repetition: args.each_repetition,
         refractory_secs: args.refractory,
     };
     let session_options = SessionOptions {

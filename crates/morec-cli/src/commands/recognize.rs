@@ -28,7 +28,8 @@ use morec_live::PlayableClip;
 /// Recognise motions in clips, frame by frame as in a live stream.
 ///
 /// Writes one line for each motion: clip, start, stop and reported_at in frames of the clip (stop exclusive), class,
-/// score (0 just accepted … 1 identical to a sample), and the times in seconds.
+/// score (0 just accepted … 1 identical to a sample), and the times in seconds; with activities in the index also how often
+/// one was repeated, and the seconds of a repetition.
 #[derive(clap::Args)]
 #[command(
     after_help = "Exit codes: 0 all clips done; 1 something cannot be read (the others are done all the same); \
@@ -186,12 +187,17 @@ fn recognize_all(
     args: &Args,
 ) -> Result<bool> {
     if args.form == OutputFormat::Tsv {
-        let columns = if args.deviation {
+        let repeated = if has_activities(index) {
+            REPETITION_COLUMNS
+        } else {
+            ""
+        };
+        let deviation = if args.deviation {
             DEVIATION_COLUMNS
         } else {
             ""
         };
-        writeln!(out, "{FOUND_HEADER}{columns}")?;
+        writeln!(out, "{FOUND_HEADER}{repeated}{deviation}")?;
     }
     let mut stats = Stats::default();
     let mut failed = false;
@@ -225,8 +231,15 @@ struct FoundInClip {
     deviation: Option<MotionDeviation>,
 }
 
+/// What an index with activities adds to a line.
+const REPETITION_COLUMNS: &str = "\trepetitions\tperiod_secs";
+
 /// What `--deviation` adds to a line.
 const DEVIATION_COLUMNS: &str = "\toff_degrees\tpace\tworst_bone\tworst_degrees\tworst_secs";
+
+fn has_activities(index: &MotionIndex) -> bool {
+    matches!(&index.model, Model::Templates(model) if model.activities.is_some())
+}
 
 fn recognize_file(
     path: &Path,
@@ -362,15 +375,23 @@ fn write_found(
         rate_hz: *rate_hz,
     };
     match args.form {
-        OutputFormat::Tsv => match deviation.as_ref().and_then(|d| Some((d, d.bones.first()?))) {
-            Some((d, bone)) => writeln!(
-                out,
-                "{line}\t{:.1}\t{:.2}\t{}\t{:.1}\t{:.2}",
-                d.off_degrees, d.pace, bone.bone, bone.worst_degrees, bone.worst_secs
-            ),
-            None if args.deviation => writeln!(out, "{line}\t\t\t\t\t"),
-            None => writeln!(out, "{line}"),
-        },
+        OutputFormat::Tsv => {
+            write!(out, "{line}")?;
+            match found.repetitions {
+                Some(r) => write!(out, "\t{}\t{:.3}", r.count, r.period_secs)?,
+                None if has_activities(index) => write!(out, "\t\t")?,
+                None => (),
+            }
+            match deviation.as_ref().and_then(|d| Some((d, d.bones.first()?))) {
+                Some((d, bone)) => writeln!(
+                    out,
+                    "\t{:.1}\t{:.2}\t{}\t{:.1}\t{:.2}",
+                    d.off_degrees, d.pace, bone.bone, bone.worst_degrees, bone.worst_secs
+                ),
+                None if args.deviation => writeln!(out, "\t\t\t\t\t"),
+                None => writeln!(out),
+            }
+        }
         OutputFormat::Jsonl => {
             let frame = |secs: f64| (secs * rate_hz).round() as u64;
             let mut object = serde_json::json!({

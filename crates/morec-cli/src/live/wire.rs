@@ -27,6 +27,7 @@ pub fn recognise_over_vmc(
             Default::default(),
             &EventOptions {
                 early: false,
+                each_repetition: false,
                 refractory_secs: 0.0,
             },
         ),

@@ -65,7 +65,7 @@ impl ClassDistances {
                 };
                 let own = || {
                     judged.clip == clip
-                        && (judged.whole || overlap_share(&span(tick, found), &judged.ticks) > SELF)
+                        && (judged.whole || overlap_share(&span(tick, found), &judged.label) > SELF)
                 };
                 if found.distance < best.distance && !own() {
                     *best = found;

@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use morec::features::BoneSet;
-use morec::train::motion_span;
+use morec::train::{ClassKind, TrainParams, motion_span};
 
+use super::stretches::pieces;
 use crate::labels::{DbSample, SampleState};
 use crate::rows::ClipRows;
 use crate::search::layout::{CanonicalRows, to_canonical};
@@ -33,6 +34,8 @@ pub struct JudgedSpan {
     /// True if the clip as a whole was judged; `ticks` are then its moving part.
     pub whole: bool,
     pub ticks: Range<usize>,
+    /// The label that it is a piece of, where its class is an activity; else the same.
+    pub label: Range<usize>,
 }
 
 pub struct ProposalData {
@@ -40,6 +43,8 @@ pub struct ProposalData {
     pub classes: Vec<String>,
     /// For each class, whether all its samples are whole clips.
     pub whole: Vec<bool>,
+    /// For each class, whether it is an activity: its labels are long, and judged piece by piece.
+    pub activity: Vec<bool>,
     pub clips: Vec<ClipFeatures>,
     pub judged: Vec<JudgedSpan>,
     /// Bones that every clip with an accepted sample shows.
@@ -111,19 +116,39 @@ impl ProposalData {
                     .all(|(s, _)| s.whole_clip)
             })
             .collect();
-        let judged = usable
+        let activity: Vec<bool> = classes
             .iter()
-            .map(|(s, (clip, ticks))| JudgedSpan {
-                clip: *clip,
-                class: classes.iter().position(|c| *c == s.class),
-                accepted: s.state == SampleState::Accepted,
-                whole: s.whole_clip,
-                ticks: ticks.clone(),
+            .map(|class| {
+                let of_class = accepted().filter(|(s, _)| s.class == *class && !s.whole_clip);
+                let longest = of_class.map(|(_, (_, ticks))| ticks.len()).max();
+                let longest_secs = longest.unwrap_or(0) as f64 / tick_hz;
+                TrainParams::default().kind(class, longest_secs) == ClassKind::Activity
             })
             .collect();
+        let spans = |(s, (clip, label)): &(&DbSample, (usize, Range<usize>))| {
+            let class = classes.iter().position(|c| *c == s.class);
+            let pieces = match class.is_some_and(|class| activity[class]) && !s.whole_clip {
+                true => {
+                    let rows = clips[*clip].laid.rows.slice(label.clone());
+                    pieces(&rows, label, tick_hz)
+                }
+                false => vec![label.clone()],
+            };
+            let span = |ticks| JudgedSpan {
+                clip: *clip,
+                class,
+                accepted: s.state == SampleState::Accepted,
+                whole: s.whole_clip,
+                ticks,
+                label: label.clone(),
+            };
+            pieces.into_iter().map(span).collect::<Vec<_>>()
+        };
+        let judged = usable.iter().flat_map(spans).collect();
         Self {
             classes,
             whole,
+            activity,
             clips,
             judged,
             bones: taught,

@@ -3,9 +3,11 @@
 use std::collections::BTreeSet;
 
 use super::*;
+use crate::ClipUpdate;
 use crate::labels::SampleFilter;
-use crate::testing::{database_of_waves, waves};
-use morec::synth::SyntheticTake;
+use crate::testing::{database_of_waves, waves, write_bvh};
+use morec::files::FileReader;
+use morec::synth::{Person, Script, SyntheticTake};
 
 fn ids(db: &MotionDb, takes: &[SyntheticTake]) -> Vec<ClipId> {
     takes
@@ -231,4 +233,56 @@ fn a_listener_that_says_stop_is_heard() {
         db.propose(&ProposeOptions::default(), &Stop),
         Err(DbError::Cancelled)
     ));
+}
+
+/// A take in which somebody bows, waves so often without a pause, and bows.
+fn waving(number: usize, times: usize) -> SyntheticTake {
+    let script = Script::new(90 + number as u64, Person::draw(91, number));
+    let script = script.rest(1.5).play("bow").rest(1.0);
+    let script = (0..times).fold(script, |script, _| script.play("wave"));
+    let script = script.rest(1.0).play("bow").rest(1.5);
+    script.film(&format!("waving{number}"), 30.0).unwrap()
+}
+
+#[test]
+fn an_activity_is_proposed_as_the_whole_stretch_that_is_repeated() {
+    let takes: Vec<SyntheticTake> = [5, 7, 4]
+        .iter()
+        .zip(0..)
+        .map(|(n, i)| waving(i, *n))
+        .collect();
+    let folder = tempfile::TempDir::new().unwrap();
+    let written = |take: &SyntheticTake| write_bvh(folder.path(), &take.clip.name, &take.clip);
+    let paths: Vec<_> = takes.iter().map(written).collect();
+    let mut db = MotionDb::create(&folder.path().join("test.mdb")).unwrap();
+    db.import(&paths, &FileReader::default(), &ClipUpdate::default(), &())
+        .unwrap();
+    let ids = ids(&db, &takes);
+    let waved = |take: &SyntheticTake| {
+        let waves = take.labels.iter().filter(|l| l.class == "wave");
+        let bounds = waves.map(|l| (l.start_secs, l.stop_secs));
+        bounds.reduce(|all, next| (all.0, next.1)).unwrap()
+    };
+    let (start, stop) = waved(&takes[0]);
+    let bow = &takes[0].labels[0];
+    let first = [
+        sample(ids[0], "wave", start, stop),
+        sample(ids[0], "bow", bow.start_secs, bow.stop_secs),
+    ];
+    db.add_samples(&first, "test").unwrap();
+    let proposals = db.propose(&ProposeOptions::default(), &()).unwrap();
+    for (take, id) in takes.iter().zip(&ids).skip(1) {
+        let (start, stop) = waved(take);
+        let of_clip = proposals
+            .iter()
+            .filter(|p| p.clip == *id && p.class == "wave");
+        let best = of_clip.max_by(|a, b| a.score.total_cmp(&b.score)).unwrap();
+        let shared = stop.min(best.stop_secs) - start.max(best.start_secs);
+        let share = shared / (stop.max(best.stop_secs) - start.min(best.start_secs));
+        assert!(share > 0.8, "{best:?} for {start} to {stop}");
+    }
+    let again = proposals
+        .iter()
+        .any(|p| p.clip == ids[0] && p.class == "wave");
+    assert!(!again, "{proposals:?}");
 }

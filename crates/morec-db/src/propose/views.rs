@@ -43,6 +43,11 @@ pub fn chosen(material: &ProposalData, options: &ProposeOptions) -> Vec<usize> {
                 .or_default()
                 .push(at);
         }
+        // A long label has many pieces that are alike: some of all of them.
+        let most = options.templates_a_class.max(1);
+        for group in by_group.values_mut().filter(|group| group.len() > most) {
+            *group = (0..most).map(|i| group[i * group.len() / most]).collect();
+        }
         let longest = by_group.values().map(Vec::len).max().unwrap_or(0);
         let turns =
             (0..longest).flat_map(|turn| by_group.values().filter_map(move |g| g.get(turn)));
@@ -122,10 +127,13 @@ fn train_set(material: &ProposalData, columns: &[usize]) -> TrainSet {
     let stream = |(clip, judged): (usize, Vec<&JudgedSpan>)| {
         let known = |j: &&JudgedSpan| {
             Some(LabelledSpan {
-                ticks: j.ticks.clone(),
+                ticks: j.label.clone(),
                 class: Some(ClassId(j.class? as u16)),
             })
         };
+        // Pieces of one label are not alike in phase with those of another: how a class varies is learned from whole labels.
+        let mut judged = judged;
+        judged.dedup_by(|a, b| (a.class, &a.label) == (b.class, &b.label));
         TrainStream {
             name: String::new(),
             group: material.clips[clip].group.clone(),

@@ -35,6 +35,8 @@ class listen:
         Exchange left and right, for senders that show their performer as a mirror would.
     tentative : bool
         Also what seems to be under way: events of the phases start, update and cancel.
+    each_repetition : bool
+        Also an event of the phase repetition, with its start and stop, for each repetition of an activity.
     timeout : float, optional
         End after this many seconds without an event.
 
@@ -60,9 +62,10 @@ class listen:
         actors: int = 4,
         mirror: bool = False,
         tentative: bool = False,
+        each_repetition: bool = False,
         timeout: float | None = None,
     ) -> None:
-        self._session = _morec.LiveSession(address, index, actors, mirror, tentative)
+        self._session = _morec.LiveSession(address, index, actors, mirror, tentative, each_repetition)
         self._timeout = timeout
 
     @property

@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 
+use morec::explain::{MotionDeviation, deviation_from};
 use morec::features::{FeatureParams, RowLayout, Rows, bones_of_clip, mirrored_rows, rows_of_clip};
 use morec::train::align as warp;
 use morec_db::{DbError, MotionDb};
@@ -28,6 +29,8 @@ pub struct Aligned {
     /// For every tick of the first, the moment of the second, seconds.
     path: Vec<f64>,
     tick_hz: f64,
+    /// How far the first is from the second; `None` of stretches too long to align.
+    pub deviation: Option<MotionDeviation>,
 }
 
 impl Aligned {
@@ -106,7 +109,7 @@ fn aligned(
     let first = ClipMotion::of(of.clip, db.clip(of.clip)?);
     let motion = Arc::new(ClipMotion::of(with.clip, db.clip(with.clip)?));
     let params = FeatureParams::default();
-    let path = path_of((&first, &of), (&motion, &with), mirrored, &params);
+    let (path, deviation) = path_of((&first, &of), (&motion, &with), mirrored, &params);
     Ok(Some(Aligned {
         of,
         with,
@@ -114,16 +117,17 @@ fn aligned(
         motion,
         path,
         tick_hz: params.tick_hz(),
+        deviation,
     }))
 }
 
-/// For every tick of the first stretch, the moment of the second.
+/// For every tick of the first stretch, the moment of the second; and how far the first is off.
 fn path_of(
     (first, of): (&ClipMotion, &Stretch),
     (second, with): (&ClipMotion, &Stretch),
     mirrored: bool,
     params: &FeatureParams,
-) -> Vec<f64> {
+) -> (Vec<f64>, Option<MotionDeviation>) {
     let hz = params.tick_hz();
     let bones = |m: &ClipMotion| bones_of_clip(&m.clip, &m.roles, &m.rest);
     let common = bones(first).and(bones(second));
@@ -142,16 +146,17 @@ fn path_of(
     if a.len() * b.len() > CELLS || directions.is_empty() || b.is_empty() {
         let pace = (with.stop_secs - with.start_secs) / (of.stop_secs - of.start_secs).max(1e-9);
         let ticks = a.len().max(2);
-        return (0..ticks)
-            .map(|tick| with.start_secs + pace * tick as f64 / hz)
-            .collect();
+        let even = (0..ticks).map(|tick| with.start_secs + pace * tick as f64 / hz);
+        return (even.collect(), None);
     }
     let mut sums = vec![(0.0, 0usize); a.len()];
     for (i, j) in warp(&a.columns(&directions), &b.columns(&directions)) {
         sums[i].0 += j as f64;
         sums[i].1 += 1;
     }
-    sums.iter()
-        .map(|(sum, count)| with.start_secs + sum / (*count).max(1) as f64 / hz)
-        .collect()
+    let path = sums
+        .iter()
+        .map(|(sum, count)| with.start_secs + sum / (*count).max(1) as f64 / hz);
+    let deviation = deviation_from(&b, &a, common, of.start_secs, hz);
+    (path.collect(), deviation)
 }

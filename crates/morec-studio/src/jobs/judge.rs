@@ -315,6 +315,7 @@ mod tests {
             stop_secs,
             score: None,
             reported_secs: None,
+            repetitions: None,
         }
     }
 

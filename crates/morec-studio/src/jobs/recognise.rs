@@ -26,6 +26,7 @@ pub fn clip(
         stop_secs: d.stop_secs,
         score: Some(d.score),
         reported_secs: Some(d.reported_secs),
+        repetitions: d.repetitions.map(|r| r.count),
     });
     Ok((motion.id, detections.collect()))
 }

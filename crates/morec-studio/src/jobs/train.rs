@@ -9,9 +9,9 @@ use morec::index::{MotionIndex, Provenance};
 use morec::labels::Sample;
 use morec::progress::Progress;
 use morec::train::{
-    EVERYDAY_SEED, Everyday, LabelSet, Prepared, Recipe, StreamKind, TrainClip, TrainError,
-    TrainOptions, TrainParams, TrainStream, TrainingData, TrainingReport, add_mirrored,
-    build_train_set, everyday_clips, train,
+    EVERYDAY_SEED, Everyday, LabelSet, Prepared, StreamKind, TrainClip, TrainError, TrainOptions,
+    TrainParams, TrainStream, TrainingData, TrainingReport, add_mirrored, build_train_set,
+    everyday_clips, train,
 };
 use morec_db::labels::{SampleFilter, SampleState};
 use morec_db::{ClipFilter, ClipId, ClipInfo, DbError, MotionDb, StoredClip};
@@ -91,7 +91,7 @@ pub fn everyday() -> &'static [TrainClip] {
 }
 
 /// Options of training: those of `morec train`, with everyday motion that is among the clips already.
-fn options(bones: BoneSet) -> TrainOptions {
+pub fn options(bones: BoneSet) -> TrainOptions {
     TrainOptions {
         bones,
         everyday: Everyday::Never,
@@ -99,20 +99,15 @@ fn options(bones: BoneSet) -> TrainOptions {
     }
 }
 
-/// The same as a recipe.
-pub fn recipe(bones: BoneSet) -> Recipe {
-    options(bones).into()
-}
-
 /// Trains an index of the database at `path`.
 pub fn run(
     path: &Path,
     classes: &[String],
-    bones: BoneSet,
+    options: TrainOptions,
     progress: &JobProgress,
 ) -> Result<Box<TrainedIndex>, JobError> {
     let begun = std::time::Instant::now();
-    let mut trained = trained(path, classes, options(bones), progress)?;
+    let mut trained = trained(path, classes, options, progress)?;
     trained.secs = begun.elapsed().as_secs_f64();
     Ok(Box::new(trained))
 }

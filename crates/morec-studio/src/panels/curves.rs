@@ -9,6 +9,8 @@ use super::{Out, widgets};
 use crate::state::{Command, PlayCommand, State};
 use crate::theme::Colours;
 
+/// The track of the angle reaches up to at least this many degrees: what is hardly off shall look like it.
+const LEAST_DEGREES: f64 = 20.0;
 /// Name of the track of the misfit.
 const MISFIT: &str = "Misfit (thesis)";
 
@@ -47,6 +49,11 @@ pub fn detections(ui: &mut Ui, state: &State, scale: &Scale, out: Out) {
         painter.rect_filled(bar, 2.0, c.class(state.classes.place(&found.class)));
         if let Some(reported) = found.reported_secs {
             painter.vline(scale.x(reported), rect.y_range(), (1.0, c.muted));
+        }
+        if let Some(count) = found.repetitions {
+            let (inner, text) = (bar.shrink2(Vec2::new(4.0, 0.0)), format!("× {count}"));
+            let colour = c.text_on(c.class(state.classes.place(&found.class)));
+            widgets::text_in(ui, inner.intersect(rect), &text, 11.0, colour, false);
         }
         let response = ui.interact(
             bar.intersect(rect),
@@ -111,6 +118,41 @@ pub fn misfit(ui: &mut Ui, state: &State, scale: &Scale, out: Out) {
     for cut in &curves.ppca {
         painter.vline(scale.x(*cut), rect.y_range(), (1.0, c.warn));
     }
+}
+
+/// Track of the angle from the performance beside it, with the moment at which it is largest; nothing without one.
+pub fn deviation(ui: &mut Ui, state: &State, scale: &Scale, out: Out) {
+    let Some((aligned, deviation)) = state.deviation() else {
+        return;
+    };
+    let c = Colours::now(ui);
+    let rect = plain_track(ui, state, scale, "Degrees off", 46.0, out);
+    let (start, stop) = (aligned.of.start_secs, aligned.of.stop_secs);
+    let Some((worst_secs, worst)) = deviation.worst(start, stop) else {
+        return;
+    };
+    let full = worst.max(LEAST_DEGREES);
+    let y = |degrees: f64| rect.bottom() - (degrees / full) as f32 * (rect.height() - 4.0);
+    let painter = ui.painter_at(rect);
+    let curve = deviation.curve(start, stop);
+    for part in parts(curve.map(|(secs, off)| (secs, y(off))), scale, 1.0) {
+        painter.line(part, Stroke::new(1.6, c.accent));
+    }
+    let x = scale.x(worst_secs);
+    painter.vline(x, rect.y_range(), (1.2, c.bad));
+    let text = format!("{worst:.0}° at {worst_secs:.2} s");
+    let mark = Rect::from_min_max(
+        pos2(x + 5.0, rect.top()),
+        pos2(x + 140.0, rect.top() + 16.0),
+    );
+    let response = ui.interact(mark.intersect(rect), ui.id().with("worst"), Sense::hover());
+    widgets::named(
+        &response,
+        WidgetType::Label,
+        format!("Farthest off: {text}"),
+        false,
+    );
+    widgets::text_in(ui, mark, &text, 11.0, c.text, false);
 }
 
 /// Track of the bones' speed.

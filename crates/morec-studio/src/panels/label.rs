@@ -6,7 +6,7 @@ use egui::{
 };
 use morec_db::labels::SampleState as Judged;
 
-use super::{Out, carried, padded, player, proposals, timeline, view, widgets};
+use super::{Out, carried, deviation, padded, player, proposals, timeline, view, widgets};
 use crate::format;
 use crate::state::{
     ClassCommand, Command, CompareCommand, LibraryCommand, SimilarCommand, State, TimelineCommand,
@@ -102,6 +102,8 @@ fn classes(ui: &mut Ui, state: &State, out: Out) {
     }
     add_class(ui, state, out);
     ui.add_space(8.0);
+    deviation::recognised(ui, state, out);
+    deviation::bones(ui, state, out);
     selection(ui, state, out);
     ui.add_space(8.0);
     help(ui, state, out);

@@ -50,6 +50,7 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
                 ui.spacing_mut().item_spacing.y = 2.0;
                 tracks::labels(ui, state, &scale, out);
                 curves::detections(ui, state, &scale, out);
+                curves::deviation(ui, state, &scale, out);
                 cuts::show(ui, state, &scale, out);
                 channel::map(ui, state, &scale, out);
                 curves::misfit(ui, state, &scale, out);

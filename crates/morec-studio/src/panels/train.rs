@@ -4,7 +4,7 @@ use egui::{
     CentralPanel, ComboBox, Context, Frame, Margin, RichText, ScrollArea, SidePanel, Ui, WidgetType,
 };
 
-use super::{Out, background, matrix, moments, padded, thesis, view, widgets};
+use super::{Out, background, kinds, matrix, moments, padded, thesis, view, widgets};
 use morec::features::BoneSet;
 use morec::train::TrainingReport;
 
@@ -99,6 +99,7 @@ fn choose(ui: &mut Ui, state: &State, out: Out) {
             }
             let colour = if class.accepted < 3 { c.warn } else { c.muted };
             ui.colored_label(colour, class.accepted.to_string());
+            kinds::choose(ui, state, &class.name, out);
         });
     }
     parts(ui, state, out);

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use morec::roles::Role;
 use morec::smooth::ChannelKind;
+use morec::train::ClassKind;
 use morec::train::thesis::SvrdmTrainParams;
 use morec_db::ClipId;
 use morec_db::exchange::LabelFormat;
@@ -309,6 +310,11 @@ pub enum TrainCommand {
     Choose {
         class: String,
         on: bool,
+    },
+    /// What a class is, whatever its labels say; `None`: what they say.
+    Kind {
+        class: String,
+        kind: Option<ClassKind>,
     },
     /// The parts that count, by their place among the named sets.
     Parts(usize),

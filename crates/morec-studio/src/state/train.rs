@@ -1,12 +1,12 @@
 //! Training: the classes that are learned, the index, cross-validation, the method of 2009.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use morec::features::BoneSet;
 use morec::index::MotionIndex;
-use morec::train::TrainingReport;
 use morec::train::thesis::SvrdmTrainParams;
+use morec::train::{ClassKind, TrainingReport};
 
 use super::crossval::CrossvalView;
 use crate::jobs::thesis::{Map, Thesis};
@@ -17,6 +17,8 @@ use crate::store::Snapshot;
 pub struct Train {
     /// Classes that are left out.
     pub without: BTreeSet<String>,
+    /// Classes that are gestures, or activities, whatever their labels say.
+    pub kinds: BTreeMap<String, ClassKind>,
     /// The parts that count, by their place in [`BoneSet::NAMED`].
     pub parts: usize,
     pub index: Option<Arc<MotionIndex>>,

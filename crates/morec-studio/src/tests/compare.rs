@@ -136,3 +136,50 @@ fn a_hit_becomes_a_new_class_before_there_is_any() {
     assert_eq!(labels.len(), 1);
     assert_eq!(labels[0].1, "gesture 1");
 }
+
+#[test]
+fn how_far_off_is_drawn_and_a_bone_goes_to_its_worst_moment() {
+    let (_folder, mut person) = with_a_wave();
+    assert!(!person.sees_part("Farthest off: "));
+    person.key(Key::C);
+    person.settle();
+    let (aligned, deviation) = person.state().deviation().unwrap();
+    let (of, deviation) = (aligned.of, deviation.clone());
+    assert!(person.sees_part(&format!("{:.0}° on average", deviation.off_degrees)));
+    let (secs, degrees) = deviation.worst(of.start_secs, of.stop_secs).unwrap();
+    assert!(person.sees(&format!("Farthest off: {degrees:.0}° at {secs:.2} s")));
+    let bone = &deviation.bones[0];
+    person.click(&format!(
+        "{} is {:.0}° off, most {:.0}° at {:.2} s",
+        bone.bone.replace('_', " "),
+        bone.off_degrees,
+        bone.worst_degrees,
+        bone.worst_secs
+    ));
+    assert!((person.state().player.at_secs - bone.worst_secs).abs() < 0.2);
+    person.click("Alone");
+    assert!(!person.sees_part("Farthest off: "));
+}
+
+#[test]
+fn a_recognised_motion_is_held_beside_the_nearest_label_of_its_class() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), 3)]);
+    person.goes_to(Panel::Train);
+    person.click("Start training");
+    person.settle();
+    person.goes_to(Panel::Label);
+    person.settle();
+    let (_, found) = person.state().detections.clone().unwrap();
+    let wave = found.iter().find(|d| d.class == "wave").unwrap();
+    assert!(!person.offers("How well?"));
+    person.click(&format!("recognised wave {:.2} s", wave.start_secs));
+    person.click("How well?");
+    person.settle();
+    let (aligned, deviation) = person.state().deviation().unwrap();
+    assert_eq!(aligned.of.start_secs, wave.start_secs);
+    let store = person.state().store.as_ref().unwrap();
+    let mut labels = store.snapshot.accepted().filter(|s| s.class == "wave");
+    assert!(labels.any(|s| s.clip == aligned.with.clip && s.start_secs == aligned.with.start_secs));
+    assert!(deviation.off_degrees < 45.0 && deviation.bones.len() > 5);
+}

@@ -4,6 +4,7 @@ use super::{Person, made};
 use crate::jobs::thesis::{GRID, TreeNodeView};
 use crate::state::{Command, LibraryCommand, Panel, TimelineCommand, TrainCommand};
 use crate::store::Edit;
+use morec::train::ClassKind;
 use morec::train::thesis::SvrdmTrainParams;
 
 #[test]
@@ -253,4 +254,31 @@ fn the_method_of_2009_has_a_confusion_matrix() {
     let judged = person.state().train.judged.as_ref().unwrap();
     let labels: usize = judged.counts[..judged.rows.len()].iter().flatten().sum();
     assert_eq!(labels, 12);
+}
+
+#[test]
+fn a_class_is_a_gesture_or_an_activity_and_it_can_be_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), 3)]);
+    person.goes_to(Panel::Train);
+    let store = person.state().store.as_ref().unwrap();
+    let waves = store.snapshot.accepted().filter(|s| s.class == "wave");
+    let longest = waves
+        .map(|s| s.stop_secs - s.start_secs)
+        .fold(0.0, f64::max);
+    person.click(&format!(
+        "wave is a gesture: its longest label lasts {longest:.1} s"
+    ));
+    person.click("Always an activity");
+    assert_eq!(person.state().train.kinds["wave"], ClassKind::Activity);
+    assert!(person.sees("wave is an activity: so it was chosen"));
+    person.click("Start training");
+    person.settle();
+    assert!(person.state().command_line.contains("--activities wave"));
+    assert!(person.sees_part("reported when it ends: wave (named one)"));
+    person.click("wave is an activity: so it was chosen");
+    person.click("By its labels: a gesture");
+    person.click("Start training");
+    person.settle();
+    assert!(!person.sees_part("reported when it ends: "));
 }

@@ -390,6 +390,7 @@ impl FoldTest<'_> {
             stop_secs: d.stop_secs,
             score: Some(d.score),
             reported_secs: Some(d.reported_secs),
+            repetitions: d.repetitions.map(|r| r.count),
         };
         let founds: Vec<ClipDetection> = found.iter().map(named).collect();
         let misses = if self.explains {

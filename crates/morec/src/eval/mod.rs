@@ -81,6 +81,9 @@ pub struct ClipDetection {
     pub score: Option<f64>,
     /// When it was reported, in seconds of the stream, if known.
     pub reported_secs: Option<f64>,
+    /// Repetitions that were counted, of an activity.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub repetitions: Option<u32>,
 }
 
 /// A stream that was searched.

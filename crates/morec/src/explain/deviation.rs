@@ -23,6 +23,37 @@ pub struct MotionDeviation {
     pub over_time_degrees: Vec<f64>,
 }
 
+impl MotionDeviation {
+    /// The angle over time of a performance from `start_secs` to `stop_secs`: seconds and degrees.
+    pub fn curve(&self, start_secs: f64, stop_secs: f64) -> impl Iterator<Item = (f64, f64)> {
+        let tick_secs = (stop_secs - start_secs) / self.over_time_degrees.len().max(1) as f64;
+        let at = move |tick: usize| start_secs + (tick as f64 + 0.5) * tick_secs;
+        let degrees = self.over_time_degrees.iter().enumerate();
+        degrees.map(move |(tick, degrees)| (at(tick), *degrees))
+    }
+
+    /// When all of it was farthest off, and by how much, of the same performance.
+    pub fn worst(&self, start_secs: f64, stop_secs: f64) -> Option<(f64, f64)> {
+        self.curve(start_secs, stop_secs)
+            .max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+}
+
+/// A motion of a clip and how well it was performed.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct Performance {
+    /// Name of its clip.
+    pub clip: String,
+    /// Name of its class.
+    pub class: String,
+    /// When it began, on the clip's clock.
+    pub start_secs: f64,
+    /// When it ended.
+    pub stop_secs: f64,
+    /// It against the nearest sample.
+    pub deviation: MotionDeviation,
+}
+
 /// A bone of a performance.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct BoneDeviation {
@@ -72,6 +103,22 @@ fn of_motion(model: &TemplateModel, rows: &Rows, found: &Detection) -> Option<Mo
     let (_, nearest, length) = compared.min_by(|a, b| a.0.total_cmp(&b.0))?;
     let start_secs = first as f64 / hz;
     Some(nearest.deviation(stretch.len(), start_secs, 1.0 / hz, length))
+}
+
+/// Compares one performance with another, bone by bone: rows of `bones`, `tick_hz` a second, those of `stretch` from `start_secs` on.
+/// `None` without rows or bones. O(rows²).
+pub fn deviation_from(
+    sample: &Rows,
+    stretch: &Rows,
+    bones: BoneSet,
+    start_secs: f64,
+    tick_hz: f64,
+) -> Option<MotionDeviation> {
+    if sample.is_empty() || stretch.is_empty() || bones.is_empty() {
+        return None;
+    }
+    let compared = ComparedBones::new(sample, stretch, bones);
+    Some(compared.deviation(stretch.len(), start_secs, 1.0 / tick_hz, sample.len()))
 }
 
 /// Angles of every bone at every step of a warping path, in degrees.

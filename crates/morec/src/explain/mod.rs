@@ -24,7 +24,7 @@ use crate::templates::{
 };
 use crate::train::overlap_share;
 
-pub use deviation::{BoneDeviation, MotionDeviation, deviation};
+pub use deviation::{BoneDeviation, MotionDeviation, Performance, deviation, deviation_from};
 pub use reason::{BoneOff, Reason};
 
 /// A sample that was not reported.

@@ -1,9 +1,11 @@
 //! Each reason brought about on purpose, on synthetic people.
 
 use crate::clip::{Clip, Span};
+use crate::features::{FeatureParams, FeatureStream, Rows, bones_of_clip, for_each_pose};
 use crate::import::Take;
 use crate::live::{Model, recognize_clip};
 use crate::math::Axis;
+use crate::perturb::{Perturbation, perturb};
 use crate::roles::{Role, RoleMap};
 use crate::synth::{DatabaseSpec, SyntheticTake, database};
 use crate::train::{LabelSet, StreamKind, TrainClip, TrainOptions, train_clips};
@@ -247,4 +249,43 @@ fn worse_performances_are_farther_off_and_the_limb_is_named() {
         "{mean} {}",
         worst.off_degrees
     );
+}
+
+#[test]
+fn worse_captures_rank_below_better_ones_whatever_makes_them_worse() {
+    let takes = takes();
+    let Played { clip, roles, rest } = played(takes[1].clip.clone());
+    let (label, params) = (&takes[1].labels[0], FeatureParams::default());
+    let bones = bones_of_clip(&clip, &roles, &rest);
+    let rows = |list: &[Perturbation]| {
+        let mut poses = Vec::new();
+        for_each_pose(&clip, &roles, &rest, |secs, pose| poses.push((secs, *pose)));
+        let mut stream = FeatureStream::new(bones, &params);
+        let mut rows = Rows::new(stream.dim());
+        for (secs, pose) in perturb(poses, list, 3).poses {
+            stream.push(secs, &pose, &mut |row| rows.push(row));
+        }
+        stream.finish(&mut |row| rows.push(row));
+        let tick = |secs: f64| (secs * params.tick_hz()).round() as usize;
+        rows.slice(tick(label.start_secs)..tick(label.stop_secs))
+    };
+    let sample = rows(&[]);
+    let off = |worse: Perturbation| {
+        let found = deviation_from(&sample, &rows(&[worse]), bones, 0.0, params.tick_hz());
+        found.unwrap().off_degrees
+    };
+    let metres = |kind: fn(f64) -> Perturbation| [0.005, 0.01, 0.02, 0.04, 0.08].map(kind);
+    let strengths = [
+        metres(Perturbation::White),
+        metres(Perturbation::Slow),
+        metres(Perturbation::Constant),
+        metres(|size| Perturbation::Tilt(250.0 * size)),
+        metres(|size| Perturbation::Camera(50.0 * size)),
+    ];
+    for of_kind in strengths {
+        let degrees = of_kind.map(off);
+        assert!(degrees[0] > 0.0, "{of_kind:?}: {degrees:?}");
+        let ranked = degrees.windows(2).all(|pair| pair[0] < pair[1]);
+        assert!(ranked, "{of_kind:?}: {degrees:?}");
+    }
 }

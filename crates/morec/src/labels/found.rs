@@ -77,6 +77,8 @@ pub struct FoundRow {
     pub score: Option<f64>,
     /// When it was reported, if the table says.
     pub reported: Option<ReportedAt>,
+    /// Repetitions of an activity, if the table says.
+    pub repetitions: Option<u32>,
     /// The row's line in its file, from 1.
     pub line: u64,
 }
@@ -91,7 +93,7 @@ pub struct FoundTable {
 }
 
 /// Reads a table of detections. Columns `clip`, `class` and an extent (frames or seconds, as in labels) must be
-/// there; `score`, `reported_at` (a frame) and `reported_secs` may be. Fails as [`super::Labels::read`] does.
+/// there; `score`, `reported_at` (a frame), `reported_secs` and `repetitions` may be, and what else `morec recognize` writes. Fails as [`super::Labels::read`] does.
 ///
 /// # Errors
 /// As [`super::Labels::read`].
@@ -104,6 +106,7 @@ pub fn read_detections(bytes: &[u8]) -> Result<FoundTable, ParseError> {
     }
     let score = table.find("score");
     let reported = (table.find("reported_at"), table.find("reported_secs"));
+    let repetitions = table.find("repetitions");
     let known = [
         "clip",
         "class",
@@ -114,6 +117,13 @@ pub fn read_detections(bytes: &[u8]) -> Result<FoundTable, ParseError> {
         "score",
         "reported_at",
         "reported_secs",
+        "repetitions",
+        "period_secs",
+        "off_degrees",
+        "pace",
+        "worst_bone",
+        "worst_degrees",
+        "worst_secs",
         "person",
     ];
     let mut warnings = table.unknown_columns(&known);
@@ -128,6 +138,9 @@ pub fn read_detections(bytes: &[u8]) -> Result<FoundTable, ParseError> {
                 extent: extents.read(row)?,
                 score: score.map_or(Ok(None), |column| row.optional_number(column))?,
                 reported: read_reported(row, reported)?,
+                repetitions: repetitions
+                    .map_or(Ok(None), |column| row.optional_number(column))?
+                    .map(|count| count.round() as u32),
                 line: row.line,
             })
         })
@@ -177,6 +190,7 @@ impl FoundTable {
                 stop_secs,
                 score: row.score,
                 reported_secs,
+                repetitions: row.repetitions,
             });
         }
         let warnings = absent.into_iter().map(|(clip, (line, rows))| {

@@ -65,8 +65,12 @@ pub struct EarlyDetection {
     pub start_secs: f64,
     /// Up to when it was seen.
     pub seen_secs: f64,
+    /// True of an activity: other motions come and go while it does.
+    pub goes_on: bool,
     /// Of an activity that repeats, so far.
     pub repetitions: Option<Repetitions>,
+    /// Of those, how many are certainly over, and when the last of them was.
+    pub whole: Option<(u32, f64)>,
 }
 
 /// Time of a path: its origin and its step.

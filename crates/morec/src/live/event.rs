@@ -12,6 +12,9 @@ pub enum Phase {
     Start,
     /// Its progress, or what it seems to be, has changed. Tentative.
     Update,
+    /// One more repetition of an activity is over, from the event's start to its stop; its number is the count of `repetitions`. What ends
+    /// has had as many as it counts. Only if [asked for](super::EventOptions::each_repetition).
+    Repetition,
     /// It came to nothing. Ends what a start began.
     Cancel,
     /// It has happened. Final: nothing that ended is taken back, and every motion ends once.
@@ -24,6 +27,7 @@ impl Phase {
         match self {
             Phase::Start => "start",
             Phase::Update => "update",
+            Phase::Repetition => "repetition",
             Phase::Cancel => "cancel",
             Phase::End => "end",
         }

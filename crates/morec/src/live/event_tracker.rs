@@ -48,19 +48,18 @@ impl EventTracker {
         self.any_secs = self.any_secs.max(d.stop_secs);
         let mut say = self.say(wall_secs, out);
         let motion = early.take(d).unwrap_or_else(|| say.new_motion());
-        say.event(
-            Phase::End,
-            motion,
-            EarlyDetection {
-                class: d.class,
-                score: d.score,
-                progress: 1.0,
-                start_secs: d.start_secs,
-                seen_secs: d.stop_secs,
-                repetitions: d.repetitions,
-            },
-            d.reported_secs,
-        );
+        let ended = EarlyDetection {
+            class: d.class,
+            score: d.score,
+            progress: 1.0,
+            start_secs: d.start_secs,
+            seen_secs: d.stop_secs,
+            goes_on: false,
+            repetitions: d.repetitions,
+            whole: None,
+        };
+        early.end_repetitions(motion, &ended, d.reported_secs, &mut say);
+        say.event(Phase::End, motion, ended, d.reported_secs);
     }
 
     /// For saying something else than an end.

@@ -18,6 +18,8 @@ use super::{
 pub struct EventOptions {
     /// Say what seems to be under way, too.
     pub early: bool,
+    /// Make each repetition of an activity an event of its own ([`Phase::Repetition`](super::Phase::Repetition)).
+    pub each_repetition: bool,
     /// A motion of the same class that ends less than this after the one before it is not reported (but counted), seconds.
     /// At 0 the decoder's own rule holds: motions of one performer follow each other and never share more than two
     /// ticks, so one performance is one event.
@@ -28,6 +30,7 @@ impl Default for EventOptions {
     fn default() -> Self {
         Self {
             early: true,
+            each_repetition: false,
             refractory_secs: 0.0,
         }
     }
@@ -40,7 +43,6 @@ impl Default for EventOptions {
 #[derive(Debug)]
 pub struct Performer {
     model: Model,
-    tells_early: bool,
     rig: Option<Arc<Rig>>,
     recognizer: Option<Recognizer>,
     /// Reads what a model asks for beyond places of joints.
@@ -66,10 +68,9 @@ impl Performer {
             tracker: EventTracker::new(actor, model.classes().len(), options.refractory_secs),
             model,
             reader: None,
-            tells_early: options.early,
             rig: None,
             recognizer: None,
-            early: EarlyTracker::default(),
+            early: EarlyTracker::new(options),
             wall_secs: 0.0,
             unusable: 0,
             dropped: 0,
@@ -128,7 +129,7 @@ impl Performer {
             self.tracker
                 .emit(detection, &mut self.early, self.wall_secs, out);
         }
-        if self.tells_early {
+        if self.early.is_wanted() {
             let after_secs = self.tracker.last_stop_secs();
             let say = &mut self.tracker.say(self.wall_secs, out);
             self.early.look(

@@ -140,7 +140,9 @@ impl Pipeline for TemplatePipeline {
             progress: f64::from(underway.progress),
             start_secs: seen_secs - (underway.age + 1) as f64 * tick_secs,
             seen_secs,
+            goes_on: underway.goes_on,
             repetitions: underway.repetitions,
+            whole: (underway.whole).map(|(count, ticks)| (count, seen_secs - ticks * tick_secs)),
         })
     }
 

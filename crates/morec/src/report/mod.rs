@@ -11,6 +11,7 @@ mod html;
 mod misses;
 mod notes;
 mod palette;
+mod performances;
 pub mod pictures;
 mod tables;
 mod timeline;
@@ -19,7 +20,7 @@ mod timeline;
 mod tests;
 
 use crate::eval::{Evaluation, Timeline};
-use crate::explain::Miss;
+use crate::explain::{Miss, Performance};
 use crate::perturb::Perturbation;
 use crate::player::Reel;
 use html::{Text, with_contents};
@@ -42,6 +43,8 @@ pub struct Report<'a> {
     pub training: &'a [TrainedClass],
     /// Samples that were missed, and why; empty if nobody looked.
     pub misses: &'a [Miss],
+    /// How well motions were performed that were recognised rightly; empty if nobody looked.
+    pub performances: &'a [Performance],
     /// The measures at other rates of false alarms a minute, ascending; may be empty.
     pub sensitivities: &'a [(f64, Evaluation)],
     /// The measures of copies that are worse in one way; may be empty.
@@ -71,6 +74,7 @@ impl Report<'_> {
         figures::push(&mut body, self.evaluation);
         self.push_notes(&mut body);
         misses::push(&mut body, self.misses);
+        performances::push(&mut body, self.performances);
         curves::push_sensitivity(&mut body, self.sensitivities);
         curves::push_reliability(&mut body, &self.evaluation.reliability);
         curves::push_perturbed(&mut body, self.evaluation, self.perturbed);

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::eval::{ClipDetection, GroundTruth, StreamInfo, timelines};
-use crate::explain::Reason;
+use crate::explain::{BoneDeviation, MotionDeviation, Reason};
 
 fn truth(clip: &str, class: &str, start_secs: f64, stop_secs: f64) -> GroundTruth {
     GroundTruth {
@@ -21,6 +21,7 @@ fn found(clip: &str, class: &str, start_secs: f64, stop_secs: f64) -> ClipDetect
         stop_secs,
         score: Some(0.5),
         reported_secs: None,
+        repetitions: None,
     }
 }
 
@@ -48,11 +49,34 @@ fn report(
         timelines: &timelines,
         training,
         misses: &[],
+        performances: &[],
         sensitivities: &[],
         perturbed: &[],
         motion: None,
     }
     .html()
+}
+
+/// Of two seconds from 1.5 s on, and this far off on average.
+fn performance(off_degrees: f64) -> Performance {
+    let bone = |bone, off_degrees| BoneDeviation {
+        bone,
+        off_degrees,
+        worst_degrees: 2.0 * off_degrees,
+        worst_secs: 2.3,
+    };
+    Performance {
+        clip: "c".to_owned(),
+        class: "<y>".to_owned(),
+        start_secs: 1.5,
+        stop_secs: 3.5,
+        deviation: MotionDeviation {
+            off_degrees,
+            pace: 1.2,
+            bones: vec![bone("right_forearm", off_degrees), bone("head", 1.0)],
+            over_time_degrees: vec![0.5 * off_degrees, 1.5 * off_degrees, off_degrees],
+        },
+    }
 }
 
 /// Every element that is opened is closed, in order; returns how many there are.
@@ -208,6 +232,7 @@ fn curves_and_reasons_are_shown_where_they_are_known() {
         timelines: &[],
         training: &[],
         misses: &misses,
+        performances: &[performance(8.0), performance(30.0)],
         sensitivities: &[(0.1, none.clone()), (1.0, evaluation.clone())],
         perturbed: &[
             (Perturbation::White(0.01), evaluation.clone()),
@@ -218,8 +243,13 @@ fn curves_and_reasons_are_shown_where_they_are_known() {
     .html();
     check_nesting(&html);
     assert!(html.contains("&lt;y&gt; is nearer: 1.00 against 2.00"));
-    // Sensitivity, reliability, white noise.
-    assert_eq!(html.matches("<svg").count(), 3);
+    // Two performances, sensitivity, reliability, white noise.
+    assert_eq!(html.matches("<svg").count(), 5);
+    // The one that is farther off comes first, with its worst moment.
+    let at = |text: &str| html.find(text).unwrap_or_else(|| panic!("no {text}"));
+    assert!(at("30° off on average") < at("8° off on average"));
+    assert!(at("right forearm") < at("head"));
+    assert!(html.contains("<td>60°</td><td>2.30 s</td>"));
     assert!(html.contains("white:0.02"));
 }
 
@@ -239,6 +269,7 @@ fn sections_are_reached_from_the_top() {
         timelines: &[],
         training: &[],
         misses: &[],
+        performances: &[],
         sensitivities: &[],
         perturbed: &[],
         motion: Some(&Reel::default()),

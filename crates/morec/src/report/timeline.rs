@@ -189,8 +189,9 @@ fn push_row(out: &mut String, timeline: &Timeline, window: TimeWindow, palette: 
     let mut found_names = Names::new(FOUND_Y, right);
     for (found, verdict) in founds {
         push_found(out, found, *verdict, window, palette);
+        let counted = found.repetitions.map(|n| format!("{} × {n}", found.class));
         found_names.add(
-            &found.class,
+            counted.as_deref().unwrap_or(&found.class),
             window.x(found.start_secs),
             window.x(found.stop_secs),
         );
@@ -247,6 +248,9 @@ fn push_found(
     );
     if let Some(score) = found.score {
         title.push_str(&format!(", score {score:.3}"));
+    }
+    if let Some(count) = found.repetitions {
+        title.push_str(&format!(", {count} repetitions"));
     }
     if let Some(reported) = found.reported_secs {
         title.push_str(&format!(", reported at {reported:.2} s"));

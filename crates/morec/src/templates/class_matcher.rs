@@ -124,7 +124,9 @@ impl ClassMatcher {
                 distance: found.distance,
                 age: found.age,
                 progress,
+                goes_on: false,
                 repetitions: None,
+                whole: None,
             };
             match best {
                 Some(old) if found.distance >= old.distance => {

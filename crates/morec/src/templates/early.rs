@@ -54,6 +54,10 @@ pub struct OngoingMatch {
     pub age: usize,
     /// Share of the sample that has been seen, 0 to 1.
     pub progress: f32,
+    /// True of an activity: other motions come and go while it does.
+    pub goes_on: bool,
     /// Of an activity that repeats, so far.
     pub repetitions: Option<Repetitions>,
+    /// Of those, how many are certainly over, and ticks since the last of them was.
+    pub whole: Option<(u32, f64)>,
 }

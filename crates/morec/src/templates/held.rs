@@ -182,7 +182,9 @@ impl HoldDetector {
             // It ends when it is left, whenever that is.
             progress: 0.5,
             age,
+            goes_on: false,
             repetitions: None,
+            whole: None,
         })
     }
 

@@ -14,9 +14,6 @@ use super::set::{StreamKind, TrainSample, TrainSet, evenly};
 
 /// Length of a window, seconds; 2 to 3 are alike.
 const WINDOW_SECS: f64 = 2.5;
-/// A class whose longest sample lasts this long goes on. Gestures with a pause or with repetitions, which templates recognise better, last up
-/// to five.
-const LONG_SECS: f64 = 6.0;
 /// Windows of anything else at most, of made everyday motion and of all other sources each.
 const MOST_OTHERS: usize = 500;
 /// Fewer windows of anything else say little of what is none of the classes.
@@ -77,13 +74,10 @@ fn activity_classes(
     params: &TrainParams,
 ) -> BTreeSet<ClassId> {
     let goes_on = |class: &ClassId| {
-        let name = &set.classes[class.index()];
-        if let Some(kind) = params.kinds.get(name) {
-            return *kind == ClassKind::Activity;
-        }
         let of_class = samples.iter().filter(|s| s.class == *class);
         let longest = of_class.map(|s| s.rows.len()).max().unwrap_or(0);
-        longest as f64 >= LONG_SECS * params.features.tick_hz()
+        let longest_secs = longest as f64 / params.features.tick_hz();
+        params.kind(&set.classes[class.index()], longest_secs) == ClassKind::Activity
     };
     let taught: BTreeSet<ClassId> = samples.iter().map(|s| s.class).collect();
     taught.into_iter().filter(goes_on).collect()

@@ -91,6 +91,10 @@ pub struct TrainParams {
     pub kinds: BTreeMap<String, ClassKind>,
 }
 
+/// A class whose longest sample lasts this many seconds goes on. Gestures with a pause or with repetitions, which templates recognise better,
+/// last up to five.
+const LONG_SECS: f64 = 6.0;
+
 /// How a class is recognised.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -169,6 +173,16 @@ impl TrainParams {
         };
         self.kinds.extend(named(activities, ClassKind::Activity));
         self.kinds.extend(named(gestures, ClassKind::Gesture));
+    }
+
+    /// How a class is recognised whose longest sample lasts `longest_secs`, if there is other motion to tell it from.
+    pub fn kind(&self, class: &str, longest_secs: f64) -> ClassKind {
+        match self.kinds.get(class) {
+            _ if !self.activities => ClassKind::Gesture,
+            Some(kind) => *kind,
+            None if longest_secs >= LONG_SECS => ClassKind::Activity,
+            None => ClassKind::Gesture,
+        }
     }
 
     /// The values of the reference prototype.

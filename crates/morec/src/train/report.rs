@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::classes::{ClassId, ClassInfo};
 use crate::features::Profile;
-use crate::templates::{OperatingPoint, ReferenceRows};
+use crate::templates::{Activities, OperatingPoint, ReferenceRows};
 
 use super::alike::AlikeClasses;
 use super::from_clips::Prepared;
@@ -19,6 +19,37 @@ fn class_names(reference: &ReferenceRows, classes: &[ClassInfo]) -> String {
     let distinct = reference.distinct_classes();
     let names = distinct.iter().map(|c| classes[c.index()].name.as_str());
     names.collect::<Vec<_>>().join(", ")
+}
+
+/// A note about classes that are activities, and why.
+fn activity_note(
+    activities: &Activities,
+    prepared: &Prepared,
+    classes: &[ClassInfo],
+    params: &TrainParams,
+) -> String {
+    let tick_hz = params.features.tick_hz();
+    let named = |class: ClassId| {
+        let name = &classes[class.index()].name;
+        if params.kinds.contains_key(name) {
+            return format!("{name} (named one)");
+        }
+        let known = prepared.set.streams.iter().flat_map(|s| &s.known);
+        let of_class = known.filter(|span| span.class == Some(class));
+        let longest = of_class.map(|span| span.ticks.len()).max().unwrap_or(0);
+        format!("{name} (a sample lasts {:.1} s)", longest as f64 / tick_hz)
+    };
+    let names: Vec<String> = activities
+        .windows
+        .distinct_classes()
+        .into_iter()
+        .map(named)
+        .collect();
+    format!(
+        "recognised as an activity, from windows of {:.1} s, and reported when it ends: {}",
+        activities.window_ticks as f64 / tick_hz,
+        names.join(", ")
+    )
 }
 
 /// A note about classes that were named activities and are none.
@@ -125,11 +156,7 @@ impl TrainingReport {
             ));
         }
         if let Some(activities) = &trained.model.activities {
-            notes.push(format!(
-                "recognised as an activity, from windows of {:.1} s, and reported when it ends: {}",
-                activities.window_ticks as f64 / tick_hz,
-                class_names(&activities.windows, &classes)
-            ));
+            notes.push(activity_note(activities, prepared, &classes, params));
         }
         notes.extend(no_activity_note(trained, params));
         if !prepared.lacking.is_empty() {

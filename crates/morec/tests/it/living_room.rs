@@ -86,6 +86,7 @@ fn measured(model: &Model, device: Device) -> Figures {
                 stop_secs: d.stop_secs,
                 score: Some(d.score),
                 reported_secs: Some(d.reported_secs),
+                repetitions: d.repetitions.map(|r| r.count),
             })
             .collect();
         alarms += found.iter().filter(|f| is_idle(f, &room.idle)).count();

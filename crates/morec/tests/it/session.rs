@@ -73,12 +73,20 @@ impl Source for Scripted {
 }
 
 fn run(steps: Vec<Step>) -> (Vec<Event>, morec::live::Status) {
-    run_with(&made::model(), steps)
+    run_with(&made::model(), EventOptions::default(), steps)
 }
 
-fn run_with(model: &Arc<TemplateModel>, steps: Vec<Step>) -> (Vec<Event>, morec::live::Status) {
+fn run_with(
+    model: &Arc<TemplateModel>,
+    events: EventOptions,
+    steps: Vec<Step>,
+) -> (Vec<Event>, morec::live::Status) {
     let source = Box::new(Scripted(steps.into_iter()));
-    let (session, readers) = Session::start(model, source, &SessionOptions::default()).unwrap();
+    let options = SessionOptions {
+        events,
+        ..Default::default()
+    };
+    let (session, readers) = Session::start(model, source, &options).unwrap();
     let events = readers.into_iter().map(all).next().unwrap();
     (events, session.join())
 }
@@ -175,10 +183,8 @@ fn every_motion_ends_once_every_start_ends_or_is_cancelled_and_numbers_have_no_g
 fn an_activity_is_heard_of_every_second_and_its_repetitions_are_counted() {
     let model = Arc::new(made::activity_model());
     let poses = made::poses(&made::waving(3)).1;
-    let (events, _) = run_with(
-        &model,
-        vec![rig(0, Rig::of_roles()), Step::Frames(0, poses)],
-    );
+    let steps = || vec![rig(0, Rig::of_roles()), Step::Frames(0, poses.clone())];
+    let (events, _) = run_with(&model, EventOptions::default(), steps());
     let (end, going_on) = events.split_last().unwrap();
     assert_eq!(end.phase, Phase::End);
     let told: Vec<&Event> = going_on.iter().filter(|e| e.motion == end.motion).collect();
@@ -191,6 +197,20 @@ fn an_activity_is_heard_of_every_second_and_its_repetitions_are_counted() {
     }
     let repeated = end.repetitions.unwrap();
     assert!((7..=9).contains(&repeated.count), "{repeated:?}");
+
+    let options = EventOptions {
+        early: false,
+        each_repetition: true,
+        ..Default::default()
+    };
+    let each = run_with(&model, options, steps()).0;
+    let (last, repetitions) = each.split_last().unwrap();
+    assert_eq!(last.phase, Phase::End);
+    assert_eq!(repetitions.len(), repeated.count as usize);
+    assert!(repetitions.iter().all(|e| e.phase == Phase::Repetition));
+    for pair in repetitions.windows(2) {
+        assert!((pair[0].stop_secs - pair[1].start_secs).abs() < 1e-9);
+    }
 }
 
 #[test]

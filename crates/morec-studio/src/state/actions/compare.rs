@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use morec::eval::ClipDetection;
+use morec::explain::MotionDeviation;
 use morec::math::Vec3;
 
 use crate::jobs::JobOutcome;
@@ -70,6 +72,33 @@ impl State {
         all.truncate(MOST - 2);
         all.push(aligned);
         self.open_clip(of.clip, Some((of.start_secs, of.stop_secs)));
+    }
+
+    /// The performance that was compared last with the one that is shown, and how far off it is.
+    pub fn deviation(&self) -> Option<(&Aligned, &MotionDeviation)> {
+        let shown = self.player.motion.as_ref()?.id;
+        let last = self.companions.all.last().filter(|a| a.of.clip == shown)?;
+        Some((last, last.deviation.as_ref()?))
+    }
+
+    /// The recognised motion that plays in a loop, if one does.
+    pub fn chosen_detection(&self) -> Option<(Stretch, &ClipDetection)> {
+        let shown = self.player.motion.as_ref()?.id;
+        let (clip, found) = self
+            .detections
+            .as_ref()
+            .filter(|(clip, _)| *clip == shown)?;
+        let (start_secs, stop_secs) = self.player.looped?;
+        let found = found
+            .iter()
+            .find(|d| (d.start_secs, d.stop_secs) == (start_secs, stop_secs))?;
+        let clip = *clip;
+        let stretch = Stretch {
+            clip,
+            start_secs,
+            stop_secs,
+        };
+        Some((stretch, found))
     }
 
     /// Distance between neighbours, metres.

@@ -6,8 +6,8 @@ use std::sync::Arc;
 
 use morec::features::BoneSet;
 use morec::index::MotionIndex;
-use morec::train::Recipe;
 use morec::train::thesis::SvrdmOptions;
+use morec::train::{ClassKind, Recipe, TrainOptions};
 use morec_db::labels::DbSample;
 
 use super::lines::ShownCommand;
@@ -27,19 +27,28 @@ const JUDGING: &str = "Judging";
 fn train_line(
     db: &Path,
     classes: &[String],
-    parts: &'static str,
+    options: &TrainOptions,
     output: impl AsRef<Path>,
 ) -> ShownCommand {
     let line = ShownCommand::new("morec train").with("--db", db);
-    let line = with_parts(line.list("--classes", classes), parts);
+    let line = with_options(line.list("--classes", classes), options);
     line.with("-o", output.as_ref())
 }
 
-/// The option for the parts that count, unless it is the default.
-fn with_parts(line: ShownCommand, parts: &'static str) -> ShownCommand {
-    match parts == BoneSet::NAMED[0].0 {
-        true => line,
-        false => line.with("--bones", parts),
+/// The options for the kinds of classes and the parts that count, where they are not the defaults.
+fn with_options(line: ShownCommand, options: &TrainOptions) -> ShownCommand {
+    let of_kind = |kind: ClassKind| -> Vec<&String> {
+        let named = options.params.kinds.iter().filter(|(_, k)| **k == kind);
+        named.map(|(name, _)| name).collect()
+    };
+    let line = line.list("--activities", &of_kind(ClassKind::Activity));
+    let line = line.list("--gestures", &of_kind(ClassKind::Gesture));
+    let parts = BoneSet::NAMED
+        .iter()
+        .find(|(_, bones)| *bones == options.bones);
+    match parts.filter(|(name, _)| *name != BoneSet::NAMED[0].0) {
+        Some((name, _)) => line.with("--bones", name),
+        None => line,
     }
 }
 
@@ -52,9 +61,15 @@ impl State {
                     false => self.train.without.insert(class),
                 };
             }
+            TrainCommand::Kind { class, kind } => {
+                match kind {
+                    Some(kind) => self.train.kinds.insert(class, kind),
+                    None => self.train.kinds.remove(&class),
+                };
+            }
             TrainCommand::Parts(parts) => self.train.parts = parts,
             TrainCommand::Train => self.start_training(),
-            TrainCommand::Judge => self.start_judging(train::recipe(self.train.parts().1)),
+            TrainCommand::Judge => self.start_judging(self.train_options().into()),
             TrainCommand::Cell(cell) => self.show_cell(cell),
             TrainCommand::Moment(at) => self.go_to_moment(at),
             TrainCommand::Keep(name) => {
@@ -93,6 +108,18 @@ impl State {
             .collect()
     }
 
+    /// The options of training as they are chosen, for the classes that are learned.
+    fn train_options(&self) -> TrainOptions {
+        let mut options = train::options(self.train.parts().1);
+        let snapshot = self.store.as_ref().map(|store| &store.snapshot);
+        let classes = snapshot.iter().flat_map(|s| &s.classes);
+        let learned = classes.filter(|class| !self.train.without.contains(&class.name));
+        let kinds = &self.train.kinds;
+        let kind = |name: &String| Some((name.clone(), *kinds.get(name)?));
+        options.params.kinds = learned.filter_map(|class| kind(&class.name)).collect();
+        options
+    }
+
     /// Trains with what is labelled now; a training that is under way starts again.
     pub(in crate::state) fn start_training(&mut self) {
         let Some(store) = &self.store else { return };
@@ -104,15 +131,20 @@ impl State {
             job.cancel();
         }
         let (db, classes) = (store.path().to_owned(), self.chosen());
-        let (parts, bones) = self.train.parts();
+        let options = self.train_options();
         self.train.taught = self.train.now;
-        self.show_line(train_line(&db, &classes, parts, format!("{INDEX}.index")));
+        self.show_line(train_line(
+            &db,
+            &classes,
+            &options,
+            format!("{INDEX}.index"),
+        ));
         self.jobs.start(
             TRAINING,
             true,
             &self.wake,
             JobOutcome::Trained,
-            move |progress| train::run(&db, &classes, bones, progress),
+            move |progress| train::run(&db, &classes, options, progress),
         );
     }
 
@@ -130,7 +162,7 @@ impl State {
         let line = line.with("--by", by.option());
         let line = match &recipe {
             Recipe::Svrdm(_) => self.with_thesis(line),
-            Recipe::Templates(_) => Some(with_parts(line, self.train.parts().0)),
+            Recipe::Templates(_) => Some(with_options(line, &self.train_options())),
         };
         self.show_line(line.map(|line| line.list("--classes", &classes)));
         self.jobs.start(
@@ -257,7 +289,7 @@ impl State {
             Err(why) => self.complain(format!("{name}: not written: {why}")),
         }
         if let Some(store) = &self.store {
-            let line = train_line(store.path(), &self.chosen(), self.train.parts().0, path);
+            let line = train_line(store.path(), &self.chosen(), &self.train_options(), path);
             self.show_line(line);
         }
     }

@@ -24,6 +24,7 @@ fn found(clip: &str, class: &str, start_secs: f64, stop_secs: f64) -> ClipDetect
         stop_secs,
         score: None,
         reported_secs: None,
+        repetitions: None,
     }
 }
 

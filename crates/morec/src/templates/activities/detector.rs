@@ -130,13 +130,17 @@ impl ActivityDetector {
     /// The activity that goes on, if it has gone on long enough; its distance is that of the report's score as a share of `farthest`.
     pub fn underway(&self, farthest: f32) -> Option<OngoingMatch> {
         let run = self.run.filter(|run| run.count >= LEAST_WINDOWS)?;
+        let undecided = self.ticks - run.stop(self.ticks);
+        let whole = self.counter.whole();
         Some(OngoingMatch {
             class: self.classes[run.class],
             distance: (run.share() / 2.0) as f32 * farthest,
             // It ends when it is left, whenever that is.
             progress: 0.5,
             age: self.ticks - 1 - run.first * STEP_TICKS,
-            repetitions: self.counter.repetitions(self.ticks - run.stop(self.ticks)),
+            goes_on: true,
+            repetitions: self.counter.repetitions(undecided),
+            whole: whole.map(|(count, ticks)| (count, undecided as f64 + ticks)),
         })
     }
 

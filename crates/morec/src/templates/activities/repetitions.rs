@@ -111,6 +111,13 @@ impl RepetitionCounter {
         })
     }
 
+    /// Repetitions that are over in what was counted, and how many ticks before its end the last of them was over.
+    pub fn whole(&self) -> Option<(u32, f64)> {
+        let period = self.period_ticks?;
+        let whole = self.count.floor();
+        (whole >= 1.0).then(|| (whole as u32, (self.count - whole) * period))
+    }
+
     fn ticks_of(&self, secs: f64) -> usize {
         (secs * self.tick_hz).round() as usize
     }

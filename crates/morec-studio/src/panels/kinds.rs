@@ -1,0 +1,62 @@
+//! What a class is, a gesture or an activity, and why; a menu overrules it.
+
+use egui::{Ui, WidgetType};
+use morec::train::{ClassKind, TrainParams};
+
+use super::{Out, widgets};
+use crate::state::{Command, State, TrainCommand};
+
+/// A kind's name, and with its article.
+fn words(kind: ClassKind) -> (&'static str, &'static str) {
+    match kind {
+        ClassKind::Gesture => ("gesture", "a gesture"),
+        ClassKind::Activity => ("activity", "an activity"),
+    }
+}
+
+/// The kind of `class` with its reason, and a menu for another.
+pub fn choose(ui: &mut Ui, state: &State, class: &str, out: Out) {
+    let chosen = state.train.kinds.get(class).copied();
+    let longest_secs = longest_secs(state, class);
+    let usual = TrainParams::default().kind(class, longest_secs);
+    let (name, with_article) = words(chosen.unwrap_or(usual));
+    let (text, why) = match chosen {
+        Some(_) => (format!("{name} ✔"), "so it was chosen".to_owned()),
+        None => (
+            name.to_owned(),
+            format!("its longest label lasts {longest_secs:.1} s"),
+        ),
+    };
+    let menu = ui.menu_button(text, |ui| {
+        let by_labels = format!("By its labels: {}", words(usual).1);
+        let always = |kind| (Some(kind), format!("Always {}", words(kind).1));
+        let kinds = [
+            (None, by_labels),
+            always(ClassKind::Gesture),
+            always(ClassKind::Activity),
+        ];
+        for (kind, text) in kinds {
+            if ui.selectable_label(kind == chosen, text).clicked() {
+                let class = class.to_owned();
+                out.push(Command::Train(TrainCommand::Kind { class, kind }));
+                ui.close();
+            }
+        }
+    });
+    let named = format!("{class} is {with_article}: {why}");
+    widgets::named(&menu.response, WidgetType::Button, &named, false);
+    menu.response.on_hover_text(format!(
+        "{named}. An activity goes on: a window of a few seconds tells what it is, and its repetitions are counted. A gesture has a \
+         beginning and an end."
+    ));
+}
+
+/// Duration of the longest label of a class, seconds.
+fn longest_secs(state: &State, class: &str) -> f64 {
+    let snapshot = state.store.as_ref().map(|store| &store.snapshot);
+    let accepted = snapshot.into_iter().flat_map(|s| s.accepted());
+    let of_class = accepted.filter(|s| s.class == class);
+    of_class
+        .map(|s| s.stop_secs - s.start_secs)
+        .fold(0.0, f64::max)
+}

@@ -1,0 +1,69 @@
+//! Draws docs/guide/activities.svg: what a session says of a synthetic person who waves eight times.
+//! `cargo run --release -p morec --example activity_picture > docs/guide/activities.svg`.
+
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
+use std::sync::Arc;
+
+use morec::live::{Event, EventOptions, Frame, Performer, PerformerId, Phase, Rig};
+use morec::plot::{Bar, LaneChart};
+
+#[path = "../tests/it/made.rs"]
+#[allow(dead_code)]
+mod made;
+
+/// Bars that follow each other are this far apart, seconds.
+const GAP_SECS: f64 = 0.06;
+
+fn main() {
+    let (model, take) = (Arc::new(made::activity_model()), made::waving(3));
+    let options = EventOptions {
+        each_repetition: true,
+        ..EventOptions::default()
+    };
+    let mut performer = Performer::new(&model, PerformerId(0), &options);
+    let mut events: Vec<Event> = Vec::new();
+    performer.set_rig(&Arc::new(Rig::of_roles()), &mut |e| events.push(e));
+    let mut frame = Frame::default();
+    for (time_secs, pose) in made::poses(&take).1 {
+        frame.time_secs = time_secs;
+        frame.set_key_pose(&pose);
+        performer.push_own(&frame, &mut |e| events.push(e));
+    }
+    performer.finish(&mut |e| events.push(e));
+    let bar = |kind: usize| {
+        move |(from_secs, to_secs): (f64, f64)| Bar {
+            from_secs,
+            to_secs: to_secs - GAP_SECS,
+            kind,
+        }
+    };
+    let performed = take.labels.iter().map(|l| (l.start_secs, l.stop_secs));
+    let of = |phase: Phase| events.iter().filter(move |e| e.phase == phase);
+    let bounds = |e: &Event| (e.start_secs, e.stop_secs);
+    let moment = |e: &Event| (e.reported_secs, e.reported_secs + 0.06 + GAP_SECS);
+    let count = of(Phase::End).find_map(|e| e.repetitions).unwrap().count;
+    let kinds = [
+        "waves without a pause, as performed".to_owned(),
+        format!("the activity with its start and end: {count} repetitions"),
+        "each repetition as an event of its own".to_owned(),
+        "moments at which start, updates and end were said".to_owned(),
+    ];
+    let chart = LaneChart::new(
+        "Eight waves, live",
+        kinds.to_vec(),
+        take.clip.duration_secs(),
+    )
+    .lane("performed", performed.map(bar(0)))
+    .lane("end", of(Phase::End).map(bounds).map(bar(1)))
+    .lane("repetition", of(Phase::Repetition).map(bounds).map(bar(2)))
+    .lane(
+        "said",
+        events
+            .iter()
+            .filter(|e| e.phase != Phase::Repetition)
+            .map(moment)
+            .map(bar(3)),
+    );
+    println!("{}", chart.svg().trim_end());
+}
