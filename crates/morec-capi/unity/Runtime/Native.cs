@@ -70,6 +70,7 @@ namespace Morec
         Update = 1,
         Cancel = 2,
         End = 3,
+        Repetition = 4,
     }
 
     public enum MorecMethod
@@ -189,6 +190,7 @@ namespace Morec
         public const int MOREC_EARLY_EVENTS = 1;
         public const int MOREC_PERFORMER_ANYONE = 2;
         public const int MOREC_PERFORMER_TEACHER = 4;
+        public const int MOREC_REPETITION_EVENTS = 8;
         public const int MOREC_ROLE_COUNT = 18;
         public const int MOREC_POINT_COUNT = 60;
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]

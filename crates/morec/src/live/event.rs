@@ -13,7 +13,7 @@ pub enum Phase {
     /// Its progress, or what it seems to be, has changed. Tentative.
     Update,
     /// One more repetition of an activity is over, from the event's start to its stop; its number is the count of `repetitions`. What ends
-    /// has had as many as it counts. Only if [asked for](super::EventOptions::each_repetition).
+    /// has had as many as it counts. Only if [asked for](EventOptions::each_repetition).
     Repetition,
     /// It came to nothing. Ends what a start began.
     Cancel,
@@ -79,5 +79,28 @@ impl Event {
     /// The wall clock at a time of the source's clock, seen from this event.
     pub fn wall_at_secs(&self, time_secs: f64) -> f64 {
         self.wall_secs - (self.reported_secs - time_secs)
+    }
+}
+
+/// Selection and rate of events.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EventOptions {
+    /// Say what seems to be under way, too.
+    pub early: bool,
+    /// Make each repetition of an activity an event of its own ([`Phase::Repetition`]).
+    pub each_repetition: bool,
+    /// A motion of the same class that ends less than this after the one before it is not reported (but counted), seconds.
+    /// At 0 the decoder's own rule holds: motions of one performer follow each other and never share more than two
+    /// ticks, so one performance is one event.
+    pub refractory_secs: f64,
+}
+
+impl Default for EventOptions {
+    fn default() -> Self {
+        Self {
+            early: true,
+            each_repetition: false,
+            refractory_secs: 0.0,
+        }
     }
 }

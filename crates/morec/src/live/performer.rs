@@ -9,32 +9,9 @@ use crate::features::BoneSet;
 use super::early::EarlyTracker;
 use super::event_tracker::EventTracker;
 use super::{
-    EarlyDetection, Event, Frame, Model, PerformerId, PoseExtractor, Recognizer, RecognizerInput,
-    Rig,
+    EarlyDetection, Event, EventOptions, Frame, Model, PerformerId, PoseExtractor, Recognizer,
+    RecognizerInput, Rig,
 };
-
-/// Selection and rate of events.
-#[derive(Debug, Clone, PartialEq)]
-pub struct EventOptions {
-    /// Say what seems to be under way, too.
-    pub early: bool,
-    /// Make each repetition of an activity an event of its own ([`Phase::Repetition`](super::Phase::Repetition)).
-    pub each_repetition: bool,
-    /// A motion of the same class that ends less than this after the one before it is not reported (but counted), seconds.
-    /// At 0 the decoder's own rule holds: motions of one performer follow each other and never share more than two
-    /// ticks, so one performance is one event.
-    pub refractory_secs: f64,
-}
-
-impl Default for EventOptions {
-    fn default() -> Self {
-        Self {
-            early: true,
-            each_repetition: false,
-            refractory_secs: 0.0,
-        }
-    }
-}
 
 /// Follows one performer: skeletons and frames in, events out.
 ///

@@ -6,8 +6,8 @@ use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
 use super::broadcast::WorkerOptions;
+use super::event::EventOptions;
 use super::feed::{FeedReceiver, FeedSender, feed};
-use super::performer::EventOptions;
 use super::status::{SessionCounters, Status, StatusHandle};
 use super::waker::Waker;
 use super::worker::{EventReader, StreamWorker, TurnOutcome};

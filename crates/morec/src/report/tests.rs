@@ -248,7 +248,7 @@ fn curves_and_reasons_are_shown_where_they_are_known() {
     // The one that is farther off comes first, with its worst moment.
     let at = |text: &str| html.find(text).unwrap_or_else(|| panic!("no {text}"));
     assert!(at("30° off on average") < at("8° off on average"));
-    assert!(at("right forearm") < at("head"));
+    assert!(at("row\">right forearm") < at("row\">head"));
     assert!(html.contains("<td>60°</td><td>2.30 s</td>"));
     assert!(html.contains("white:0.02"));
 }

@@ -13,7 +13,8 @@ use super::alike::SampleRivals;
 use super::examples::LeaveOneOutView;
 use super::faster::{beginning, faster_copies, is_early, matches_beginning};
 use super::mining::{
-    NO_MATCH, NearMiss, Nearest, Offer, TrainGates, for_each_match, keep_nearest, ticks_within,
+    NO_MATCH, NearMiss, NearestByGate, Offer, TrainGates, for_each_match, keep_nearest,
+    ticks_within,
 };
 use super::params::TrainParams;
 use super::set::{StreamKind, TrainSample, TrainSet, TrainStream};
@@ -35,7 +36,7 @@ pub struct TrainingContext<'a> {
 #[derive(Debug, Clone)]
 pub struct StreamMatches {
     /// The nearest template of all at every tick.
-    pub all: Nearest,
+    pub all: NearestByGate,
     /// The nearest template that is not of the stream's group, under the plain gate: what a new person would be near.
     pub others: Vec<Match>,
     /// For each tick the nearest match of every class, by [`LeaveOneOutView`]; empty where nothing is verified.
@@ -115,7 +116,7 @@ impl TrainingContext<'_> {
             let ticks = stream.rows.len();
             let classes = verified.map_or_else(Vec::new, |_| view.none(place));
             let mut found = StreamMatches {
-                all: Nearest::none(ticks, gates),
+                all: NearestByGate::none(ticks, gates),
                 others: vec![NO_MATCH; ticks],
                 classes,
                 rivals: SampleRivals::of_stream(set, samples, place, decode),
@@ -146,7 +147,7 @@ impl TrainingContext<'_> {
         matches: &[StreamMatches],
         gates: TrainGates,
         (verifies, most): (bool, f64),
-    ) -> Result<Vec<Nearest>, TrainError> {
+    ) -> Result<Vec<NearestByGate>, TrainError> {
         let streams = &self.set.streams;
         let wanted = |place: usize, stream: &TrainStream| {
             if verifies || stream.source == StreamKind::Labelled {
@@ -160,7 +161,7 @@ impl TrainingContext<'_> {
         let matchers = self.matchers(rows.iter());
         let stage = "comparing with near misses";
         self.each_stream(&matchers, stage, |matchers, place, stream| {
-            let mut near = Nearest::none(stream.rows.len(), gates);
+            let mut near = NearestByGate::none(stream.rows.len(), gates);
             self.matches(matchers, stream, &wanted(place, stream), |offer| {
                 if streams[negatives[offer.template].stream].group != stream.group {
                     near.take(offer, gates);

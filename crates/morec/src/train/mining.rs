@@ -58,14 +58,14 @@ pub struct TrainGates {
 
 /// The nearest of some templates at every tick of a stream.
 #[derive(Debug, Clone, Default)]
-pub struct Nearest {
+pub struct NearestByGate {
     /// Of those that pass the plain gate.
     pub plain: Vec<Match>,
     /// Of those that pass the wide gate; empty without one.
     pub wide: Vec<Match>,
 }
 
-impl Nearest {
+impl NearestByGate {
     /// Nothing near at any of `ticks`.
     pub fn none(ticks: usize, gates: TrainGates) -> Self {
         Self {

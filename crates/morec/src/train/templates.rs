@@ -20,7 +20,7 @@ use super::alike::{AlikeClasses, alike_classes};
 use super::comparison::{StreamMatches, TrainingContext};
 use super::examples::{self, CandidateFinder, NearStream, VerifierExample};
 use super::held;
-use super::mining::{NearMiss, Nearest, TrainGates, hard_negatives, smallest};
+use super::mining::{NearMiss, NearestByGate, TrainGates, hard_negatives, smallest};
 use super::operating::AlarmCurve;
 use super::params::TrainParams;
 use super::scatter::{covariance, ridged, within_class};
@@ -169,7 +169,7 @@ pub fn train(
     let gates = TrainGates { plain, wide };
     let gate_of_verifier = verified.filter(|_| verifies).map(MatchGate::plain);
     let matches = step.templates(&samples, gates, gate_of_verifier)?;
-    let near: Vec<&Nearest> = matches.iter().map(|m| &m.all).collect();
+    let near: Vec<&NearestByGate> = matches.iter().map(|m| &m.all).collect();
     let near_enough = step.operating(&near, None, |near| &near.plain);
     let negatives = negatives_of(
         set,
@@ -188,7 +188,7 @@ pub fn train(
     };
     let rule = (verifies, step.largest_threshold());
     let near_negatives = step.negatives((&negatives, &rows), &matches, all, rule)?;
-    let seen: Vec<&Nearest> = near_negatives.iter().collect();
+    let seen: Vec<&NearestByGate> = near_negatives.iter().collect();
     let stranger = wide.map(|gate| {
         let operating = step.operating(&near, Some(&seen), |near| &near.wide);
         step.stranger_gate(gate, operating)
@@ -300,9 +300,9 @@ impl TrainingContext<'_> {
     /// The threshold under the gate that `of` chooses; `negatives` add what near misses of other people and clips keep out.
     fn operating(
         &self,
-        near: &[&Nearest],
-        negatives: Option<&[&Nearest]>,
-        of: impl Fn(&Nearest) -> &[Match],
+        near: &[&NearestByGate],
+        negatives: Option<&[&NearestByGate]>,
+        of: impl Fn(&NearestByGate) -> &[Match],
     ) -> Operating {
         let params = self.params;
         let near: Vec<&[Match]> = near.iter().map(|near| of(near)).collect();
@@ -361,7 +361,7 @@ impl TrainingContext<'_> {
     fn verifier(
         &self,
         matches: &[StreamMatches],
-        negatives: &[Nearest],
+        negatives: &[NearestByGate],
         threshold: f32,
     ) -> Option<Verifier> {
         let (set, params) = (self.set, self.params);

@@ -143,6 +143,7 @@ mod tests {
             svg(ChannelKind::Position, Some(3)).is_none()
                 && svg(ChannelKind::Rotation, Some(4)).is_none()
         );
-        assert!(channel_chart(&compressed, &clip, 1, ChannelKind::Rotation, None).is_none());
+        let none = clip.skeleton.joints().len();
+        assert!(channel_chart(&compressed, &clip, none, ChannelKind::Rotation, None).is_none());
     }
 }
