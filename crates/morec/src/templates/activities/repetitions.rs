@@ -115,7 +115,7 @@ impl RepetitionCounter {
     pub fn whole(&self) -> Option<(u32, f64)> {
         let period = self.period_ticks?;
         let whole = self.count.floor();
-        (whole >= 1.0).then(|| (whole as u32, (self.count - whole) * period))
+        (whole >= 1.0).then_some((whole as u32, (self.count - whole) * period))
     }
 
     fn ticks_of(&self, secs: f64) -> usize {
