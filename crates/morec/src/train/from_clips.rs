@@ -71,7 +71,7 @@ pub struct Prepared {
     /// Bones that every labelled clip shows.
     pub bones: BoneSet,
     /// Parameters that rows were made with: the heading is the shoulders' if a clip that teaches shows no hips, and hands have
-    /// [parameters of their own](Profile::features).
+    /// [parameters of their own](FeatureParams::usual).
     pub features: FeatureParams,
     /// Number of clips that hold samples.
     pub teaching: usize,
