@@ -30,6 +30,7 @@ pub use mocap::pose::{
     ALL_BONES, BODY_BONES, BONES, Bone, BoneKind, BoneSet, Hand, HandPoints, KeyPose, PalmFrame,
     Profile, all_bones_of_clip, bones_of_clip, for_each_pose, shows_hips,
 };
+#[cfg(feature = "live")]
 pub(crate) use noise::USUAL_NOISE_GAIN;
 pub use observe::{Observation, Observer};
 pub use of_clip::rows_of_clip;
