@@ -24,6 +24,7 @@ mod candidates;
 mod confidence;
 mod material;
 mod options;
+mod pieces;
 mod questions;
 mod stretches;
 mod views;

@@ -6,7 +6,7 @@ use std::ops::Range;
 use morec::features::BoneSet;
 use morec::train::{ClassKind, TrainParams, motion_span};
 
-use super::stretches::pieces;
+use super::pieces::pieces;
 use crate::labels::{DbSample, SampleState};
 use crate::rows::ClipRows;
 use crate::search::layout::{CanonicalRows, to_canonical};

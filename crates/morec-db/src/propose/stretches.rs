@@ -1,31 +1,11 @@
-//! Activities: long labels are looked for by pieces of a repetition or a few, and what is found becomes whole stretches again.
-//!
-//! A label of twenty seconds is like no other as a whole: another person repeats the motion at another pace, and more or less often.
+//! Activities: pieces that were found become whole stretches again.
 
 use std::collections::BTreeMap;
-use std::ops::Range;
-
-use morec::features::Rows;
-use morec::segment::{CycleParams, cycles};
 
 use super::candidates::ProposalCandidate;
 
-/// A piece lasts at least this: shorter ones are found by chance. Seconds.
-const LEAST_SECS: f64 = 1.0;
-/// Pieces of what has no period, seconds: as long as the windows by which activities are recognised.
-const USUAL_SECS: f64 = 2.5;
 /// Pieces belong to a stretch if they are at least this likely, or half as likely as the likeliest in the clip.
 const LIKELY: f64 = 0.5;
-
-/// Even pieces of a stretch of rows, each of as many whole repetitions as last a second; `ticks` is where the rows lie.
-pub fn pieces(rows: &Rows, ticks: &Range<usize>, tick_hz: f64) -> Vec<Range<usize>> {
-    let period_secs = cycles(rows, tick_hz, &CycleParams::default())
-        .map_or(USUAL_SECS, |cycles| cycles.period_secs);
-    let piece_secs = period_secs * (LEAST_SECS / period_secs).ceil();
-    let count = ((ticks.len() as f64 / tick_hz / piece_secs) as usize).max(1);
-    let bound = |piece: usize| ticks.start + ticks.len() * piece / count;
-    (0..count).map(|i| bound(i)..bound(i + 1)).collect()
-}
 
 /// Candidates of the classes that are activities, joined to stretches where they follow each other within the length of one; a stretch is
 /// as likely as its pieces are on average. Others stay.

@@ -6,12 +6,13 @@ use crate::roles::RoleMap;
 use crate::synth;
 use crate::templates::TemplateModel;
 
+use super::error::TrainError;
 use super::from_clips::{LabelSet, TrainClip, build_train_set};
 use super::mirror::add_mirrored;
 use super::options::{ENOUGH_BACKGROUND_SECS, EVERYDAY_SEED, Everyday, TrainOptions};
 use super::report::TrainingReport;
 use super::set::StreamKind;
-use super::templates::{TrainError, train};
+use super::templates::train;
 
 /// Trains on labelled and background clips, and on everyday motion as the options say.
 ///

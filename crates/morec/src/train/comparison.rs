@@ -10,6 +10,7 @@ use crate::progress::Progress;
 use crate::templates::{Match, MatchGate, Matcher, Metric};
 
 use super::alike::SampleRivals;
+use super::error::TrainError;
 use super::examples::LeaveOneOutView;
 use super::faster::{beginning, faster_copies, is_early, matches_beginning};
 use super::mining::{
@@ -18,7 +19,6 @@ use super::mining::{
 };
 use super::params::TrainParams;
 use super::set::{StreamKind, TrainSample, TrainSet, TrainStream};
-use super::templates::TrainError;
 
 /// State common to the steps of a training.
 pub struct TrainingContext<'a> {

@@ -14,9 +14,9 @@ use crate::import::Take;
 use crate::labels::Sample;
 use crate::roles::RoleMap;
 
+use super::error::TrainError;
 use super::params::TrainParams;
 use super::set::{LabelledSpan, StreamKind, TrainSet, TrainStream};
-use super::templates::TrainError;
 use super::trim::motion_span;
 
 /// A clip ready for training: Y up, its joints' roles known.

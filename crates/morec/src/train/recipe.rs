@@ -4,10 +4,10 @@ use crate::live::Model;
 use crate::progress::Progress;
 
 use super::clips::train_clips;
+use super::error::TrainError;
 use super::from_clips::{LabelSet, TrainClip};
 use super::options::TrainOptions;
 use super::report::TrainingReport;
-use super::templates::TrainError;
 use super::thesis::{SvrdmOptions, train_svrdm};
 
 /// A method with its options.
