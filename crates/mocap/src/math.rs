@@ -35,7 +35,7 @@ pub mod portable {
     }
 
     /// `base^exponent` of a normal positive number, where many are needed: to a relative error of 1e-10 before it is rounded, for results that are
-    /// normal numbers. In sums and products alone, by the series of the area tangent and of the exponential.
+    /// normal numbers. In sums and products alone, by the series of the inverse hyperbolic tangent and of the exponential.
     #[inline]
     pub fn power(base: f32, exponent: f32) -> f32 {
         let bits = f64::from(base).to_bits();

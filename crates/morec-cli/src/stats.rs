@@ -128,11 +128,10 @@ impl Stats {
         self.whole
     }
 
-    /// Times by stage. Forward kinematics is part of making rows, and matching part of recognising.
+    /// Times of the stages of the whole path, and of it. Forward kinematics is part of making rows, and matching part of recognising.
     fn times(&self) -> Vec<(&'static str, Duration)> {
         let rest = |all: Duration, part: Duration| all.saturating_sub(part);
         let mut times = vec![
-            ("reading the files", self.reading),
             ("poses of joints", self.kinematics),
             (
                 "poses to feature rows",
@@ -164,18 +163,20 @@ impl fmt::Display for Stats {
             "{:32} {:>12} {:>8} {:>16}",
             "stage", "µs a frame", "share", "frames a second"
         )?;
-        for (name, time) in self.times() {
+        let mut line = |name: &str, time: Duration, share: &str| {
             let secs = time.as_secs_f64();
-            // Files are read before anything is recognised.
-            let share = match name.starts_with("reading") {
-                true => String::new(),
-                false => format!("{:.1} %", 100.0 * secs / whole),
+            let of_frame = secs * 1e6 / (*frames).max(1) as f64;
+            // A difference of two times may be lost in their noise.
+            let rate = match time.is_zero() {
+                true => "–".to_owned(),
+                false => format!("{:.0}", *frames as f64 / secs),
             };
-            let (of_frame, rate) = (
-                secs * 1e6 / (*frames).max(1) as f64,
-                *frames as f64 / secs.max(1e-9),
-            );
-            writeln!(f, "{name:32} {of_frame:>12.2} {share:>8} {rate:>16.0}")?;
+            writeln!(f, "{name:32} {of_frame:>12.2} {share:>8} {rate:>16}")
+        };
+        line("reading the files", self.reading, "")?;
+        for (name, time) in self.times() {
+            let share = format!("{:.1} %", 100.0 * time.as_secs_f64() / whole);
+            line(name, time, &share)?;
         }
         Ok(())
     }

@@ -4,6 +4,11 @@ use super::meaning::{NameMeaning, Side};
 
 /// Lower-case words of a name: cut at anything but letters and where the case changes, digits dropped.
 pub(super) fn words(name: &str) -> Vec<String> {
+    words_of(name, char::is_alphabetic)
+}
+
+/// The same of the characters that are `kept`; the others are where it is cut.
+pub(super) fn words_of(name: &str, kept: impl Fn(char) -> bool) -> Vec<String> {
     let letters: Vec<char> = name.chars().collect();
     let mut words = Vec::new();
     let mut word = String::new();
@@ -11,10 +16,10 @@ pub(super) fn words(name: &str) -> Vec<String> {
         let next_is_lower = letters.get(i + 1).is_some_and(|n| n.is_lowercase());
         let before_is_lower = i > 0 && letters[i - 1].is_lowercase();
         let begins = c.is_uppercase() && (before_is_lower || next_is_lower);
-        if (begins || !c.is_alphabetic()) && !word.is_empty() {
+        if (begins || !kept(c)) && !word.is_empty() {
             words.push(std::mem::take(&mut word));
         }
-        if c.is_alphabetic() {
+        if kept(c) {
             word.extend(c.to_lowercase());
         }
     }

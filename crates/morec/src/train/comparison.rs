@@ -121,7 +121,17 @@ impl TrainingContext<'_> {
                 classes,
                 rivals: SampleRivals::of_stream(set, samples, place, decode),
             };
-            let wanted = wanted_of(stream, &found.rivals, verified.is_some());
+            let mut ends_sample = vec![false; ticks];
+            let ends = found.rivals.iter().map(SampleRivals::ends);
+            ends.for_each(|ends| ends_sample[ends].fill(true));
+            let all = verified.is_some()
+                || stream.source != StreamKind::Labelled
+                || stream.rest_is_background;
+            // Else matches are asked for where a sample ends alone.
+            let wanted = match all {
+                true => vec![true; ticks],
+                false => ends_sample.clone(),
+            };
             self.matches(matchers, stream, &wanted, |offer| {
                 let sample = &samples[offer.template];
                 found.all.take(offer, gates);
@@ -131,8 +141,10 @@ impl TrainingContext<'_> {
                 if let Some(gate) = verified {
                     view.take(&mut found.classes, offer, place, gate);
                 }
-                for rivals in &mut found.rivals {
-                    rivals.take(offer, (sample, place), gates.plain, decode);
+                if ends_sample[offer.tick] {
+                    for rivals in &mut found.rivals {
+                        rivals.take(offer, (sample, place), gates.plain, decode);
+                    }
                 }
             });
             found
@@ -233,12 +245,4 @@ impl TrainingContext<'_> {
             .flat_map(early)
             .collect()
     }
-}
-
-/// The ticks of a stream whose matches are asked for: all of background and for a verifier, else where a sample ends.
-fn wanted_of(stream: &TrainStream, rivals: &[SampleRivals], verifies: bool) -> Vec<bool> {
-    let is_labelled = stream.source == StreamKind::Labelled && !stream.rest_is_background;
-    let mut wanted = vec![verifies || !is_labelled; stream.rows.len()];
-    rivals.iter().for_each(|r| wanted[r.ends()].fill(true));
-    wanted
 }

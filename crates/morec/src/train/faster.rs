@@ -1,6 +1,7 @@
 //! Faster copies of samples as templates, for people who perform faster than those who teach.
 
 use std::collections::BTreeSet;
+use std::ops::Range;
 
 use crate::decode::FAR;
 use crate::features::{BoneSet, retimed_rows};
@@ -63,12 +64,12 @@ pub fn faster_copies(
 }
 
 /// Ticks at which a match of a copy ends in the beginning of `sample`, and one more on both sides.
-pub fn beginning(sample: &TrainSample, ticks: usize) -> std::ops::Range<usize> {
+pub fn beginning(sample: &TrainSample, ticks: usize) -> Range<usize> {
     let ends = ends_in_beginning(sample, ticks);
     ends.start.saturating_sub(1)..(ends.end + 1).min(ticks)
 }
 
-fn ends_in_beginning(sample: &TrainSample, ticks: usize) -> std::ops::Range<usize> {
+fn ends_in_beginning(sample: &TrainSample, ticks: usize) -> Range<usize> {
     let start = sample.ticks.start;
     start..(start + share_of(sample, BEGINNING)).min(ticks)
 }

@@ -1,5 +1,7 @@
 //! Names of points in one spelling.
 
+use crate::roles::words::words_of;
+
 /// Names without subject and marks, in lower case, a side in front: `lshoulder` for `LEFT_SHOULDER`, `ShoulderLeft`,
 /// `L.Shoulder`, `Anna:LShoulder`. A first word that all names share is dropped, and a last one that says what all are.
 pub(super) fn normalised(names: &[&str]) -> Vec<String> {
@@ -32,24 +34,7 @@ pub(super) fn normalised_one(name: &str) -> String {
 /// Lower-case words, cut at marks and where the case changes; digits stay with the word before them.
 pub(super) fn words(name: &str) -> Vec<String> {
     let bare = name.rsplit(':').next().unwrap_or(name);
-    let letters: Vec<char> = bare.chars().collect();
-    let mut words = Vec::new();
-    let mut word = String::new();
-    for (i, &c) in letters.iter().enumerate() {
-        let next_is_lower = letters.get(i + 1).is_some_and(|n| n.is_lowercase());
-        let before_is_lower = i > 0 && letters[i - 1].is_lowercase();
-        let begins = c.is_uppercase() && (before_is_lower || next_is_lower);
-        if (begins || !c.is_alphanumeric()) && !word.is_empty() {
-            words.push(std::mem::take(&mut word));
-        }
-        if c.is_alphanumeric() {
-            word.extend(c.to_lowercase());
-        }
-    }
-    if !word.is_empty() {
-        words.push(word);
-    }
-    words
+    words_of(bare, char::is_alphanumeric)
 }
 
 /// The side first, then the rest.

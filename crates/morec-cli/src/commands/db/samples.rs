@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use morec_db::MotionDb;
 use morec_db::labels::{DbSample, SampleFilter, SampleId, SampleState};
 
@@ -89,12 +89,17 @@ fn filter(args: &Args, db: &MotionDb) -> Result<SampleFilter> {
 
 fn remove(args: &Args) -> Result<ExitCode> {
     let mut db = database::open(&args.db)?;
+    let there = db.samples(&SampleFilter::default())?;
+    if let Some(number) = args
+        .remove
+        .iter()
+        .find(|n| !there.iter().any(|s| s.id.0 == **n))
+    {
+        anyhow::bail!("there is no sample {number}; nothing was removed");
+    }
     let ids: Vec<SampleId> = args.remove.iter().copied().map(SampleId).collect();
-    let removed = ids.iter().map(|id| db.sample(*id));
-    let removed: Vec<DbSample> = removed
-        .collect::<Result<_, _>>()
-        .context("nothing was removed")?;
     db.remove_samples(&ids)?;
+    let removed: Vec<DbSample> = there.into_iter().filter(|s| ids.contains(&s.id)).collect();
     if !args.json {
         eprintln!("morec: removed:");
     }
