@@ -44,9 +44,9 @@
 #define MOREC_ROLE_COUNT 18
 
 /**
- * Number of parts of the body and points of both hands together; they are numbered from 0.
+ * Number of parts of the body, points of both hands and points of a custom skeleton together; they are numbered from 0.
  */
-#define MOREC_POINT_COUNT 60
+#define MOREC_POINT_COUNT 84
 
 /**
  * Result of a call. Numbers stay what they are; later versions may add some.
@@ -890,12 +890,12 @@ const char *morec_status_text(int32_t status);
 const char *morec_version(void);
 
 /**
- * The name of a `MorecRole` or a point of a hand, as in `left_forearm` and `right_index_tip`; null for a number that is none. The text stays for ever.
+ * The name of a `MorecRole` or a point of a hand or of a custom skeleton, as in `left_forearm`, `right_index_tip` and `point_1`; null for a number that is none. The text stays for ever.
  */
 const char *morec_role_name(int32_t role);
 
 /**
- * The `MorecRole` of this name, or the number of a point of a hand; `MOREC_ROLE_NONE` if there is none, or `name` is null.
+ * The `MorecRole` of this name, or the number of a point of a hand or of a custom skeleton; `MOREC_ROLE_NONE` if there is none, or `name` is null.
  *
  * # Safety
  * `name` is null or ends with a zero.

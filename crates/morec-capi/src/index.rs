@@ -122,7 +122,7 @@ pub unsafe extern "C" fn morec_index_facts(
             class_count: model.classes().len() as u32,
             roles: model
                 .roles()
-                .filter(|role| !role.is_of_hand())
+                .filter(|role| role.is_of_body())
                 .fold(0, |roles, role| roles | 1 << role.index()),
             sample_count: model
                 .classes()

@@ -59,7 +59,7 @@ pub(crate) fn body() -> Rig {
     let mut rig = Rig::of_roles();
     let joints = rig.skeleton.joints().iter().take(Role::BODY_COUNT);
     rig.skeleton = Skeleton::new(joints.cloned().collect()).unwrap_or_default();
-    for role in Role::ALL.into_iter().filter(|role| role.is_of_hand()) {
+    for role in Role::ALL.into_iter().filter(|role| !role.is_of_body()) {
         rig.roles.set(role, None);
     }
     rig
@@ -244,7 +244,7 @@ mod tests {
     #[test]
     fn a_role_has_one_joint_and_a_parent_comes_first() {
         assert!(given_roles(&[0, -1, 0]).is_err());
-        assert!(given_roles(&[60]).is_err());
+        assert!(given_roles(&[Role::COUNT as i32]).is_err());
         let convention = Convention::new(1, 0).unwrap();
         let names = vec![String::new(); 2];
         assert!(joints(&[1, -1], &names, None, &convention).is_err());

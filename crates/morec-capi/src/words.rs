@@ -37,8 +37,8 @@ pub enum MorecRole {
 /// Number of parts of the body; they are numbered from 0.
 pub const MOREC_ROLE_COUNT: u32 = 18;
 
-/// Number of parts of the body and points of both hands together; they are numbered from 0.
-pub const MOREC_POINT_COUNT: u32 = 60;
+/// Number of parts of the body, points of both hands and points of a custom skeleton together; they are numbered from 0.
+pub const MOREC_POINT_COUNT: u32 = 84;
 
 const _: () = assert!(MOREC_POINT_COUNT as usize == Role::COUNT);
 const _: () = assert!(
@@ -107,6 +107,30 @@ const NAMES: [&CStr; Role::COUNT] = [
     c"right_little_2",
     c"right_little_3",
     c"right_little_tip",
+    c"point_1",
+    c"point_2",
+    c"point_3",
+    c"point_4",
+    c"point_5",
+    c"point_6",
+    c"point_7",
+    c"point_8",
+    c"left_point_1",
+    c"left_point_2",
+    c"left_point_3",
+    c"left_point_4",
+    c"left_point_5",
+    c"left_point_6",
+    c"left_point_7",
+    c"left_point_8",
+    c"right_point_1",
+    c"right_point_2",
+    c"right_point_3",
+    c"right_point_4",
+    c"right_point_5",
+    c"right_point_6",
+    c"right_point_7",
+    c"right_point_8",
 ];
 
 /// The role of this number, if it is one.
@@ -123,13 +147,13 @@ pub extern "C" fn morec_version() -> *const c_char {
     VERSION.as_ptr().cast()
 }
 
-/// The name of a `MorecRole` or a point of a hand, as in `left_forearm` and `right_index_tip`; null for a number that is none. The text stays for ever.
+/// The name of a `MorecRole` or a point of a hand or of a custom skeleton, as in `left_forearm`, `right_index_tip` and `point_1`; null for a number that is none. The text stays for ever.
 #[unsafe(no_mangle)]
 pub extern "C" fn morec_role_name(role: i32) -> *const c_char {
     self::role(role).map_or(std::ptr::null(), |role| NAMES[role.index()].as_ptr())
 }
 
-/// The `MorecRole` of this name, or the number of a point of a hand; `MOREC_ROLE_NONE` if there is none, or `name` is null.
+/// The `MorecRole` of this name, or the number of a point of a hand or of a custom skeleton; `MOREC_ROLE_NONE` if there is none, or `name` is null.
 ///
 /// # Safety
 /// `name` is null or ends with a zero.
@@ -155,6 +179,6 @@ mod tests {
             let named = unsafe { morec_role_from_name(NAMES[known.index()].as_ptr()) };
             assert_eq!(named, number);
         }
-        assert_eq!((role(-1), role(60), role(i32::MIN)), (None, None, None));
+        assert_eq!((role(-1), role(84), role(i32::MIN)), (None, None, None));
     }
 }

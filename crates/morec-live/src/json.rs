@@ -32,7 +32,7 @@ type PerformerKey = (u64, u16, Option<Hand>);
 #[derive(Debug, Clone, Default)]
 struct KnownPoints {
     /// Bit `r` for role `r`.
-    roles: u64,
+    roles: u128,
     unnamed: UnnamedPoints,
 }
 
@@ -259,7 +259,7 @@ impl Source for JsonSource {
 }
 
 /// A skeleton of the roles in `known`.
-fn rig_of(known: u64) -> Rig {
+fn rig_of(known: u128) -> Rig {
     let mut rig = Rig::of_roles();
     let mut roles = RoleMap::default();
     for role in Role::ALL

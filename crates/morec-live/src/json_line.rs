@@ -191,19 +191,20 @@ impl PoseLine {
     }
 
     /// True if it shows somebody who can be recognised: the hips and five other joints at least, ten points of hands, a head and both
-    /// hands.
+    /// hands, the root of a custom skeleton and two of its points.
     pub fn shows_body(&self) -> bool {
         let known = self.known();
         let has = |role: Role| known >> role.index() & 1 == 1;
-        let hands = known >> Role::BODY_COUNT;
+        let hands = known >> Role::BODY_COUNT & ((1 << (Role::HUMAN_COUNT - Role::BODY_COUNT)) - 1);
         let tracked = [Role::Head, Role::LeftHand, Role::RightHand];
         has(Role::Hips) && known.count_ones() > 5
+            || has(Role::Point1) && known.count_ones() > 2
             || hands.count_ones() >= 10
             || tracked.into_iter().all(has)
     }
 
     /// The roles whose joints have a place: bit `r` for role `r`.
-    pub fn known(&self) -> u64 {
+    pub fn known(&self) -> u128 {
         let known = |p: &Vec3| p.iter().all(|c| c.is_finite());
         (0..Role::COUNT)
             .filter(|r| known(&self.positions[*r]))

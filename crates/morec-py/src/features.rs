@@ -68,14 +68,15 @@ fn columns(bones: BoneSet) -> Vec<String> {
 }
 
 /// Positions of the parts of the body, frame by frame: float64 of shape (frames, 18, 3), NaN where unknown; (frames, 60, 3) with the
-/// points of hands where the clip shows any.
+/// points of hands where the clip shows any; (frames, 84, 3) of a custom skeleton.
 #[pyfunction]
 pub fn key_positions<'py>(py: Python<'py>, clip: &PyClip) -> PyResult<Bound<'py, PyAny>> {
     let data = clip.data.clone();
-    let shows_hands = data.roles.played().any(|(role, _)| role.is_of_hand());
-    let roles = match shows_hands {
-        true => &Role::ALL[..],
-        false => &Role::BODY[..],
+    let last = data.roles.played().last().map(|(role, _)| role);
+    let roles = match last {
+        Some(role) if role.is_custom() => &Role::ALL[..],
+        Some(role) if role.is_of_hand() => &Role::ALL[..Role::HUMAN_COUNT],
+        _ => &Role::BODY[..],
     };
     let values = py.detach(|| {
         let mut values = Vec::with_capacity(data.clip.frames * roles.len() * 3);

@@ -49,7 +49,8 @@ pub(super) fn find_roles(clip: &mut Clip) -> (RoleMap, Option<&'static str>) {
     (map, Some(found.set))
 }
 
-/// Overrides roles as a mapping file says.
+/// Overrides roles as a mapping file says. Where it says what the points of a custom skeleton are, nothing else plays a role: joints
+/// of a dog may have names of a person's.
 ///
 /// # Errors
 /// A joint that the clip does not have, with its line in the mapping file.
@@ -60,6 +61,10 @@ pub(super) fn apply(
 ) -> Result<RoleMap, ParseError> {
     let names: Vec<&str> = clip.skeleton.names().collect();
     let places = mapping.places(&names)?;
+    let is_custom = places
+        .iter()
+        .any(|(role, place)| role.is_custom() && place.is_some());
+    let map = if is_custom { RoleMap::default() } else { map };
     let states_hips = places.iter().any(|(role, _)| *role == Role::Hips);
     let mut map = play(clip, map, places);
     // A root that is stated to be the neck or the head is not the hips that it was taken for.

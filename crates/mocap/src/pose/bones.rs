@@ -49,7 +49,7 @@ impl Bone {
 }
 
 /// Number of bones known.
-pub const BONES: usize = 29;
+pub const BONES: usize = 52;
 /// Number of those of the body, which come first.
 pub const BODY_BONES: usize = 11;
 
@@ -68,6 +68,11 @@ const fn line(name: &'static str, from: Role, to: Role) -> Bone {
 
 const fn offset(name: &'static str, from: Role, to: Role) -> Bone {
     bone(BoneKind::Offset, name, from, to)
+}
+
+/// From the root of a custom skeleton to one of its points.
+const fn to_point(to: Role) -> Bone {
+    offset(to.name(), Role::Point1, to)
 }
 
 /// A finger from its base to its tip.
@@ -89,7 +94,7 @@ const fn axis(name: &'static str, kind: BoneKind) -> Bone {
     bone(kind, name, from, to)
 }
 
-/// Every bone: the body's, each hand's, lines between tracked points.
+/// Every bone: the body's, each hand's, lines between tracked points, a custom skeleton's.
 pub const ALL_BONES: [Bone; BONES] = [
     line("left_thigh", Role::LeftThigh, Role::LeftShin),
     line("left_shin", Role::LeftShin, Role::LeftFoot),
@@ -125,6 +130,29 @@ pub const ALL_BONES: [Bone; BONES] = [
     offset("head_to_left_hand", Role::Head, Role::LeftHand),
     offset("head_to_right_hand", Role::Head, Role::RightHand),
     offset("hand_line", Role::LeftHand, Role::RightHand),
+    to_point(Role::Point2),
+    to_point(Role::Point3),
+    to_point(Role::Point4),
+    to_point(Role::Point5),
+    to_point(Role::Point6),
+    to_point(Role::Point7),
+    to_point(Role::Point8),
+    to_point(Role::LeftPoint1),
+    to_point(Role::LeftPoint2),
+    to_point(Role::LeftPoint3),
+    to_point(Role::LeftPoint4),
+    to_point(Role::LeftPoint5),
+    to_point(Role::LeftPoint6),
+    to_point(Role::LeftPoint7),
+    to_point(Role::LeftPoint8),
+    to_point(Role::RightPoint1),
+    to_point(Role::RightPoint2),
+    to_point(Role::RightPoint3),
+    to_point(Role::RightPoint4),
+    to_point(Role::RightPoint5),
+    to_point(Role::RightPoint6),
+    to_point(Role::RightPoint7),
+    to_point(Role::RightPoint8),
 ];
 
 /// A set of bones of [`ALL_BONES`]: what a skeleton offers, or what an index uses.
@@ -132,7 +160,7 @@ pub const ALL_BONES: [Bone; BONES] = [
     Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
 )]
 #[serde(try_from = "Vec<String>", into = "Vec<String>")]
-pub struct BoneSet(u32);
+pub struct BoneSet(u64);
 
 impl BoneSet {
     /// No bone.
@@ -155,9 +183,11 @@ impl BoneSet {
     pub(super) const PALM_LINE: BoneSet = BoneSet::range(25, 26);
     /// Lines between the head and the hands.
     pub const POINTS3: BoneSet = BoneSet::range(26, 29);
+    /// From the root of a custom skeleton to its other points.
+    pub const CUSTOM: BoneSet = BoneSet::range(29, BONES);
 
     /// The sets that have names.
-    pub const NAMED: [(&'static str, BoneSet); 8] = [
+    pub const NAMED: [(&'static str, BoneSet); 9] = [
         ("all", Self::BODY),
         ("upper", Self::UPPER),
         ("arms", Self::ARMS),
@@ -166,9 +196,10 @@ impl BoneSet {
         ("hands", Self::HANDS),
         ("body_and_hands", Self::BODY_AND_HANDS),
         ("points3", Self::POINTS3),
+        ("custom", Self::CUSTOM),
     ];
 
-    const fn range(start: u32, end: u32) -> Self {
+    const fn range(start: usize, end: usize) -> Self {
         BoneSet((1 << end) - (1 << start))
     }
 
@@ -216,7 +247,7 @@ impl BoneSet {
         match self.0 {
             0 => 0..0,
             bits => {
-                bits.trailing_zeros() as usize..u32::BITS as usize - bits.leading_zeros() as usize
+                bits.trailing_zeros() as usize..u64::BITS as usize - bits.leading_zeros() as usize
             }
         }
     }

@@ -10,7 +10,7 @@ use crate::roles::{Role, RoleMap};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct KeyPose {
     positions: [Vec3; Role::COUNT],
-    present: u64,
+    present: u128,
 }
 
 impl Default for KeyPose {

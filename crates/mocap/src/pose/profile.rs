@@ -21,6 +21,8 @@ pub enum Profile {
     Hands,
     /// A head and two hands as tracked points.
     Points3,
+    /// What moves and is no person: a root and points that somebody [named](crate::roles::mapping).
+    Custom,
 }
 
 impl Profile {
@@ -29,6 +31,8 @@ impl Profile {
         let has = |set: BoneSet| !bones.and(set).is_empty();
         if has(BoneSet::BODY) || bones.is_empty() {
             Profile::Body
+        } else if has(BoneSet::CUSTOM) {
+            Profile::Custom
         } else if has(BoneSet::POINTS3) {
             Profile::Points3
         } else if bones.and(BoneSet::HAND) == bones {
@@ -38,12 +42,13 @@ impl Profile {
         }
     }
 
-    /// Of a performer whose roles are seen for which `is_seen` holds: a body has hips or shoulders.
+    /// Of a performer whose roles are seen for which `is_seen` holds: a custom skeleton has its root, a body hips or shoulders.
     pub fn of_seen(is_seen: impl Fn(Role) -> bool) -> Self {
         use Role::{Head, Hips, LeftArm, LeftHand, LeftThigh, RightArm, RightHand, RightThigh};
         let any = |roles: &[Role]| roles.iter().any(|role| is_seen(*role));
         let hands = Hand::BOTH.map(|hand| any(&hand.beside_wrist()));
         match hands {
+            _ if is_seen(Role::Point1) => Profile::Custom,
             _ if any(&[Hips, LeftThigh, RightThigh, LeftArm, RightArm]) => Profile::Body,
             [true, true] => Profile::Hands,
             [true, false] | [false, true] => Profile::Hand,
@@ -53,7 +58,7 @@ impl Profile {
     }
 
     /// The roles that a performer has of whom those are seen for which `is_seen` holds: every part of a body, every point of the hands
-    /// that are seen at all. A palm stands for a wrist that is not seen. No allocation.
+    /// that are seen at all, the points of a custom skeleton that are seen. A palm stands for a wrist that is not seen. No allocation.
     pub fn expected(self, is_seen: impl Fn(Role) -> bool) -> impl Iterator<Item = Role> {
         let of_hand = Hand::BOTH.map(|hand| {
             let HandPoints { wrist, palm, .. } = hand.points();
@@ -63,11 +68,12 @@ impl Profile {
             (hand, absent, seen)
         });
         let expects = move |role: &Role| match self {
-            Profile::Body => !role.is_of_hand(),
+            Profile::Body => role.is_of_body(),
             Profile::Hand | Profile::Hands => of_hand.iter().any(|(hand, absent, seen)| {
                 *seen && Hand::of(*role) == Some(*hand) && role != absent
             }),
             Profile::Points3 => matches!(role, Role::Head | Role::LeftHand | Role::RightHand),
+            Profile::Custom => role.is_custom() && is_seen(*role),
         };
         Role::ALL.into_iter().filter(expects)
     }
@@ -79,6 +85,7 @@ impl Profile {
             Profile::Hand => "a hand",
             Profile::Hands => "both hands",
             Profile::Points3 => "a head and two hands",
+            Profile::Custom => "a custom skeleton",
         }
     }
 
@@ -90,8 +97,8 @@ impl Profile {
         }
     }
 
-    /// Of the bones that a source shows, those that are used unless others are asked for: the body's where there are any, both
-    /// hands', one hand's, the lines of tracked points.
+    /// Of the bones that a source shows, those that are used unless others are asked for: a custom skeleton's where there are any, the
+    /// body's, both hands', one hand's, the lines of tracked points.
     pub fn usual_bones(shown: BoneSet) -> BoneSet {
         // Of a lone left hand, which counts as a right one too, the line between the palms is not known.
         let is_pair = !shown.and(BoneSet::PALM_LINE).is_empty();
@@ -100,7 +107,14 @@ impl Profile {
             false => [BoneSet::HAND, BoneSet::LEFT_HAND],
         };
         let [first, second] = hands;
-        let mut usual = [BoneSet::BODY, first, second, BoneSet::POINTS3].into_iter();
+        let sets = [
+            BoneSet::CUSTOM,
+            BoneSet::BODY,
+            first,
+            second,
+            BoneSet::POINTS3,
+        ];
+        let mut usual = sets.into_iter();
         usual
             .find_map(|set| Some(shown.and(set)).filter(|bones| !bones.is_empty()))
             .unwrap_or(BoneSet::NONE)
@@ -109,16 +123,18 @@ impl Profile {
     /// The hands whose palms are the root, of a profile without a body.
     fn rooted_in(self) -> &'static [Hand] {
         match self {
-            Profile::Body | Profile::Points3 => &[],
+            Profile::Body | Profile::Points3 | Profile::Custom => &[],
             Profile::Hand => &[Hand::Right],
             Profile::Hands => &Hand::BOTH,
         }
     }
 
-    /// Place of the root of a profile without a body: the palm, the middle of both, the head.
+    /// Place of the root of a profile without a body: the palm, the middle of both, the head, the first point.
     pub fn root(self, pose: &KeyPose) -> Option<Vec3> {
-        if self == Profile::Points3 {
-            return pose.get(Role::Head);
+        match self {
+            Profile::Points3 => return pose.get(Role::Head),
+            Profile::Custom => return pose.get(Role::Point1),
+            Profile::Body | Profile::Hand | Profile::Hands => {}
         }
         let places = self.rooted_in().iter().filter_map(|hand| hand.root(pose));
         let (sum, count) = places.fold((Vec3::zeros(), 0.0), |(sum, n), at| (sum + at, n + 1.0));

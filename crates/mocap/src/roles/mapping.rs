@@ -7,6 +7,10 @@
 //! Names between `+` stand for the middle of these joints or markers: `left_knee<TAB>LKNE+LKNM`. Names that differ in
 //! subject, marks and case alone are taken, too. Some roles have a second name: `left_hip`, `left_knee`, `left_ankle`,
 //! `left_elbow` and `left_wrist` are the thigh, shin, foot, forearm and hand, `pelvis` the hips.
+//!
+//! What is no person is a custom skeleton: `point_1` is its root, `point_2` to `point_8` are points in the middle, `left_point_1` to
+//! `left_point_8` and `right_point_1` to `right_point_8` points that a mirror exchanges. A file that names one of these gives nobody
+//! the parts of a body that it does not name.
 
 use std::fmt::Write;
 
@@ -158,10 +162,11 @@ fn role_of(name: &str) -> Option<Role> {
     Role::from_name(name).or_else(second)
 }
 
-/// Writes `map` as a mapping file that names every role.
+/// Writes `map` as a mapping file that names every role of a person, and the points of a custom skeleton.
 pub fn write(map: &RoleMap, skeleton: &Skeleton) -> String {
     let mut text = String::from("# role\tjoint (- for none)\n");
-    for role in Role::ALL {
+    let is_named = |role: &Role| !role.is_custom() || map.joint(*role).is_some();
+    for role in Role::ALL.into_iter().filter(is_named) {
         let name = map
             .joint(role)
             .map_or("-", |joint| skeleton.joints()[joint].name.as_str());

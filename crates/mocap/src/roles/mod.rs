@@ -29,8 +29,9 @@ pub use pairs::RolesFound;
 
 use std::fmt;
 
-/// A part of the body or a point of a hand that recognition knows. A part of the body is played by the joint at its near end (the
-/// thigh by the hip joint, the shin by the knee, the hand by the wrist); a finger has four points from its base (1) to its tip.
+/// A part of the body, a point of a hand or a point of a custom skeleton. A part of the body is played by the joint at its near end (the
+/// thigh by the hip joint, the shin by the knee, the hand by the wrist); a finger has four points from its base (1) to its tip. A
+/// custom skeleton, of whatever moves and is no person, has the points that a [mapping] says: `Point1` is its root.
 #[derive(
     Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
 )]
@@ -128,6 +129,54 @@ pub enum Role {
     #[serde(rename = "right_little_3")]
     RightLittle3,
     RightLittleTip,
+    #[serde(rename = "point_1")]
+    Point1,
+    #[serde(rename = "point_2")]
+    Point2,
+    #[serde(rename = "point_3")]
+    Point3,
+    #[serde(rename = "point_4")]
+    Point4,
+    #[serde(rename = "point_5")]
+    Point5,
+    #[serde(rename = "point_6")]
+    Point6,
+    #[serde(rename = "point_7")]
+    Point7,
+    #[serde(rename = "point_8")]
+    Point8,
+    #[serde(rename = "left_point_1")]
+    LeftPoint1,
+    #[serde(rename = "left_point_2")]
+    LeftPoint2,
+    #[serde(rename = "left_point_3")]
+    LeftPoint3,
+    #[serde(rename = "left_point_4")]
+    LeftPoint4,
+    #[serde(rename = "left_point_5")]
+    LeftPoint5,
+    #[serde(rename = "left_point_6")]
+    LeftPoint6,
+    #[serde(rename = "left_point_7")]
+    LeftPoint7,
+    #[serde(rename = "left_point_8")]
+    LeftPoint8,
+    #[serde(rename = "right_point_1")]
+    RightPoint1,
+    #[serde(rename = "right_point_2")]
+    RightPoint2,
+    #[serde(rename = "right_point_3")]
+    RightPoint3,
+    #[serde(rename = "right_point_4")]
+    RightPoint4,
+    #[serde(rename = "right_point_5")]
+    RightPoint5,
+    #[serde(rename = "right_point_6")]
+    RightPoint6,
+    #[serde(rename = "right_point_7")]
+    RightPoint7,
+    #[serde(rename = "right_point_8")]
+    RightPoint8,
 }
 
 /// Both legs, left first: thigh, shin, foot.
@@ -203,15 +252,41 @@ const NAMES: [&str; Role::COUNT] = [
     "right_little_2",
     "right_little_3",
     "right_little_tip",
+    "point_1",
+    "point_2",
+    "point_3",
+    "point_4",
+    "point_5",
+    "point_6",
+    "point_7",
+    "point_8",
+    "left_point_1",
+    "left_point_2",
+    "left_point_3",
+    "left_point_4",
+    "left_point_5",
+    "left_point_6",
+    "left_point_7",
+    "left_point_8",
+    "right_point_1",
+    "right_point_2",
+    "right_point_3",
+    "right_point_4",
+    "right_point_5",
+    "right_point_6",
+    "right_point_7",
+    "right_point_8",
 ];
 
 impl Role {
     /// Number of roles.
-    pub const COUNT: usize = 60;
+    pub const COUNT: usize = 84;
     /// Number of parts of the body, which come first.
     pub const BODY_COUNT: usize = 18;
+    /// Number of parts of the body and points of hands, which come before the points of a custom skeleton.
+    pub const HUMAN_COUNT: usize = 60;
 
-    /// Every role, in the order of their numbers: the body, the left hand, the right hand.
+    /// Every role, in the order of their numbers: the body, the left hand, the right hand, the points of a custom skeleton.
     pub const ALL: [Role; Role::COUNT] = [
         Role::Hips,
         Role::LeftThigh,
@@ -273,6 +348,30 @@ impl Role {
         Role::RightLittle2,
         Role::RightLittle3,
         Role::RightLittleTip,
+        Role::Point1,
+        Role::Point2,
+        Role::Point3,
+        Role::Point4,
+        Role::Point5,
+        Role::Point6,
+        Role::Point7,
+        Role::Point8,
+        Role::LeftPoint1,
+        Role::LeftPoint2,
+        Role::LeftPoint3,
+        Role::LeftPoint4,
+        Role::LeftPoint5,
+        Role::LeftPoint6,
+        Role::LeftPoint7,
+        Role::LeftPoint8,
+        Role::RightPoint1,
+        Role::RightPoint2,
+        Role::RightPoint3,
+        Role::RightPoint4,
+        Role::RightPoint5,
+        Role::RightPoint6,
+        Role::RightPoint7,
+        Role::RightPoint8,
     ];
 
     /// The parts of the body.
@@ -286,14 +385,24 @@ impl Role {
         body
     };
 
-    /// Its number, 0 to 59.
+    /// Its number, 0 to 83.
     pub const fn index(self) -> usize {
         self as usize
     }
 
     /// True of points of hands beside the wrist.
     pub const fn is_of_hand(self) -> bool {
-        self.index() >= Role::BODY_COUNT
+        self.index() >= Role::BODY_COUNT && !self.is_custom()
+    }
+
+    /// True of parts of the body.
+    pub const fn is_of_body(self) -> bool {
+        self.index() < Role::BODY_COUNT
+    }
+
+    /// True of points of a custom skeleton.
+    pub const fn is_custom(self) -> bool {
+        self.index() >= Role::HUMAN_COUNT
     }
 
     /// The same part on the other side of the body; itself in the middle.
@@ -307,7 +416,10 @@ impl Role {
             Role::LeftShoulder | Role::LeftArm | Role::LeftForearm | Role::LeftHand => at + 4,
             Role::RightShoulder | Role::RightArm | Role::RightForearm | Role::RightHand => at - 4,
             _ if at < right => at - left + right,
-            _ => at - right + left,
+            _ if at < Role::HUMAN_COUNT => at - right + left,
+            _ if at < Role::LeftPoint1.index() => at,
+            _ if at < Role::RightPoint1.index() => at + 8,
+            _ => at - 8,
         };
         Role::ALL[other]
     }

@@ -30,18 +30,18 @@ fn open(address: &Address) -> Result<Box<dyn Sink>> {
     }
 }
 
-/// One line for each motion, on standard output.
+/// One line for each motion, and each repetition that is an event of its own, on standard output.
 pub struct Terminal;
 
 impl Sink for Terminal {
     fn emit(&mut self, event: &NamedEvent<'_>) -> io::Result<()> {
         let e = event.event;
-        if e.phase != Phase::End {
-            return Ok(());
-        }
-        let repeated = e.repetitions.map_or(String::new(), |r| {
-            format!("  {} times, {:.2} s each", r.count, r.period_secs)
-        });
+        let repeated = match (e.phase, e.repetitions) {
+            (Phase::End, None) => String::new(),
+            (Phase::End, Some(r)) => format!("  {} times, {:.2} s each", r.count, r.period_secs),
+            (Phase::Repetition, Some(r)) => format!("  repetition {}", r.count),
+            _ => return Ok(()),
+        };
         let performer = match e.actor.0 {
             0 => String::new(),
             number => format!("  (performer {number})"),

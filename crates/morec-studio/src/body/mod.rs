@@ -6,7 +6,7 @@ pub mod mesh;
 pub mod strip;
 
 use morec::clip::Clip;
-use morec::features::{Hand, Profile};
+use morec::features::{ALL_BONES, BoneSet, Hand, Profile};
 use morec::kinematics::WorldPose;
 use morec::math::Vec3;
 use morec::roles::{Role, RoleMap};
@@ -99,7 +99,9 @@ impl Body {
             });
             let is_known = |role: Role| roles.joint(role).is_some();
             let hands = Hand::BOTH.into_iter().flat_map(|hand| hand.lines(is_known));
-            for (from, to) in bones.copied().chain(hands) {
+            let custom = BoneSet::CUSTOM.indices().map(|bone| ALL_BONES[bone]);
+            let custom = custom.map(|bone| (bone.from, bone.to));
+            for (from, to) in bones.copied().chain(hands).chain(custom) {
                 if let (Some(from), Some(to)) = (roles.joint(from), roles.joint(to)) {
                     add(from, to);
                 }

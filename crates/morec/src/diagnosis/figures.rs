@@ -121,7 +121,7 @@ impl fmt::Display for Diagnosis {
                     Some(hand) => {
                         write!(f, "{}, {:.0} cm long", self.profile.words(), 100.0 * hand)?
                     }
-                    None if self.profile == Profile::Points3 => {
+                    None if matches!(self.profile, Profile::Points3 | Profile::Custom) => {
                         f.write_str(self.profile.words())?
                     }
                     None => f.write_str("no body")?,

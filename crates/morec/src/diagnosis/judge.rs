@@ -163,7 +163,7 @@ impl Diagnosis {
         found.add(leg.and_then(|leg| some(!self.unit_known, Finding::UnknownUnit { leg })));
     }
 
-    /// Of hands and of tracked points.
+    /// Of hands, of tracked points and of custom skeletons.
     fn points(&self, found: &mut Findings) {
         // Between a finger's base and its tip no joint is needed.
         let ends = Hand::BOTH.map(|hand| hand.points().fingers.map(|f| [f[0], f[3]]));

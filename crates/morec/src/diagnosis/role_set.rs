@@ -9,7 +9,7 @@ use crate::roles::Role;
 /// A set of body parts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(from = "Vec<Role>", into = "Vec<Role>")]
-pub struct RoleSet(u64);
+pub struct RoleSet(u128);
 
 impl RoleSet {
     /// The set with `role` in it, too.
@@ -36,7 +36,7 @@ impl RoleSet {
     }
 
     /// One bit for each role, at its [index](Role::index).
-    pub fn bits(self) -> u64 {
+    pub fn bits(self) -> u128 {
         self.0
     }
 }

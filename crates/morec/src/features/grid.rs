@@ -14,9 +14,11 @@ pub(crate) struct Grid<S> {
     origin_secs: f64,
     /// Grid frames made in this stretch.
     frames: u64,
-    last: Option<(f64, S)>,
-    /// The pose whose grid frames are being taken.
-    now: Option<(f64, S)>,
+    last_secs: Option<f64>,
+    last: S,
+    /// Time of the pose whose grid frames are being taken.
+    now_secs: Option<f64>,
+    now: S,
 }
 
 /// A grid frame between two poses, or at the first.
@@ -28,14 +30,17 @@ pub(crate) struct GridFrame<'a, S> {
     pub now: &'a S,
 }
 
-impl<S> Grid<S> {
-    pub fn new(rate_hz: f64) -> Self {
+impl<S: Clone> Grid<S> {
+    /// Frames at `rate_hz`. Poses are copied into the places that two copies of `blank` take.
+    pub fn new(rate_hz: f64, blank: S) -> Self {
         Self {
             rate_hz,
             origin_secs: 0.0,
             frames: 0,
-            last: None,
-            now: None,
+            last_secs: None,
+            last: blank.clone(),
+            now_secs: None,
+            now: blank,
         }
     }
 
@@ -47,59 +52,59 @@ impl<S> Grid<S> {
     /// The last pose of the present stretch.
     #[cfg(feature = "live")]
     pub fn last(&self) -> Option<&S> {
-        self.last.as_ref().map(|(_, pose)| pose)
+        self.last_secs.map(|_| &self.last)
     }
 
     /// True if a pose at `time_secs` would begin a new stretch.
     pub fn breaks_at(&self, time_secs: f64) -> bool {
-        let last = self.last.as_ref().map(|(secs, _)| *secs);
-        last.is_some_and(|last| time_secs > last + MAX_GAP_SECS || time_secs < last - MAX_GAP_SECS)
+        let breaks = |last: f64| time_secs > last + MAX_GAP_SECS || time_secs < last - MAX_GAP_SECS;
+        self.last_secs.is_some_and(breaks)
     }
 
     /// True if a pose at `time_secs` comes too late to count, or at no time at all.
     pub fn ignores(&self, time_secs: f64) -> bool {
-        !time_secs.is_finite()
-            || self
-                .last
-                .as_ref()
-                .is_some_and(|(last, _)| time_secs <= *last)
+        !time_secs.is_finite() || self.last_secs.is_some_and(|last| time_secs <= last)
     }
 
     /// Takes a pose that is not [ignored](Self::ignores), after [`next_frame`](Self::next_frame) gave all frames of
     /// the pose before. Its own come from there.
-    pub fn push(&mut self, time_secs: f64, now: S) {
-        if self.last.is_none() {
+    pub fn push(&mut self, time_secs: f64, now: &S) {
+        if self.last_secs.is_none() {
             self.origin_secs = time_secs;
             self.frames = 0;
         }
-        self.now = Some((time_secs, now));
+        self.now_secs = Some(time_secs);
+        self.now.clone_from(now);
     }
 
     /// The next grid frame in `(last, time_secs]` of the pose that was pushed; `None` if there are no more.
     pub fn next_frame(&mut self) -> Option<GridFrame<'_, S>> {
         // A source at the model's own rate must fall on the grid whatever its clock's last bits say.
         let tolerance_secs = 1e-6;
-        let time_secs = self.now.as_ref()?.0;
+        let time_secs = self.now_secs?;
         let grid_secs = self.origin_secs + self.frames as f64 / self.rate_hz;
-        let is_first = self.last.is_none();
+        let is_first = self.last_secs.is_none();
         if (is_first && self.frames > 0) || (!is_first && grid_secs > time_secs + tolerance_secs) {
-            self.last = self.now.take();
+            self.last_secs = self.now_secs.take();
+            std::mem::swap(&mut self.last, &mut self.now);
             return None;
         }
         self.frames += 1;
-        let (_, now) = self.now.as_ref()?;
-        let before = self.last.as_ref().map(|(last_secs, last)| {
+        let before = self.last_secs.map(|last_secs| {
             let t = (grid_secs - last_secs) / (time_secs - last_secs);
             let is_now = time_secs - grid_secs < tolerance_secs;
-            (last, if is_now { 1.0 } else { t })
+            (&self.last, if is_now { 1.0 } else { t })
         });
-        Some(GridFrame { before, now })
+        Some(GridFrame {
+            before,
+            now: &self.now,
+        })
     }
 
     /// Ends the stretch.
     pub fn end(&mut self) {
-        self.last = None;
-        self.now = None;
+        self.last_secs = None;
+        self.now_secs = None;
         self.frames = 0;
     }
 }

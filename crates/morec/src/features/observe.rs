@@ -3,9 +3,7 @@
 use crate::math::{Vec3, portable, slerp_direction};
 use crate::roles::{ARMS, Role};
 
-use super::{
-    ALL_BONES, BONES, Bone, BoneKind, BoneSet, Hand, HeadingLine, KeyPose, PalmFrame, Profile,
-};
+use super::{ALL_BONES, Bone, BoneKind, BoneSet, Hand, HeadingLine, KeyPose, PalmFrame, Profile};
 
 /// One frame's bones in the frames they are given in, and where the root is.
 ///
@@ -13,45 +11,66 @@ use super::{
 /// without its vertical part, up is +Y, forward is lateral × up. Coordinates are (lateral, up, forward). The shoulders have
 /// the hips' place in a stream that shows no hip joints, as of a performer behind a table, and for an index that was trained
 /// without hips ([`HeadingLine`]). Performers without a body have no heading: lateral is the source's X, forward its Z.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub struct Observation {
-    /// Of each bone what its [`BoneKind`] says, mostly unit vectors, `heading_from_world` applied; zero for bones outside the set.
-    pub directions: [Vec3; BONES],
+    /// Of each bone of the set's [span](BoneSet::span) what its [`BoneKind`] says, mostly unit vectors, `heading_from_world` applied;
+    /// zero for bones outside the set.
+    pub directions: Vec<Vec3>,
     /// World position of the hips, of the middle of the shoulders, or what is the root of a performer without a body
     /// ([`Profile`]), in the source's length unit.
     pub root: Vec3,
     /// Heading about +Y from +Z, continuous over time (it does not jump at ±π).
     pub yaw_rad: f64,
-    /// The performer's length in the source's unit: of a leg or a hand, the mean over the stream so far; of three tracked points the
-    /// largest distance from the head to a hand.
+    /// The performer's length in the source's unit: of a leg or a hand, the mean over the stream so far; of a custom skeleton the mean
+    /// distance of its points from the root; of three tracked points the largest distance from the head to a hand.
     pub unit_length: f64,
 }
 
+impl Clone for Observation {
+    fn clone(&self) -> Self {
+        Self {
+            directions: self.directions.clone(),
+            ..*self
+        }
+    }
+
+    /// Without allocation where the bones are the same.
+    fn clone_from(&mut self, source: &Self) {
+        self.directions.clone_from(&source.directions);
+        (self.root, self.yaw_rad, self.unit_length) =
+            (source.root, source.yaw_rad, source.unit_length);
+    }
+}
+
 impl Observation {
-    /// Between `a` and `b`; unit vectors along great circles, the rest on a line.
-    pub fn between(a: &Self, b: &Self, t: f64, bones: BoneSet) -> Self {
-        if t <= 0.0 {
-            return *a;
+    /// One of nothing.
+    pub fn blank(bones: BoneSet) -> Self {
+        Self {
+            directions: vec![Vec3::zeros(); bones.span().len()],
+            root: Vec3::zeros(),
+            yaw_rad: 0.0,
+            unit_length: 1.0,
         }
-        if t >= 1.0 {
-            return *b;
+    }
+
+    /// Makes this the one between `a` and `b`, `t` of the way; unit vectors along great circles, the rest on a line.
+    pub fn set(&mut self, a: &Self, b: &Self, t: f64, bones: BoneSet) {
+        if t <= 0.0 || t >= 1.0 {
+            return self.clone_from(if t <= 0.0 { a } else { b });
         }
-        let mut directions = [Vec3::zeros(); BONES];
+        let first = bones.span().start;
         for bone in bones.indices() {
-            let (from, to) = (&a.directions[bone], &b.directions[bone]);
-            directions[bone] = match ALL_BONES[bone].kind {
+            let (from, to) = (&a.directions[bone - first], &b.directions[bone - first]);
+            self.directions[bone - first] = match ALL_BONES[bone].kind {
                 BoneKind::Direction | BoneKind::PalmForward(_) | BoneKind::PalmNormal(_) => {
                     slerp_direction(from, to, t)
                 }
                 BoneKind::Offset | BoneKind::Palms | BoneKind::Finger(_) => from.lerp(to, t),
             };
         }
-        Self {
-            directions,
-            root: a.root.lerp(&b.root, t),
-            yaw_rad: a.yaw_rad + (b.yaw_rad - a.yaw_rad) * t,
-            unit_length: a.unit_length + (b.unit_length - a.unit_length) * t,
-        }
+        self.root = a.root.lerp(&b.root, t);
+        self.yaw_rad = a.yaw_rad + (b.yaw_rad - a.yaw_rad) * t;
+        self.unit_length = a.unit_length + (b.unit_length - a.unit_length) * t;
     }
 }
 
@@ -87,7 +106,9 @@ pub struct Observer {
     bones: BoneSet,
     profile: Profile,
     heading: HeadingLine,
-    last: Option<Observation>,
+    last: Observation,
+    /// True if there is a last one.
+    begun: bool,
     length: Length,
     /// True if the hip joints have been seen and count: the heading then stays theirs.
     hips_seen: bool,
@@ -102,9 +123,12 @@ impl Observer {
             profile,
             heading: match profile {
                 Profile::Body => heading,
+                // A skeleton that has no pair of points has no heading either.
+                Profile::Custom if heading == HeadingLine::Points && has_pair(bones) => heading,
                 _ => HeadingLine::Sensor,
             },
-            last: None,
+            last: Observation::blank(bones),
+            begun: false,
             length: Length::default(),
             hips_seen: false,
         }
@@ -112,7 +136,10 @@ impl Observer {
 
     /// Forgets the stream so far.
     pub fn reset(&mut self) {
-        *self = Self::new(self.bones, self.heading);
+        self.last.directions.fill(Vec3::zeros());
+        self.begun = false;
+        self.length = Length::default();
+        self.hips_seen = false;
     }
 
     /// See [`Observation::unit_length`]; `None` until it was seen.
@@ -125,7 +152,7 @@ impl Observer {
 
     /// The observation of one pose. A bone or heading that `pose` does not show keeps its last direction;
     /// `None` until the hip joints or the shoulders have been seen once, or the root of a performer without a body.
-    pub fn observe(&mut self, pose: &KeyPose) -> Option<Observation> {
+    pub fn observe(&mut self, pose: &KeyPose) -> Option<&Observation> {
         self.hips_seen |= self.heading == HeadingLine::Hips
             && pair(pose, Role::LeftThigh, Role::RightThigh).is_some();
         let yaw_rad = self.yaw(pose)?;
@@ -133,25 +160,18 @@ impl Observer {
         let root = self.root(pose)?;
         self.measure_length(pose);
         let unit_length = self.unit_length().unwrap_or(1.0);
-        let mut directions = self
-            .last
-            .map_or([Vec3::zeros(); BONES], |last| last.directions);
+        let first = self.bones.span().start;
         let palms = Hand::BOTH.map(|hand| self.palm(hand, pose));
         for index in self.bones.indices() {
             let bone = &ALL_BONES[index];
             let palm = bone.hand().and_then(|hand| palms[hand as usize]);
             if let Some(seen) = seen(bone, pose, palm, unit_length, (sin, cos)) {
-                directions[index] = seen;
+                self.last.directions[index - first] = seen;
             }
         }
-        let observation = Observation {
-            directions,
-            root,
-            yaw_rad,
-            unit_length,
-        };
-        self.last = Some(observation);
-        Some(observation)
+        (self.last.root, self.last.yaw_rad, self.last.unit_length) = (root, yaw_rad, unit_length);
+        self.begun = true;
+        Some(&self.last)
     }
 
     /// The palm of a hand whose bones count, and the length of its fingers; `None` of other hands, and where it is not seen.
@@ -170,11 +190,11 @@ impl Observer {
         if self.heading == HeadingLine::Sensor {
             return Some(0.0);
         }
-        let last = self.last.map(|o| o.yaw_rad);
-        let lateral = if self.hips_seen {
-            pair(pose, Role::LeftThigh, Role::RightThigh)
-        } else {
-            pair(pose, Role::LeftArm, Role::RightArm)
+        let last = self.begun.then_some(self.last.yaw_rad);
+        let lateral = match self.heading {
+            HeadingLine::Points => pair(pose, Role::LeftPoint1, Role::RightPoint1),
+            _ if self.hips_seen => pair(pose, Role::LeftThigh, Role::RightThigh),
+            _ => pair(pose, Role::LeftArm, Role::RightArm),
         };
         let Some((left, right)) = lateral else {
             return last;
@@ -207,7 +227,7 @@ impl Observer {
             (Profile::Body, _) => hips.or_else(shoulders),
             (profile, _) => profile.root(pose),
         };
-        seen.or(self.last.map(|o| o.root))
+        seen.or(self.begun.then_some(self.last.root))
     }
 
     fn measure_length(&mut self, pose: &KeyPose) {
@@ -222,6 +242,10 @@ impl Observer {
             Profile::Body => of_arm(),
             Profile::Hand | Profile::Hands => self.profile.hand_length(pose),
             Profile::Points3 => reach(pose),
+            Profile::Custom => {
+                let ends = self.bones.indices().map(|bone| ALL_BONES[bone].to);
+                size(pose, Role::Point1, ends)
+            }
         });
     }
 }
@@ -264,6 +288,24 @@ fn reach(pose: &KeyPose) -> Option<f64> {
     far.into_iter().flatten().max_by(f64::total_cmp)
 }
 
+/// The mean distance of the `ends` from the root, in a pose that shows them all.
+fn size(pose: &KeyPose, root: Role, ends: impl Iterator<Item = Role>) -> Option<f64> {
+    let root = pose.get(root)?;
+    let (mut sum, mut count) = (0.0, 0.0);
+    for end in ends {
+        sum += (pose.get(end)? - root).norm();
+        count += 1.0;
+    }
+    Some(sum / count)
+}
+
+/// True if the points that give the heading of a custom skeleton are among the ends of `bones`.
+fn has_pair(bones: BoneSet) -> bool {
+    let pair = [Role::LeftPoint1, Role::RightPoint1];
+    pair.iter()
+        .all(|role| bones.indices().any(|b| ALL_BONES[b].to == *role))
+}
+
 /// Length of a leg without the foot in lengths of an arm without the hand, from shares of body height: (.245 + .246) /
 /// (.186 + .146) (Winter, *Biomechanics and Motor Control of Human Movement*, 2009, Fig. 4.1).
 const LEG_OF_ARM: f64 = 1.48;
@@ -292,6 +334,11 @@ pub fn heading_from_world(sin: f64, cos: f64, v: &Vec3) -> Vec3 {
 mod tests {
     use super::*;
 
+    fn observed(bones: BoneSet, pose: &KeyPose) -> Observation {
+        let mut observer = Observer::new(bones, HeadingLine::Hips);
+        observer.observe(pose).unwrap().clone()
+    }
+
     fn standing(turned_rad: f64, scale: f64) -> KeyPose {
         let mut pose = KeyPose::default();
         let turn = crate::math::Axis::Y.rotation(turned_rad);
@@ -311,15 +358,11 @@ mod tests {
     #[test]
     fn heading_and_size_do_not_change_directions() {
         let bones = BoneSet::of_pose(&standing(0.0, 1.0));
-        let reference = Observer::new(bones, HeadingLine::Hips)
-            .observe(&standing(0.0, 1.0))
-            .unwrap();
+        let reference = observed(bones, &standing(0.0, 1.0));
         // The left arm points forward: +Z in the heading frame.
         assert!((reference.directions[6] - Vec3::z()).norm() < 1e-12);
         for step in 0..12 {
-            let turned = Observer::new(bones, HeadingLine::Hips)
-                .observe(&standing(f64::from(step), 3.0))
-                .unwrap();
+            let turned = observed(bones, &standing(f64::from(step), 3.0));
             for b in bones.indices() {
                 assert!((turned.directions[b] - reference.directions[b]).norm() < 1e-9);
             }
@@ -362,13 +405,9 @@ mod tests {
             }
             pose
         };
-        let seen = Observer::new(BoneSet::BODY, HeadingLine::Hips)
-            .observe(&upper(0.0))
-            .unwrap();
+        let seen = observed(BoneSet::BODY, &upper(0.0));
         assert!((seen.directions[6] - Vec3::z()).norm() < 1e-12);
-        let turned = Observer::new(BoneSet::BODY, HeadingLine::Hips)
-            .observe(&upper(2.0))
-            .unwrap();
+        let turned = observed(BoneSet::BODY, &upper(2.0));
         assert!((turned.directions[6] - seen.directions[6]).norm() < 1e-9);
         // The upper arm is 0.3 long, and so counts the forearm, which ends nowhere.
         assert!((seen.unit_length - 0.6 * LEG_OF_ARM).abs() < 1e-9);
@@ -387,7 +426,7 @@ mod tests {
         }
         let observe = |pose, heading| {
             let bones = BoneSet::ARMS;
-            Observer::new(bones, heading).observe(pose).unwrap()
+            Observer::new(bones, heading).observe(pose).unwrap().clone()
         };
         let seen = observe(&half, HeadingLine::Shoulders);
         assert_eq!(observe(&whole, HeadingLine::Shoulders), seen);
@@ -398,7 +437,7 @@ mod tests {
     #[test]
     fn hips_that_were_seen_once_keep_the_heading() {
         let mut observer = Observer::new(BoneSet::BODY, HeadingLine::Hips);
-        let seen = observer.observe(&standing(1.0, 1.0)).unwrap();
+        let seen = observer.observe(&standing(1.0, 1.0)).unwrap().clone();
         let mut hidden = standing(2.0, 1.0);
         hidden.set(Role::LeftThigh, Vec3::from_element(f64::NAN));
         assert_eq!(observer.observe(&hidden).unwrap().yaw_rad, seen.yaw_rad);
@@ -407,7 +446,7 @@ mod tests {
     #[test]
     fn a_lost_joint_keeps_its_last_direction() {
         let mut observer = Observer::new(BoneSet::BODY, HeadingLine::Hips);
-        let seen = observer.observe(&standing(0.0, 1.0)).unwrap();
+        let seen = observer.observe(&standing(0.0, 1.0)).unwrap().clone();
         let mut hidden = standing(0.0, 1.0);
         hidden.set(Role::LeftForearm, Vec3::new(f64::NAN, 0.0, 0.0));
         assert_eq!(

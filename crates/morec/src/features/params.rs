@@ -2,8 +2,8 @@
 
 use super::Profile;
 
-/// The line of the body whose turning about the vertical gives its heading, and where its root is; none for performers without a
-/// body.
+/// The line whose turning about the vertical gives the heading: of a body, of which it says where the root is, too, or of a custom
+/// skeleton; none for other performers without a body.
 #[derive(
     Debug,
     Clone,
@@ -26,6 +26,8 @@ pub enum HeadingLine {
     /// None: directions are the source's own, as of a device that stands still before the performer. Hands and tracked points have
     /// this in any case.
     Sensor,
+    /// Of a custom skeleton, the line between its points `left_point_1` and `right_point_1`.
+    Points,
 }
 
 /// Parameters of resampling, smoothing and weighting. An index keeps the values it was trained with.
@@ -53,7 +55,8 @@ pub struct FeatureParams {
     #[serde(default = "follows_noise")]
     pub follow_noise: bool,
     /// Line of the body that gives the heading and the root: `hips` (shoulders until hips are seen) or `shoulders`, which training
-    /// takes by itself where a clip with samples shows no hips; `sensor` for directions as the source has them.
+    /// takes by itself where a clip with samples shows no hips; `sensor` for directions as the source has them; `points` of a custom
+    /// skeleton.
     #[serde(default)]
     pub heading: HeadingLine,
 }
@@ -74,6 +77,10 @@ impl FeatureParams {
         match profile {
             Profile::Body => body,
             Profile::Points3 => sensor,
+            Profile::Custom => Self {
+                heading: HeadingLine::Points,
+                ..body
+            },
             // Fingers are faster for their length than limbs, and a hand's travel tells a push from a wave.
             Profile::Hand | Profile::Hands => Self {
                 velocity_saturation: 4.0,

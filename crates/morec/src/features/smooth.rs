@@ -110,12 +110,7 @@ impl Smoother {
     pub fn new(bones: BoneSet, params: &FeatureParams) -> Self {
         let widest = params.look_ahead_frames().max(WIDEST_FRAMES + 1);
         let reach = 2 * (widest + 1) + params.frames_per_tick;
-        let empty = Observation {
-            directions: [Vec3::zeros(); BONES],
-            root: Vec3::zeros(),
-            yaw_rad: 0.0,
-            unit_length: 1.0,
-        };
+        let empty = Observation::blank(BoneSet::NONE);
         let frames = reach.next_power_of_two();
         Self {
             bones,
@@ -158,8 +153,7 @@ impl Smoother {
         let at = self.pushed & mask;
         self.ring[at] = FilterInput::of(observation);
         let width = self.span.len();
-        self.directions[at * width..][..width]
-            .copy_from_slice(&observation.directions[self.span.clone()]);
+        self.directions[at * width..][..width].copy_from_slice(&observation.directions);
         self.pushed += 1;
         if self.params.follow_noise && self.pushed.is_multiple_of(self.params.frames_per_tick) {
             self.measure_noise();

@@ -33,6 +33,8 @@ pub struct FeatureStream {
     observer: Observer,
     smoother: Smoother,
     grid: Grid<Observation>,
+    /// A grid frame between two poses.
+    between: Observation,
     dim: usize,
     bones: BoneSet,
     profile: Profile,
@@ -45,7 +47,8 @@ impl FeatureStream {
             spikes: SpikeFilter::new(Profile::of(bones)),
             observer: Observer::new(bones, params.heading),
             smoother: Smoother::new(bones, params),
-            grid: Grid::new(params.rate_hz),
+            grid: Grid::new(params.rate_hz, Observation::blank(bones)),
+            between: Observation::blank(bones),
             dim: RowLayout::of(bones).dim(),
             bones,
             profile: Profile::of(bones),
@@ -136,11 +139,11 @@ impl FeatureStream {
         while !self.smoother.has_row() {
             let frame = self.grid.next_frame()?;
             match frame.before {
-                Some((last, t)) => {
-                    let between = Observation::between(last, frame.now, t, self.bones);
-                    self.smoother.push(&between);
+                Some((last, t)) if t < 1.0 => {
+                    self.between.set(last, frame.now, t, self.bones);
+                    self.smoother.push(&self.between);
                 }
-                None => self.smoother.push(frame.now),
+                _ => self.smoother.push(frame.now),
             }
         }
         self.smoother.next_row()

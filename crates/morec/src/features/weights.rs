@@ -12,4 +12,7 @@ pub const BONE_WEIGHTS: [f64; BONES] = [
     0.6, 0.6, 0.6, 0.6, 0.6, 0.5, 0.5, // the right hand
     0.6, // between the palms
     1.8, 1.8, 1.0, // tracked points
+    1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, // a custom skeleton's points of the middle
+    1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, // of the left
+    1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, // of the right
 ];

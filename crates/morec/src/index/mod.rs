@@ -111,6 +111,11 @@ impl MotionIndex {
     /// joints of those names that play nothing else. Returns the roles that were filled.
     pub fn complete_roles(&self, map: &mut RoleMap, skeleton: &crate::clip::Skeleton) -> Vec<Role> {
         let mut filled = Vec::new();
+        // What the joints of a custom skeleton seem to be of a person does not count.
+        let root = self.roles.get(&Role::Point1);
+        if root.is_some_and(|name| skeleton.find(name).is_some()) {
+            *map = RoleMap::default();
+        }
         *map = self.model.roles_of(skeleton, map).into_owned();
         for (&role, name) in &self.roles {
             let Some(joint) = skeleton.find(name) else {

@@ -116,11 +116,11 @@ fn apply(copy: &mut Perturbed, perturbation: Perturbation, rng: &mut Rng) {
     }
 }
 
-/// The parts of the body, seen or not, and what is seen of hands.
+/// The parts of the body, seen or not, and what is seen of hands and custom skeletons.
 fn roles_of(copy: &Perturbed) -> Vec<Role> {
     let seen = |role: &Role| {
         let mut poses = copy.poses.iter();
-        !role.is_of_hand() || poses.any(|(_, pose)| pose.get(*role).is_some())
+        role.is_of_body() || poses.any(|(_, pose)| pose.get(*role).is_some())
     };
     Role::ALL.into_iter().filter(seen).collect()
 }

@@ -211,7 +211,10 @@ fn features(params: &FeatureParams, profile: Profile, hipless: bool) -> FeatureP
             let choose =
                 |given: f64, usual: f64, own: f64| if given == usual { own } else { given };
             FeatureParams {
-                heading: own.heading,
+                heading: match params.heading {
+                    HeadingLine::Sensor => HeadingLine::Sensor,
+                    _ => own.heading,
+                },
                 velocity_saturation: choose(
                     params.velocity_saturation,
                     usual.velocity_saturation,

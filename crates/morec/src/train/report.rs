@@ -28,16 +28,13 @@ fn activity_note(
     classes: &[ClassInfo],
     params: &TrainParams,
 ) -> String {
-    let tick_hz = params.features.tick_hz();
     let named = |class: ClassId| {
         let name = &classes[class.index()].name;
         if params.kinds.contains_key(name) {
             return format!("{name} (named one)");
         }
-        let known = prepared.set.streams.iter().flat_map(|s| &s.known);
-        let of_class = known.filter(|span| span.class == Some(class));
-        let longest = of_class.map(|span| span.ticks.len()).max().unwrap_or(0);
-        format!("{name} (a sample lasts {:.1} s)", longest as f64 / tick_hz)
+        let secs = longest_secs(prepared, class, params);
+        format!("{name} (a sample lasts {secs:.1} s)")
     };
     let names: Vec<String> = activities
         .windows
@@ -47,9 +44,47 @@ fn activity_note(
         .collect();
     format!(
         "recognised as an activity, from windows of {:.1} s, and reported when it ends: {}",
-        activities.window_ticks as f64 / tick_hz,
+        activities.window_ticks as f64 / params.features.tick_hz(),
         names.join(", ")
     )
+}
+
+/// Of the samples of a class.
+fn longest_secs(prepared: &Prepared, class: ClassId, params: &TrainParams) -> f64 {
+    let known = prepared.set.streams.iter().flat_map(|s| &s.known);
+    let of_class = known.filter(|span| span.class == Some(class));
+    let longest = of_class.map(|span| span.ticks.len()).max().unwrap_or(0);
+    longest as f64 / params.features.tick_hz()
+}
+
+/// Samples of gestures are seldom longer than this, seconds: what is may be an activity.
+const LONG_GESTURE_SECS: f64 = 3.0;
+
+/// A note about long classes that count as gestures, though nobody named them so.
+fn long_gesture_note(
+    trained: &TrainedTemplates,
+    prepared: &Prepared,
+    params: &TrainParams,
+) -> Option<String> {
+    if !params.activities || Profile::of(prepared.bones) != Profile::Body {
+        return None;
+    }
+    let activities = trained.model.activities.as_ref();
+    let classes = (0u16..).map(ClassId).zip(&trained.model.classes);
+    let gestures = classes.filter(|(class, info)| {
+        !activities.is_some_and(|a| a.holds(*class)) && !params.kinds.contains_key(&info.name)
+    });
+    let lengths = gestures.map(|(class, info)| (info, longest_secs(prepared, class, params)));
+    let names: Vec<String> = lengths
+        .filter(|(_, secs)| *secs >= LONG_GESTURE_SECS)
+        .map(|(info, secs)| format!("{} (a sample lasts {secs:.1} s)", info.name))
+        .collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "recognised as a gesture: {}; one that goes on or is repeated is better named an activity",
+            names.join(", ")
+        )
+    })
 }
 
 /// A note about classes that were named activities and are none.
@@ -159,6 +194,7 @@ impl TrainingReport {
             notes.push(activity_note(activities, prepared, &classes, params));
         }
         notes.extend(no_activity_note(trained, params));
+        notes.extend(long_gesture_note(trained, prepared, params));
         if !prepared.lacking.is_empty() {
             notes.push(format!(
                 "left out because they lack bones that the labelled clips have: {}",

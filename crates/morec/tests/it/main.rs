@@ -6,6 +6,7 @@
 mod alike;
 mod cases;
 mod conformance;
+mod custom;
 mod cuts;
 mod diagnosis;
 mod engines;

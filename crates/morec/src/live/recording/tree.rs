@@ -50,8 +50,8 @@ impl RecordedJoints {
         let played = |role: Role| rig.roles.joint(role).filter(|joint| seen(*joint));
         let mut at = [None; Role::COUNT];
         let (mut from, mut joints) = (Vec::new(), Vec::<Joint>::new());
-        let hands = Role::ALL.into_iter().filter(|role| role.is_of_hand());
-        let points = hands.map(|role| (role, role.name()));
+        let points = Role::ALL.into_iter().filter(|role| !role.is_of_body());
+        let points = points.map(|role| (role, role.name()));
         for (role, name) in NAMES.into_iter().chain(points) {
             let Some(joint) = played(role) else { continue };
             let above = std::iter::successors(above(role), |role| above(*role));

@@ -50,7 +50,7 @@ impl PoseStream {
         };
         Self {
             parents,
-            grid: Grid::new(params.rate_hz),
+            grid: Grid::new(params.rate_hz, [Quat::identity(); MAX_PIVOTS]),
             rows,
         }
     }
@@ -94,7 +94,7 @@ impl PoseStream {
         let Some(locals) = self.locals(pose) else {
             return Pushed::NoHips;
         };
-        self.grid.push(time_secs, locals);
+        self.grid.push(time_secs, &locals);
         while let Some(frame) = self.grid.next_frame() {
             match frame.before {
                 Some((last, t)) => {
