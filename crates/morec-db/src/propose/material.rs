@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use morec::features::BoneSet;
-use morec::train::{ClassKind, TrainParams, motion_span};
+use morec::train::{ClassKind, ClassLabels, TrainParams, motion_span};
 
 use super::pieces::pieces;
 use crate::labels::{DbSample, SampleState};
@@ -116,15 +116,21 @@ impl ProposalData {
                     .all(|(s, _)| s.whole_clip)
             })
             .collect();
-        let activity: Vec<bool> = classes
-            .iter()
-            .map(|class| {
-                let of_class = accepted().filter(|(s, _)| s.class == *class && !s.whole_clip);
-                let longest = of_class.map(|(_, (_, ticks))| ticks.len()).max();
-                let longest_secs = longest.unwrap_or(0) as f64 / tick_hz;
-                TrainParams::default().kind(class, longest_secs) == ClassKind::Activity
-            })
-            .collect();
+        let mut by_clip: Vec<Vec<(&str, Range<f64>)>> = vec![Vec::new(); clips.len()];
+        for (s, (clip, _)) in accepted().filter(|(s, _)| !s.whole_clip) {
+            by_clip[*clip].push((s.class.as_str(), s.start_secs..s.stop_secs));
+        }
+        let is_activity = |class: &String| {
+            let mut labels = ClassLabels::default();
+            for (clip, of_clip) in clips.iter().zip(&by_clip) {
+                let all = || of_clip.iter().map(|(_, label)| label.clone());
+                for (_, label) in of_clip.iter().filter(|(name, _)| name == class) {
+                    labels.add(label, all(), clip.end_secs);
+                }
+            }
+            TrainParams::default().kind(class, &labels) == ClassKind::Activity
+        };
+        let activity: Vec<bool> = classes.iter().map(is_activity).collect();
         let spans = |(s, (clip, label)): &(&DbSample, (usize, Range<usize>))| {
             let class = classes.iter().position(|c| *c == s.class);
             let pieces = match class.is_some_and(|class| activity[class]) && !s.whole_clip {

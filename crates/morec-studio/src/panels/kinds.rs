@@ -1,7 +1,8 @@
 //! What a class is, a gesture or an activity, and why; a menu overrules it.
 
 use egui::{Ui, WidgetType};
-use morec::train::{ClassKind, TrainParams};
+use morec::train::{ClassKind, ClassLabels, TrainParams};
+use morec_db::labels::{DbSample, SampleState};
 
 use super::{Out, widgets};
 use crate::state::{Command, State, TrainCommand};
@@ -17,15 +18,12 @@ fn words(kind: ClassKind) -> (&'static str, &'static str) {
 /// The kind of `class` with its reason, and a menu for another.
 pub fn choose(ui: &mut Ui, state: &State, class: &str, out: Out) {
     let chosen = state.train.kinds.get(class).copied();
-    let longest_secs = longest_secs(state, class);
-    let usual = TrainParams::default().kind(class, longest_secs);
+    let labels = labels_of(state, class);
+    let usual = TrainParams::default().kind(class, &labels);
     let (name, with_article) = words(chosen.unwrap_or(usual));
     let (text, why) = match chosen {
         Some(_) => (format!("{name} ✔"), "so it was chosen".to_owned()),
-        None => (
-            name.to_owned(),
-            format!("its longest label lasts {longest_secs:.1} s"),
-        ),
+        None => (name.to_owned(), labels.reason()),
     };
     let menu = ui.menu_button(text, |ui| {
         let by_labels = format!("By its labels: {}", words(usual).1);
@@ -51,12 +49,19 @@ pub fn choose(ui: &mut Ui, state: &State, class: &str, out: Out) {
     ));
 }
 
-/// Duration of the longest label of a class, seconds.
-fn longest_secs(state: &State, class: &str) -> f64 {
-    let snapshot = state.store.as_ref().map(|store| &store.snapshot);
-    let accepted = snapshot.into_iter().flat_map(|s| s.accepted());
-    let of_class = accepted.filter(|s| s.class == class);
-    of_class
-        .map(|s| s.stop_secs - s.start_secs)
-        .fold(0.0, f64::max)
+/// What the accepted labels of a class say of it.
+fn labels_of(state: &State, class: &str) -> ClassLabels {
+    let mut labels = ClassLabels::default();
+    let Some(snapshot) = state.store.as_ref().map(|store| &store.snapshot) else {
+        return labels;
+    };
+    let secs = |s: &DbSample| s.start_secs..s.stop_secs;
+    for label in snapshot.accepted().filter(|s| s.class == class) {
+        let of_clip = snapshot.samples_of(label.clip).iter();
+        let accepted = of_clip.filter(|s| s.state == SampleState::Accepted);
+        let clip = snapshot.clip(label.clip);
+        let clip_secs = clip.map_or(f64::MAX, |clip| clip.duration_secs());
+        labels.add(&secs(label), accepted.map(secs), clip_secs);
+    }
+    labels
 }

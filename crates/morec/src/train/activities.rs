@@ -1,6 +1,7 @@
 //! Which classes are activities, and what windows they are known by.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
 
 use crate::classes::ClassId;
 use crate::features::{BoneSet, Profile, RowLayout, Rows};
@@ -8,9 +9,10 @@ use crate::templates::{
     Activities, Metric, PackedSymmetric, ReferenceRows, STEP_TICKS, squared_distance, windows_of,
 };
 
-use super::params::{ClassKind, TrainParams};
+use super::kind::{ClassKind, ClassLabels};
+use super::params::TrainParams;
 use super::scatter::{covariance, means_of_groups, ridged, within_groups};
-use super::set::{StreamKind, TrainSample, TrainSet, evenly};
+use super::set::{StreamKind, TrainSample, TrainSet, TrainStream, evenly};
 
 /// Length of a window, seconds; 2 to 3 are alike.
 const WINDOW_SECS: f64 = 2.5;
@@ -74,13 +76,25 @@ fn activity_classes(
     params: &TrainParams,
 ) -> BTreeSet<ClassId> {
     let goes_on = |class: &ClassId| {
-        let of_class = samples.iter().filter(|s| s.class == *class);
-        let longest = of_class.map(|s| s.rows.len()).max().unwrap_or(0);
-        let longest_secs = longest as f64 / params.features.tick_hz();
-        params.kind(&set.classes[class.index()], longest_secs) == ClassKind::Activity
+        let labels = labels_of(&set.streams, *class, params.features.tick_hz());
+        params.kind(&set.classes[class.index()], &labels) == ClassKind::Activity
     };
     let taught: BTreeSet<ClassId> = samples.iter().map(|s| s.class).collect();
     taught.into_iter().filter(goes_on).collect()
+}
+
+/// The labels of a class in streams that somebody performed.
+pub(super) fn labels_of(streams: &[TrainStream], class: ClassId, tick_hz: f64) -> ClassLabels {
+    let secs = |ticks: &Range<usize>| ticks.start as f64 / tick_hz..ticks.end as f64 / tick_hz;
+    let mut labels = ClassLabels::default();
+    for stream in streams.iter().filter(|stream| !stream.is_copy) {
+        let all = || stream.known.iter().map(|known| secs(&known.ticks));
+        for known in stream.known.iter().filter(|k| k.class == Some(class)) {
+            let clip_secs = stream.rows.len() as f64 / tick_hz;
+            labels.add(&secs(&known.ticks), all(), clip_secs);
+        }
+    }
+    labels
 }
 
 /// How near the windows of each group are to its mean.

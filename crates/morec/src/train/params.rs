@@ -5,6 +5,8 @@ use std::collections::BTreeMap;
 use crate::decode::DecodeParams;
 use crate::features::FeatureParams;
 
+use super::kind::{ClassKind, ClassLabels};
+
 /// Parameters of templates' training.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct TrainParams {
@@ -91,20 +93,6 @@ pub struct TrainParams {
     pub kinds: BTreeMap<String, ClassKind>,
 }
 
-/// A class whose longest sample lasts this many seconds goes on. Gestures with a pause or with repetitions, which templates recognise better,
-/// last up to five.
-const LONG_SECS: f64 = 6.0;
-
-/// How a class is recognised.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum ClassKind {
-    /// By templates of its samples: it has a beginning and an end.
-    Gesture,
-    /// By what a window of a few seconds shows: it goes on.
-    Activity,
-}
-
 /// Parameters of the wider gate, see [`StrangerGate`](crate::templates::StrangerGate).
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct StrangerParams {
@@ -175,13 +163,12 @@ impl TrainParams {
         self.kinds.extend(named(gestures, ClassKind::Gesture));
     }
 
-    /// How a class is recognised whose longest sample lasts `longest_secs`, if there is other motion to tell it from.
-    pub fn kind(&self, class: &str, longest_secs: f64) -> ClassKind {
+    /// How a class with such `labels` is recognised, if there is other motion to tell it from.
+    pub fn kind(&self, class: &str, labels: &ClassLabels) -> ClassKind {
         match self.kinds.get(class) {
             _ if !self.activities => ClassKind::Gesture,
             Some(kind) => *kind,
-            None if longest_secs >= LONG_SECS => ClassKind::Activity,
-            None => ClassKind::Gesture,
+            None => labels.kind(),
         }
     }
 

@@ -6,10 +6,12 @@ use crate::classes::{ClassId, ClassInfo};
 use crate::features::Profile;
 use crate::templates::{Activities, OperatingPoint, ReferenceRows};
 
+use super::activities::labels_of;
 use super::alike::AlikeClasses;
 use super::from_clips::Prepared;
+use super::kind::{ClassKind, ClassLabels};
 use super::notes::class_notes;
-use super::params::{ClassKind, TrainParams};
+use super::params::TrainParams;
 use super::set::{StreamKind, TrainSample, TrainStream};
 use super::templates::TrainedTemplates;
 use super::thesis::SvrdmReport;
@@ -33,8 +35,7 @@ fn activity_note(
         if params.kinds.contains_key(name) {
             return format!("{name} (named one)");
         }
-        let secs = longest_secs(prepared, class, params);
-        format!("{name} (a sample lasts {secs:.1} s)")
+        format!("{name} ({})", labels(prepared, class, params).reason())
     };
     let names: Vec<String> = activities
         .windows
@@ -49,12 +50,9 @@ fn activity_note(
     )
 }
 
-/// Of the samples of a class.
-fn longest_secs(prepared: &Prepared, class: ClassId, params: &TrainParams) -> f64 {
-    let known = prepared.set.streams.iter().flat_map(|s| &s.known);
-    let of_class = known.filter(|span| span.class == Some(class));
-    let longest = of_class.map(|span| span.ticks.len()).max().unwrap_or(0);
-    longest as f64 / params.features.tick_hz()
+/// What the labels of a class say of its kind.
+fn labels(prepared: &Prepared, class: ClassId, params: &TrainParams) -> ClassLabels {
+    labels_of(&prepared.set.streams, class, params.features.tick_hz())
 }
 
 /// Samples of gestures are seldom longer than this, seconds: what is may be an activity.
@@ -74,10 +72,10 @@ fn long_gesture_note(
     let gestures = classes.filter(|(class, info)| {
         !activities.is_some_and(|a| a.holds(*class)) && !params.kinds.contains_key(&info.name)
     });
-    let lengths = gestures.map(|(class, info)| (info, longest_secs(prepared, class, params)));
-    let names: Vec<String> = lengths
-        .filter(|(_, secs)| *secs >= LONG_GESTURE_SECS)
-        .map(|(info, secs)| format!("{} (a sample lasts {secs:.1} s)", info.name))
+    let labels = gestures.map(|(class, info)| (info, labels(prepared, class, params)));
+    let names: Vec<String> = labels
+        .filter(|(_, labels)| labels.longest_secs >= LONG_GESTURE_SECS)
+        .map(|(info, labels)| format!("{} ({})", info.name, labels.reason()))
         .collect();
     (!names.is_empty()).then(|| {
         format!(
