@@ -57,7 +57,9 @@ const standIn = (rows, rate_hz) => `
 test("the camera's page sends what MediaPipe sees, and the command recognises it", { skip, timeout: 120_000 }, async () => {
   const folder = mkdtempSync(join(tmpdir(), "morec-webcam-"));
   const clip = morec.read(readFileSync(recognise[0]), basename(recognise[0]));
-  writeFileSync(join(folder, "pose.js"), standIn(landmarks(clip), clip.rate_hz));
+  // As it goes at its own pace, half of the clip will do.
+  const secs = 45;
+  writeFileSync(join(folder, "pose.js"), standIn(landmarks(clip).slice(0, secs * clip.rate_hz), clip.rate_hz));
   const live = spawn(MOREC_COMMAND, [
     "live", join(MOREC_CASES, `${name}.index`), "--listen", "webcam://127.0.0.1:0", "--mediapipe", folder, "--emit", "json:-", "--no-early",
   ]);
@@ -86,7 +88,9 @@ test("the camera's page sends what MediaPipe sees, and the command recognises it
     live.kill("SIGINT");
     await new Promise((done) => live.once("close", done));
     const found = new Set(events.map((event) => event.class));
-    const expected = new Set(detections[0].map((row) => row.class));
+    const shown = detections[0].filter((row) => row.stop_secs < secs - 1);
+    const expected = new Set(shown.map((row) => row.class));
+    assert.ok(expected.size > 1);
     const missed = [...expected].filter((motion) => !found.has(motion));
     assert.ok(missed.length <= expected.size / 3, `found ${[...found]}, missed ${missed}`);
   } finally {
