@@ -16,6 +16,7 @@ use crate::state::{
 use crate::store::Store;
 use crate::stretch::Stretch;
 use crate::theme::Colours;
+use crate::unsaved::OwnFolder;
 
 /// A picture of a panel.
 #[derive(Debug, Clone)]
@@ -68,12 +69,24 @@ pub struct Headless {
     /// Pixels of a point.
     scale: f32,
     now: f64,
+    /// What has no name lies here: pictures show nothing of other runs, and leave nothing to them.
+    folder: Option<OwnFolder>,
+}
+
+impl Drop for Headless {
+    fn drop(&mut self) {
+        if let Some(folder) = self.folder.take() {
+            folder.remove();
+        }
+    }
 }
 
 impl Headless {
     pub fn new(paths: &[PathBuf], size: [usize; 2], scale: f32, dark: bool) -> Self {
         let ctx = egui::Context::default();
-        let mut studio = Studio::new(&ctx, paths, std::env::temp_dir());
+        let folder = OwnFolder::new(&std::env::temp_dir()).ok();
+        let own = folder.as_ref().map(|folder| folder.path().to_owned());
+        let mut studio = Studio::new(&ctx, paths, own.unwrap_or_else(std::env::temp_dir));
         studio.state.dark = dark;
         Self {
             ctx,
@@ -82,6 +95,7 @@ impl Headless {
             size: Vec2::new(size[0] as f32, size[1] as f32),
             scale,
             now: 0.0,
+            folder,
         }
     }
 
@@ -101,6 +115,7 @@ impl Headless {
             size: Vec2::new(size[0] as f32, size[1] as f32),
             scale: 1.0,
             now: 0.0,
+            folder: None,
         }
     }
 
