@@ -1,6 +1,7 @@
 // The page: buttons, pictures and lists around `teaching.js`.
 import * as morec from "./vendor/morec/morec.js";
 import { trainInWorker } from "./vendor/morec/worker.js";
+import { outlets } from "./outlets.js";
 import { camera, drawLandmarks, film, recorded } from "./sources.js";
 import { Teaching } from "./teaching.js";
 
@@ -12,6 +13,7 @@ const teaching = new Teaching(morec, trainInWorker);
 const drawing = at("drawing").getContext("2d");
 let running = null;
 let busy = false;
+let send = () => {};
 
 const say = (text) => (at("state").textContent = text);
 const wait = (secs) => new Promise((done) => setTimeout(done, 1000 * secs));
@@ -176,8 +178,7 @@ teaching.addEventListener("diagnosis", ({ detail }) => {
   at("diagnosis").replaceChildren(...detail.map((sentence) => Object.assign(document.createElement("li"), { textContent: sentence })));
 });
 teaching.addEventListener("motion", ({ detail }) => {
-  // For other scripts of this page.
-  document.dispatchEvent(new CustomEvent("morec", { detail }));
+  send(detail);
   if (detail.phase !== "end") return;
   const row = document.createElement("li");
   row.className = "now";
@@ -186,4 +187,9 @@ teaching.addEventListener("motion", ({ detail }) => {
   at("events").firstElementChild?.classList.remove("now");
   at("events").prepend(row);
 });
+try {
+  send = outlets(new URLSearchParams(location.search));
+} catch (error) {
+  say(`socket: ${error.message}`);
+}
 show();

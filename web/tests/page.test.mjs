@@ -1,5 +1,6 @@
 // The page in Chromium: recorded landmarks drive teach → train → recognise → save → load. Needs what `web/test` gets.
 import assert from "node:assert/strict";
+import { createHash } from "node:crypto";
 import { readFileSync } from "node:fs";
 import { createServer } from "node:http";
 import { createRequire } from "node:module";
@@ -110,6 +111,47 @@ test("the page is used by keyboard and fits a phone in both themes", { skip }, a
     assert.equal(wide, false);
     assert.equal(colour, colorScheme === "light" ? "rgb(255, 255, 255)" : "rgb(24, 24, 24)");
   }
+});
+
+test("events go to the page that shows this one, and to a socket", { skip }, async () => {
+  const [lines, sockets] = [[], createServer()];
+  sockets.on("upgrade", (request, socket) => {
+    const key = `${request.headers["sec-websocket-key"]}258EAFA5-E914-47DA-95CA-C5AB0DC85B11`;
+    const accept = createHash("sha1").update(key).digest("base64");
+    socket.write(`HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Accept: ${accept}\r\n\r\n`);
+    socket.on("error", () => {});
+    socket.on("data", (frame) => {
+      // A short text in one masked frame.
+      const bytes = frame.subarray(frame[1] === 0xfe ? 8 : 6);
+      const mask = frame.subarray(frame[1] === 0xfe ? 4 : 2);
+      if (frame[0] === 0x81) lines.push(JSON.parse(bytes.map((byte, at) => byte ^ mask[at % 4]).toString()));
+    });
+  });
+  sockets.listen(0, "127.0.0.1");
+  await new Promise((done) => sockets.once("listening", done));
+  const host = await browser.newPage();
+  await host.goto(`http://127.0.0.1:${server.address().port}/style.css`);
+  const detail = { class: "wave", phase: "end", score: 0.9 };
+  const message = await host.evaluate(async ({ detail, port }) => {
+    const frame = document.createElement("iframe");
+    const query = new URLSearchParams({ host: location.origin, socket: `ws://127.0.0.1:${port}` });
+    frame.src = `/index.html?${query}`;
+    const loaded = new Promise((done) => (frame.onload = done));
+    document.documentElement.append(frame);
+    await loaded;
+    const { outlets } = await frame.contentWindow.eval('import("/outlets.js")');
+    const send = outlets(query);
+    const message = new Promise((done) => addEventListener("message", ({ data }) => done(data)));
+    await new Promise((done) => setTimeout(done, 500));
+    send(detail);
+    return message;
+  }, { detail, port: sockets.address().port });
+  assert.deepEqual(message, { type: "morec", ...detail });
+  while (!lines.length) await new Promise((done) => setTimeout(done, 20));
+  assert.deepEqual(lines, [{ type: "motion", ...detail }]);
+  await host.close();
+  sockets.closeAllConnections();
+  sockets.close();
 });
 
 test("without a body, and with a file that is none, the page says what is wrong", { skip }, async () => {
