@@ -31,6 +31,7 @@ from ._morec import (
 )
 from ._rows import Features, Windows, cut, features, normalize, windows
 from ._tables import Table
+from ._webcam import WEBCAM_POINTS, webcam
 
 if TYPE_CHECKING:
     from .sklearn import MotionClassifier
@@ -47,6 +48,7 @@ __all__ = [
     "MotionClassifier",
     "Recognizer",
     "Table",
+    "WEBCAM_POINTS",
     "Windows",
     "__version__",
     "animation",
@@ -63,6 +65,7 @@ __all__ = [
     "read_folder",
     "synth",
     "train",
+    "webcam",
     "windows",
 ]
 
