@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import subprocess
 import sys
 from pathlib import Path
 from types import ModuleType, SimpleNamespace
@@ -99,3 +100,18 @@ def test_what_is_missing_is_said_with_what_to_do(monkeypatch: pytest.MonkeyPatch
     stand_in(monkeypatch, [])
     with pytest.raises(OSError, match="camera 0 gives no picture"):
         next(morec.webcam())
+
+
+def test_the_real_package_knows_what_is_asked_of_it(tmp_path: Path) -> None:
+    """With a file that is no model: MediaPipe ships none."""
+    pytest.importorskip("mediapipe")
+    model = tmp_path / "pose_landmarker.task"
+    model.write_bytes(b"no model")
+    with pytest.raises(ValueError, match="pose_landmarker.task is no pose landmarker"):
+        next(morec.webcam(model))
+    # The guide's script, too, gets as far as the model.
+    guide = Path(__file__).parents[3] / "docs" / "guide" / "devices.md"
+    blocks = guide.read_text(encoding="utf-8").split("```python\n")[1:]
+    script = next(block.split("```")[0] for block in blocks if "PoseLandmarkerOptions" in block)
+    done = subprocess.run([sys.executable, "-c", script, str(model)], capture_output=True, text=True, check=False)
+    assert done.returncode != 0 and "create_from_options" in done.stderr and "RuntimeError" in done.stderr
