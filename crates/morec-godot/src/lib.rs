@@ -89,6 +89,15 @@ impl RecognizerNode {
         PerformerStream::of_skeleton(index, joints(skeleton, &self.bones))
     }
 
+    /// Takes the stream back and says what it has recognised; what is connected to a signal may begin another stream.
+    fn keep(&mut self, stream: PerformerStream) {
+        let events: Vec<(String, Event)> = stream.events().collect();
+        self.stream = Some(stream);
+        for (name, event) in &events {
+            self.emit(name, event);
+        }
+    }
+
     fn emit(&mut self, name: &str, event: &Event) {
         let name = GString::from(name);
         let repetitions = event.repetitions.map_or(0, |r| i64::from(r.count));
@@ -131,21 +140,13 @@ impl INode for RecognizerNode {
             }
             None => stream.push_places(self.secs, &trackers::pose(&self.trackers)),
         }
-        let events: Vec<(String, Event)> = stream.events().collect();
-        self.stream = Some(stream);
-        for (name, event) in &events {
-            self.emit(name, event);
-        }
+        self.keep(stream);
     }
 
     fn exit_tree(&mut self) {
-        let Some(stream) = &mut self.stream else {
-            return;
-        };
-        stream.finish();
-        let events: Vec<(String, Event)> = stream.events().collect();
-        for (name, event) in &events {
-            self.emit(name, event);
+        if let Some(mut stream) = self.stream.take() {
+            stream.finish();
+            self.keep(stream);
         }
     }
 }

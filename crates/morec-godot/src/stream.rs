@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use morec::clip::Skeleton;
-use morec::features::{Hand, KeyPose};
+use morec::features::KeyPose;
 use morec::index::MotionIndex;
 use morec::live::{Event, EventOptions, Frame, Model, Performer, PerformerId, Rig};
 use morec::math::Vec3;
-use morec::roles::{Role, RoleMap};
+use morec::roles::RoleMap;
 
 /// Recognises the motions of one performer.
 pub struct PerformerStream {
@@ -89,24 +89,6 @@ impl PerformerStream {
     }
 }
 
-/// OpenXR's numbers of the joints of a hand, which Godot's are, and what they play: palm, wrist, four joints of the thumb, five of each
-/// finger, the first of which lies within the palm.
-pub fn hand_joints(hand: Hand) -> impl Iterator<Item = (i32, Role)> {
-    let points = hand.points();
-    let fingers = points.fingers.into_iter().enumerate();
-    let of_fingers = fingers.flat_map(|(finger, roles)| {
-        let first = if finger == 0 {
-            2
-        } else {
-            2 + 5 * finger as i32
-        };
-        (first..).zip(roles)
-    });
-    [(0, points.palm), (1, points.wrist)]
-        .into_iter()
-        .chain(of_fingers)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -134,20 +116,7 @@ mod tests {
             person: None,
             clip: take.clip.clone(),
         });
-        let samples: Vec<Sample> = takes
-            .iter()
-            .flat_map(|take| {
-                take.labels.iter().map(|label| Sample {
-                    clip: take.clip.name.clone(),
-                    class: label.class.to_owned(),
-                    start_secs: label.start_secs,
-                    stop_secs: label.stop_secs,
-                    whole_clip: false,
-                    person: None,
-                    line: 2,
-                })
-            })
-            .collect();
+        let samples: Vec<Sample> = takes.iter().flat_map(SyntheticTake::samples).collect();
         let labelling = LabelSet {
             samples: &samples,
             classes: &["wave".to_owned()],
@@ -193,16 +162,5 @@ mod tests {
         assert_eq!(of_roles.len(), 3, "{of_roles:?}");
         assert_eq!(of_joints, of_roles);
         assert!(of_roles.iter().all(|(name, _)| name == "wave"));
-    }
-
-    #[test]
-    fn openxr_numbers_26_joints_of_which_morec_needs_22() {
-        for hand in Hand::BOTH {
-            let joints: Vec<(i32, Role)> = hand_joints(hand).collect();
-            assert_eq!(joints.len(), 22);
-            let number = |role: Role| joints.iter().find(|(_, r)| *r == role).unwrap().0;
-            let tips = hand.points().fingers.map(|finger| number(finger[3]));
-            assert_eq!(tips, [5, 10, 15, 20, 25]);
-        }
     }
 }

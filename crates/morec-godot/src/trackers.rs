@@ -8,8 +8,7 @@ use godot::prelude::*;
 use morec::features::{Hand, KeyPose};
 use morec::math::Vec3;
 use morec::roles::Role;
-
-use crate::stream::hand_joints;
+use morec::roles::points::numbered_hand;
 
 /// The joints of a tracked body and what they play.
 const BODY: [(Joint, Role); 18] = [
@@ -80,8 +79,10 @@ fn of_hand(tracker: &Gd<XrHandTracker>, pose: &mut KeyPose) {
         TrackerHand::RIGHT => Hand::Right,
         _ => return,
     };
-    for (number, role) in hand_joints(hand) {
-        if let Some(joint) = HandJoint::try_from_ord(number) {
+    // Godot's joints are OpenXR's, by their numbers.
+    let roles = numbered_hand(HandJoint::MAX.ord() as usize, hand);
+    for (number, role) in (0..).zip(roles.into_iter().flatten()) {
+        if let (Some(role), Some(joint)) = (role, HandJoint::try_from_ord(number)) {
             pose.set(role, vector(tracker.get_hand_joint_transform(joint).origin));
         }
     }

@@ -30,8 +30,8 @@ def webcam(
 ) -> Generator[tuple[float, npt.NDArray[np.float64]], None, None]:
     """Poses of the person before a camera: seconds since the first frame, and the landmarks `WEBCAM_POINTS` of shape (33, 3).
 
-    Metres from the middle of the hips, Y up. Frames in which nobody is seen are left out. Takes the packages ``mediapipe`` (1.x or
-    0.10) and ``opencv-python``, and ends with the camera, or when the iterator is closed.
+    Metres from the middle of the hips, Y up. Frames in which nobody is seen are left out. Takes the packages ``mediapipe`` (1.x)
+    and ``opencv-python``, and ends with the camera, or when the iterator is closed.
 
     >>> live = index.recognizer(morec.WEBCAM_POINTS)                     # doctest: +SKIP
     >>> for secs, pose in morec.webcam("pose_landmarker_full.task"):     # doctest: +SKIP

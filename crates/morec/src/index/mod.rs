@@ -108,12 +108,14 @@ impl MotionIndex {
     }
 
     /// Fills roles that `map` left empty with [fingers](RoleMap::for_bones), if the index looks at them, and with the joints that played them in training, where `skeleton` has
-    /// joints of those names that play nothing else. Returns the roles that were filled.
+    /// joints of those names that play nothing else. Returns the roles that were filled. Where the index is of a custom skeleton and `skeleton` has its
+    /// root, roles of a person are taken away.
     pub fn complete_roles(&self, map: &mut RoleMap, skeleton: &crate::clip::Skeleton) -> Vec<Role> {
         let mut filled = Vec::new();
         // What the joints of a custom skeleton seem to be of a person does not count.
         let root = self.roles.get(&Role::Point1);
-        if root.is_some_and(|name| skeleton.find(name).is_some()) {
+        let unnamed = map.joint(Role::Point1).is_none();
+        if unnamed && root.is_some_and(|name| skeleton.find(name).is_some()) {
             *map = RoleMap::default();
         }
         *map = self.model.roles_of(skeleton, map).into_owned();

@@ -79,7 +79,7 @@ mod tests {
     use crate::live::{Model, recognize_clip};
     use crate::math::Vec3;
     use crate::roles::{LEGS, Role};
-    use crate::synth::{Person, Script, SyntheticLabel};
+    use crate::synth::{Person, Script};
 
     /// Somebody who waves; without hips and legs if `half`.
     fn performance(number: usize, half: bool) -> (TrainClip, Vec<Sample>) {
@@ -93,18 +93,9 @@ mod tests {
                 roles.set(role, None);
             }
         }
-        let sample = |label: &SyntheticLabel| Sample {
-            clip: name.clone(),
-            class: label.class.to_owned(),
-            start_secs: label.start_secs,
-            stop_secs: label.stop_secs,
-            whole_clip: false,
-            person: None,
-            line: 2,
-        };
-        let samples = take.labels.iter().map(sample).collect();
+        let samples = take.samples().collect();
         let clip = TrainClip {
-            name: name.clone(),
+            name,
             roles,
             rest: 0..0,
             source: StreamKind::Labelled,

@@ -29,16 +29,7 @@ fn performance(number: usize, mapping: &str) -> (TrainClip, Vec<Sample>) {
         mapping: Some(Mapping::read(mapping.as_bytes()).unwrap()),
         ..ImportOptions::default()
     };
-    let samples = filmed.labels.iter().map(|label| Sample {
-        clip: name.clone(),
-        class: label.class.to_owned(),
-        start_secs: label.start_secs,
-        stop_secs: label.stop_secs,
-        whole_clip: false,
-        person: None,
-        line: 2,
-    });
-    let samples = samples.collect();
+    let samples = filmed.samples().collect();
     let take: Take = morec::import::normalize(filmed.clip, &options).unwrap();
     let clip = TrainClip {
         name,
