@@ -120,14 +120,9 @@ impl ProposalData {
         for (s, (clip, _)) in accepted().filter(|(s, _)| !s.whole_clip) {
             by_clip[*clip].push((s.class.as_str(), s.start_secs..s.stop_secs));
         }
+        let labels = ClassLabels::of_clips(clips.iter().map(|clip| clip.end_secs).zip(by_clip));
         let is_activity = |class: &String| {
-            let mut labels = ClassLabels::default();
-            for (clip, of_clip) in clips.iter().zip(&by_clip) {
-                let all = || of_clip.iter().map(|(_, label)| label.clone());
-                for (_, label) in of_clip.iter().filter(|(name, _)| name == class) {
-                    labels.add(label, all(), clip.end_secs);
-                }
-            }
+            let labels = labels.get(class.as_str()).copied().unwrap_or_default();
             TrainParams::default().kind(class, &labels) == ClassKind::Activity
         };
         let activity: Vec<bool> = classes.iter().map(is_activity).collect();

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use morec::roles::RoleMap;
+use morec::train::ClassLabels;
 use morec_db::labels::{ClassCount, DbSample, SampleFilter, SampleId, SampleState};
 use morec_db::{ClipFilter, ClipId, ClipInfo, DbError, HistoryStep, IndexInfo, MotionDb, Segment};
 
@@ -27,6 +28,8 @@ pub struct Snapshot {
     pub roles: BTreeMap<ClipId, RoleMap>,
     /// Places of classes by name.
     pub places: BTreeMap<String, usize>,
+    /// What the accepted labels of each class say of its kind.
+    pub labels: BTreeMap<String, ClassLabels>,
     /// Name of this program in the history.
     pub program: String,
     place: BTreeMap<ClipId, usize>,
@@ -65,6 +68,7 @@ impl Snapshot {
         history: Vec<HistoryStep>,
     ) -> Self {
         Self {
+            labels: labels_of(&clips, &samples),
             place: clips.iter().enumerate().map(|(i, c)| (c.id, i)).collect(),
             samples_of: runs(samples.iter().map(|s| s.clip)),
             sample_place: samples.iter().enumerate().map(|(i, s)| (s.id, i)).collect(),
@@ -152,4 +156,14 @@ fn runs(clips: impl Iterator<Item = ClipId>) -> BTreeMap<ClipId, Range<usize>> {
         runs.entry(clip).or_insert(at..at).end = at + 1;
     }
     runs
+}
+
+fn labels_of(clips: &[ClipInfo], samples: &[DbSample]) -> BTreeMap<String, ClassLabels> {
+    let mut by_clip: BTreeMap<ClipId, Vec<(String, Range<f64>)>> = BTreeMap::new();
+    for sample in samples.iter().filter(|s| s.state == SampleState::Accepted) {
+        let label = (sample.class.clone(), sample.start_secs..sample.stop_secs);
+        by_clip.entry(sample.clip).or_default().push(label);
+    }
+    let of_clip = |clip: &ClipInfo| Some((clip.duration_secs(), by_clip.remove(&clip.id)?));
+    ClassLabels::of_clips(clips.iter().filter_map(of_clip))
 }

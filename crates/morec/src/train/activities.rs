@@ -1,7 +1,6 @@
 //! Which classes are activities, and what windows they are known by.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::ops::Range;
 
 use crate::classes::ClassId;
 use crate::features::{BoneSet, Profile, RowLayout, Rows};
@@ -75,26 +74,27 @@ fn activity_classes(
     samples: &[TrainSample],
     params: &TrainParams,
 ) -> BTreeSet<ClassId> {
+    let labels = labels_of(&set.streams, params.features.tick_hz());
     let goes_on = |class: &ClassId| {
-        let labels = labels_of(&set.streams, *class, params.features.tick_hz());
+        let labels = labels.get(&Some(*class)).copied().unwrap_or_default();
         params.kind(&set.classes[class.index()], &labels) == ClassKind::Activity
     };
     let taught: BTreeSet<ClassId> = samples.iter().map(|s| s.class).collect();
     taught.into_iter().filter(goes_on).collect()
 }
 
-/// The labels of a class in streams that somebody performed.
-pub(super) fn labels_of(streams: &[TrainStream], class: ClassId, tick_hz: f64) -> ClassLabels {
-    let secs = |ticks: &Range<usize>| ticks.start as f64 / tick_hz..ticks.end as f64 / tick_hz;
-    let mut labels = ClassLabels::default();
-    for stream in streams.iter().filter(|stream| !stream.is_copy) {
-        let all = || stream.known.iter().map(|known| secs(&known.ticks));
-        for known in stream.known.iter().filter(|k| k.class == Some(class)) {
-            let clip_secs = stream.rows.len() as f64 / tick_hz;
-            labels.add(&secs(&known.ticks), all(), clip_secs);
-        }
-    }
-    labels
+/// The labels of each class in streams that somebody performed; of what is known to be none of the classes under `None`.
+pub(super) fn labels_of(
+    streams: &[TrainStream],
+    tick_hz: f64,
+) -> BTreeMap<Option<ClassId>, ClassLabels> {
+    let secs = |ticks: usize| ticks as f64 / tick_hz;
+    let performed = streams.iter().filter(|stream| !stream.is_copy);
+    ClassLabels::of_clips(performed.map(|stream| {
+        let known = stream.known.iter();
+        let labels = known.map(|k| (k.class, secs(k.ticks.start)..secs(k.ticks.end)));
+        (secs(stream.rows.len()), labels.collect())
+    }))
 }
 
 /// How near the windows of each group are to its mean.

@@ -1,5 +1,6 @@
 //! Whether a class is a gesture or goes on, by its labels.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// A class whose longest sample lasts this many seconds goes on. Gestures with a pause or with repetitions, which templates recognise better,
@@ -31,24 +32,30 @@ pub struct ClassLabels {
 }
 
 impl ClassLabels {
-    /// Takes a label of the class, in seconds of a clip of this duration with these labels.
-    pub fn add(
-        &mut self,
-        label: &Range<f64>,
-        mut all: impl Iterator<Item = Range<f64>>,
-        clip_secs: f64,
-    ) {
-        self.longest_secs = self.longest_secs.max(label.end - label.start);
-        self.labels += 1;
-        let near = |a: f64, b: f64| (a - b).abs() <= BREAK_SECS;
-        let [mut before, mut after] = [false; 2];
-        while let Some(other) = all.next().filter(|_| !(before && after)) {
-            before |= near(other.end, label.start);
-            after |= near(other.start, label.end);
+    /// Of each class of the labels of clips: a clip's duration, and its labels, all in seconds. O(labels · log labels).
+    pub fn of_clips<K: Ord + Clone>(
+        clips: impl IntoIterator<Item = (f64, Vec<(K, Range<f64>)>)>,
+    ) -> BTreeMap<K, Self> {
+        let mut classes: BTreeMap<K, Self> = BTreeMap::new();
+        for (clip_secs, labels) in clips {
+            let sorted = |of: fn(&Range<f64>) -> f64| {
+                let mut secs: Vec<f64> = labels.iter().map(|(_, label)| of(label)).collect();
+                secs.sort_by(f64::total_cmp);
+                secs
+            };
+            let (starts, ends) = (sorted(|label| label.start), sorted(|label| label.end));
+            for (class, label) in &labels {
+                let before = has_near(&ends, label.start);
+                let after = has_near(&starts, label.end);
+                let begins = before || has_near(&[0.0], label.start);
+                let stops = after || has_near(&[clip_secs], label.end);
+                let of_class = classes.entry(class.clone()).or_default();
+                of_class.longest_secs = of_class.longest_secs.max(label.end - label.start);
+                of_class.labels += 1;
+                of_class.unbroken += usize::from(begins && stops && (before || after));
+            }
         }
-        let begins = before || near(label.start, 0.0);
-        let ends = after || near(label.end, clip_secs);
-        self.unbroken += usize::from(begins && ends && (before || after));
+        classes
     }
 
     /// Why it is of that [kind](Self::kind), in words.
@@ -73,16 +80,20 @@ impl ClassLabels {
     }
 }
 
+/// True if one of these times, which increase, is [near](BREAK_SECS) to `secs`.
+fn has_near(times: &[f64], secs: f64) -> bool {
+    let at = times.partition_point(|time| *time < secs - BREAK_SECS);
+    times.get(at).is_some_and(|time| *time <= secs + BREAK_SECS)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     fn kind(labels: &[Range<f64>], of_class: &[usize]) -> ClassKind {
-        let mut class = ClassLabels::default();
-        for &at in of_class {
-            class.add(&labels[at], labels.iter().cloned(), 20.0);
-        }
-        class.kind()
+        let labels = labels.iter().cloned().enumerate();
+        let named = labels.map(|(at, label)| (of_class.contains(&at), label));
+        ClassLabels::of_clips([(20.0, named.collect())])[&true].kind()
     }
 
     #[test]
@@ -100,8 +111,7 @@ mod tests {
         );
         // A clip that is one sample says nothing.
         assert_eq!(kind(&[0.0..20.0], &[0]), ClassKind::Activity, "it is long");
-        let mut whole = ClassLabels::default();
-        whole.add(&(0.0..5.0), std::iter::once(0.0..5.0), 5.0);
-        assert_eq!(whole.kind(), ClassKind::Gesture);
+        let whole = ClassLabels::of_clips([(5.0, vec![((), 0.0..5.0)])]);
+        assert_eq!(whole[&()].kind(), ClassKind::Gesture);
     }
 }

@@ -9,7 +9,7 @@ use crate::templates::{Activities, OperatingPoint, ReferenceRows};
 use super::activities::labels_of;
 use super::alike::AlikeClasses;
 use super::from_clips::Prepared;
-use super::kind::{ClassKind, ClassLabels};
+use super::kind::ClassKind;
 use super::notes::class_notes;
 use super::params::TrainParams;
 use super::set::{StreamKind, TrainSample, TrainStream};
@@ -30,12 +30,14 @@ fn activity_note(
     classes: &[ClassInfo],
     params: &TrainParams,
 ) -> String {
+    let labels = labels_of(&prepared.set.streams, params.features.tick_hz());
     let named = |class: ClassId| {
         let name = &classes[class.index()].name;
         if params.kinds.contains_key(name) {
             return format!("{name} (named one)");
         }
-        format!("{name} ({})", labels(prepared, class, params).reason())
+        let labels = labels.get(&Some(class)).copied().unwrap_or_default();
+        format!("{name} ({})", labels.reason())
     };
     let names: Vec<String> = activities
         .windows
@@ -48,11 +50,6 @@ fn activity_note(
         activities.window_ticks as f64 / params.features.tick_hz(),
         names.join(", ")
     )
-}
-
-/// What the labels of a class say of its kind.
-fn labels(prepared: &Prepared, class: ClassId, params: &TrainParams) -> ClassLabels {
-    labels_of(&prepared.set.streams, class, params.features.tick_hz())
 }
 
 /// Samples of gestures are seldom longer than this, seconds: what is may be an activity.
@@ -72,8 +69,9 @@ fn long_gesture_note(
     let gestures = classes.filter(|(class, info)| {
         !activities.is_some_and(|a| a.holds(*class)) && !params.kinds.contains_key(&info.name)
     });
-    let labels = gestures.map(|(class, info)| (info, labels(prepared, class, params)));
-    let names: Vec<String> = labels
+    let labels = labels_of(&prepared.set.streams, params.features.tick_hz());
+    let names: Vec<String> = gestures
+        .filter_map(|(class, info)| Some((info, labels.get(&Some(class))?)))
         .filter(|(_, labels)| labels.longest_secs >= LONG_GESTURE_SECS)
         .map(|(info, labels)| format!("{} ({})", info.name, labels.reason()))
         .collect();
