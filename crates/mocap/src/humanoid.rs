@@ -1,7 +1,8 @@
 //! The bones of a humanoid as VMC names them, how they hang together, and where they are in a person nobody measured.
 
 use crate::math::Vec3;
-use crate::roles::Role;
+use crate::pose::Hand;
+use crate::roles::{Role, RoleMap};
 
 /// Number of bones.
 pub const HUMANOID_BONES: usize = 55;
@@ -13,7 +14,7 @@ pub struct HumanoidBone {
     pub name: &'static str,
     /// The bone it hangs on, if that is sent; else that one's, and so on. Comes earlier in the table.
     pub parent: Option<usize>,
-    /// The role of its joint.
+    /// The role of its joint; none of fingers, whose roles [`joint_of`] knows.
     pub role: Option<Role>,
     /// Position in the parent's frame in a T-pose, metres, right-handed, Y up, facing −Z (as poses come out of the
     /// conversion from Unity's axes); for senders that send no positions.
@@ -43,7 +44,7 @@ const fn bone(
     }
 }
 
-/// A finger's bone; fingers play no role.
+/// A finger's bone.
 const fn finger(name: &'static str, parent: usize, x: f64) -> HumanoidBone {
     bone(name, parent, None, x, 0.0, 0.0)
 }
@@ -132,6 +133,21 @@ pub const HUMANOID: [HumanoidBone; HUMANOID_BONES] = [
     finger("RightLittleIntermediate", 52, 0.03),
     finger("RightLittleDistal", 53, 0.02),
 ];
+
+/// The first bone of a finger: thumb to little finger of the left hand, three bones each from the base on, then of the right.
+const FIRST_FINGER: usize = 25;
+
+/// The joint of this bone among those that play `roles`. The last bone of a finger is the third joint or, where a skeleton has three
+/// joints a finger, the last, which plays the tip.
+pub fn joint_of(bone: usize, roles: &RoleMap) -> Option<usize> {
+    let Some(number) = bone.checked_sub(FIRST_FINGER) else {
+        return HUMANOID[bone].role.and_then(|role| roles.joint(role));
+    };
+    let finger = Hand::BOTH[number / 15].points().fingers[number / 3 % 5];
+    let joint = roles.joint(finger[number % 3]);
+    let last = (number % 3 == 2).then_some(finger[3]);
+    joint.or_else(|| roles.joint(last?))
+}
 
 /// Number of the bone of this name.
 pub fn bone_of_name(name: &str) -> Option<usize> {

@@ -24,7 +24,7 @@ use morec_live::load;
 /// Play clips as a VMC sender, so that anything that listens to VMC can be tried without a tracker; or as Axis
 /// Neuron would broadcast them.
 ///
-/// Each joint that plays a role is sent as the humanoid bone of that part, in Unity's left-handed axes, as it is in the
+/// Each joint that plays a role, and each of a finger, is sent as the humanoid bone of that part, in Unity's left-handed axes, as it is in the
 /// clip. As a broadcast (--to axis://HOST:PORT) frames go to whoever connects there over TCP, each bone with its position,
 /// or without (?positions=0); it begins when the first has come. Between clips there is a pause of a second. The accidents of a bad network can be had on request.
 #[derive(clap::Args)]
@@ -57,7 +57,7 @@ pub struct Args {
     /// bytes of a bundle
     #[arg(long, value_name = "whole|single|BYTES", default_value = "1500", value_parser = bundling)]
     pub bundle: Bundling,
-    /// Send fingers, toes and face, too, unmoved
+    /// Send the bones that a clip does not have, too, unmoved: fingers, toes, face
     #[arg(long)]
     every_bone: bool,
     /// Roles of joints, where inference fails: lines of `role<TAB>joint name`
@@ -96,13 +96,14 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let (mut time, mut pose, mut frames) = (Time::begin(args), WorldPose::default(), 0u64);
     'all: loop {
         for loaded in &clips {
+            let roles = loaded.roles.with_fingers(&loaded.clip.skeleton);
             for frame in loaded.first..loaded.clip.frames {
                 if stop.load(Ordering::Relaxed) {
                     break 'all;
                 }
                 time.wait(to.delay_secs());
                 pose.set(&loaded.clip, frame);
-                to.frame(time.at_secs / args.speed, &pose, &loaded.roles)
+                to.frame(time.at_secs / args.speed, &pose, &roles)
                     .with_context(|| args.to.to_string())?;
                 frames += 1;
                 time.at_secs += 1.0 / loaded.clip.rate_hz;

@@ -1,7 +1,7 @@
 //! Frames to packets.
 
 use super::message::{position_from_unity, rotation_to_unity};
-use crate::humanoid::{HUMANOID, HUMANOID_BONES, standard_offset};
+use crate::humanoid::{HUMANOID, HUMANOID_BONES, joint_of, standard_offset};
 use crate::kinematics::WorldPose;
 use crate::live::osc::{Arg, begin_bundle, write_element, write_message};
 use crate::math::{Quat, Vec3};
@@ -25,7 +25,7 @@ pub enum Bundling {
 #[derive(Debug)]
 pub struct VmcSender {
     bundling: Bundling,
-    /// Send all 55 bones, fingers, toes and face unmoved.
+    /// Send all 55 bones, those without a joint unmoved.
     every_bone: bool,
     packets: Vec<Vec<u8>>,
     used: usize,
@@ -42,8 +42,8 @@ impl VmcSender {
         }
     }
 
-    /// The packets of one frame: its bones, those of [`HUMANOID`] that `roles` knows, then state and time.
-    /// `pose` is in metres and Y-up.
+    /// The packets of one frame: its bones, those of [`HUMANOID`] that `roles` knows
+    /// ([with fingers](RoleMap::with_fingers), if they are to be sent), then state and time. `pose` is in metres and Y-up.
     pub fn frame(&mut self, time_secs: f64, pose: &WorldPose, roles: &RoleMap) -> &[Vec<u8>] {
         self.used = 0;
         let mut world: [Option<(Vec3, Quat)>; HUMANOID_BONES] = [None; HUMANOID_BONES];
@@ -56,7 +56,7 @@ impl VmcSender {
             let parent = std::iter::successors(HUMANOID[bone].parent, |&b| HUMANOID[b].parent)
                 .find(|&b| world[b].is_some());
             let above = parent.and_then(|parent| world[parent]);
-            let joint = HUMANOID[bone].role.and_then(|role| roles.joint(role));
+            let joint = joint_of(bone, roles);
             let here = match (joint, above) {
                 (Some(joint), _) => Some((pose.positions[joint], pose.rotations[joint])),
                 (None, Some((position, rotation))) if self.every_bone => Some((

@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::features::KeyPose;
+use crate::features::{Hand, KeyPose};
 use crate::kinematics::WorldPose;
 use crate::live::osc::{Arg, begin_bundle, write_element, write_message};
 use crate::live::{Frame, PerformerId, Rig, SourceEvent};
@@ -34,9 +34,13 @@ fn swinging(secs: f64) -> WorldPose {
     pose
 }
 
-/// Joint `i` plays `Role::ALL[i]`.
+/// Joint `i` plays `Role::BODY[i]`.
 fn roles() -> RoleMap {
-    Rig::of_roles().roles
+    let mut roles = RoleMap::default();
+    for (joint, role) in Role::BODY.into_iter().enumerate() {
+        roles.set(role, Some(joint));
+    }
+    roles
 }
 
 /// A receiver with all that came out of it.
@@ -684,4 +688,54 @@ fn a_flood_from_many_ports_leaves_room() {
         frames_of(&mut receiver, &mut frames);
     }
     assert!(frames.values().sum::<usize>() > 200, "{frames:?}");
+}
+
+#[test]
+fn fingers_arrive_where_the_clip_has_them() {
+    let (mut pose, mut sent) = (swinging(0.0), roles());
+    for (side, hand) in Hand::BOTH.into_iter().enumerate() {
+        let points = hand.points();
+        let wrist = pose.positions[points.wrist.index()];
+        for (finger, roles) in points.fingers.into_iter().enumerate() {
+            for (at, role) in roles.into_iter().enumerate() {
+                sent.set(role, Some(pose.positions.len()));
+                let along = 0.09 + 0.03 * at as f64;
+                let across = 0.02 * finger as f64 + 0.001 * side as f64;
+                pose.positions.push(wrist + Vec3::new(across, -along, 0.0));
+                pose.rotations
+                    .push(Axis::Z.rotation(0.2 * at as f64 + 0.1 * finger as f64));
+            }
+        }
+    }
+    let mut heard = Heard::new(&VmcOptions::default());
+    let mut sender = VmcSender::new(Bundling::Bytes(1500), false);
+    for i in 0..30 {
+        let secs = f64::from(i) / 30.0;
+        for packet in sender.frame(secs, &pose, &sent) {
+            heard.receiver.packet(1, secs, packet);
+        }
+        heard.receiver.tick(secs + 0.02);
+    }
+    let mut frame = Frame::default();
+    let mut rig = None;
+    while let Some(next) = heard.receiver.next(&mut frame) {
+        match next {
+            SourceEvent::Rig(_, new) => rig = Some((*new).clone()),
+            SourceEvent::Frame => {}
+            other => panic!("{other:?}"),
+        }
+    }
+    let rig = rig.unwrap();
+    let roles = rig.roles.with_fingers(&rig.skeleton).into_owned();
+    let shown = frame.key_pose(&Rig { roles, ..rig });
+    for hand in Hand::BOTH {
+        // Three bones a finger: a receiver takes the last one's joint for the tip.
+        for [base, second, third, tip] in hand.points().fingers {
+            for (role, of) in [(base, base), (second, second), (tip, third)] {
+                let there = pose.positions[sent.joint(of).unwrap()];
+                let off = (shown.get(role).unwrap() - there).norm();
+                assert!(off < 1e-5, "{role:?}: {off} m off");
+            }
+        }
+    }
 }
