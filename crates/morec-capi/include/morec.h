@@ -828,7 +828,8 @@ MorecStatus morec_recognizer_destroy(struct MorecRecognizer *recognizer);
 MorecStatus morec_recognizer_joint_of_role(const struct MorecRecognizer *recognizer, int32_t role, int32_t *joint);
 
 /**
- * Takes a frame. What it settles waits to be polled. Takes no memory after the first frame, unless it fails.
+ * Takes a frame. What it settles waits to be polled. Takes no memory after the first frame, unless it fails, or a second of frames shows
+ * other joints than were declared.
  *
  * Refused with `MOREC_STATUS_QUEUE_FULL` while too many events wait for there to be room for what it settles:
  * nothing is ever lost.
@@ -836,7 +837,8 @@ MorecStatus morec_recognizer_joint_of_role(const struct MorecRecognizer *recogni
  * # Safety
  * `frame` is null or as its fields say.
  */
-MorecStatus morec_recognizer_push(struct MorecRecognizer *recognizer, const struct MorecFrame *frame);
+MorecStatus morec_recognizer_push(struct MorecRecognizer *recognizer,
+                                  const struct MorecFrame *frame);
 
 /**
  * Moves events that wait into the `capacity` places at `events`, the oldest first, and says in `*count` how many.

@@ -223,7 +223,8 @@ pub unsafe extern "C" fn morec_recognizer_joint_of_role(
     })
 }
 
-/// Takes a frame. What it settles waits to be polled. Takes no memory after the first frame, unless it fails.
+/// Takes a frame. What it settles waits to be polled. Takes no memory after the first frame, unless it fails, or a second of frames shows
+/// other joints than were declared.
 ///
 /// Refused with `MOREC_STATUS_QUEUE_FULL` while too many events wait for there to be room for what it settles:
 /// nothing is ever lost.

@@ -153,12 +153,11 @@ impl Stream {
             sequence: &mut input.sequence,
             counts: &self.counts,
         };
-        let ready = &mut input.ready;
+        let (model, ready) = (&input.made.index.model, &mut input.ready);
+        let mut make = |bones| ready.take().or_else(|| Recognizer::new(model, bones).ok());
         input
             .performer
-            .push(&input.frame, &mut |_| ready.take(), &mut |event| {
-                out.event(event)
-            });
+            .push(&input.frame, &mut make, &mut |event| out.event(event));
         self.counts.frames.fetch_add(1, Relaxed);
         self.counts
             .suppressed

@@ -4,7 +4,7 @@ use std::sync::{Mutex, PoisonError};
 
 use morec::features::{BoneSet, KeyPose};
 use morec::import::SignedAxis;
-use morec::live::{Detection, Model, Recognizer};
+use morec::live::{Detection, Model, Recognizer, ShownBones};
 use morec::math::{Quat, Vec3};
 use morec::roles::points::{PointJoint, places_of};
 use morec::roles::{Role, RoleMap};
@@ -30,7 +30,9 @@ pub struct PyRecognizer {
 }
 
 struct RecognizerState {
+    model: Model,
     recognizer: Recognizer,
+    shown: ShownBones,
     places: Vec<(Role, PointJoint)>,
     /// Takes coordinates of the stream to Y up; `None` if they are.
     turn: Option<Quat>,
@@ -109,7 +111,9 @@ impl PyRecognizer {
                 .map(|c| PyString::new(py, &c.name).unbind())
                 .collect(),
             state: Mutex::new(RecognizerState {
+                model: model.clone(),
                 recognizer,
+                shown: ShownBones::new(model.bones()),
                 places: layout.places,
                 turn: (up != SignedAxis::Y).then(|| up.to_y()),
                 positions: Vec::with_capacity(layout.joints.len()),
@@ -138,15 +142,26 @@ impl PyRecognizer {
 }
 
 impl RecognizerState {
-    /// Takes the pose that `positions` hold.
-    fn push(&mut self, time_secs: f64) -> &[Detection] {
+    /// Takes the pose that `positions` hold, and adds what it settled to `found`.
+    fn push(&mut self, time_secs: f64, found: &mut Vec<Detection>) {
         let positions = &self.positions;
         for (role, place) in &self.places {
             let at = place.at(|joint| positions[joint]);
             let at = at.unwrap_or_else(|| Vec3::repeat(f64::NAN));
             self.key.set(*role, self.turn.map_or(at, |turn| turn * at));
         }
-        self.recognizer.push(time_secs, &self.key)
+        let used = self.recognizer.model().bones();
+        let others = self.shown.take(used, time_secs, &self.key);
+        if let Some(Ok(new)) = others.map(|bones| Recognizer::new(&self.model, bones)) {
+            found.extend_from_slice(self.recognizer.finish());
+            self.recognizer = new;
+        }
+        found.extend_from_slice(self.recognizer.push(time_secs, &self.key));
+    }
+
+    fn finish(&mut self) -> &[Detection] {
+        self.shown.reset();
+        self.recognizer.finish()
     }
 }
 
@@ -161,11 +176,8 @@ impl PyRecognizer {
     ) -> PyResult<Bound<'py, PyList>> {
         let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
         pose(positions, self.joints.len(), &mut state.positions)?;
-        let found = state.push(time_secs);
-        if found.is_empty() {
-            return Ok(PyList::empty(py));
-        }
-        let found = found.to_vec();
+        let mut found = Vec::new();
+        state.push(time_secs, &mut found);
         drop(state);
         self.rows(py, &found)
     }
@@ -195,7 +207,7 @@ impl PyRecognizer {
                 state.positions.clear();
                 let of_frame = &values[frame * joints..(frame + 1) * joints];
                 state.positions.extend_from_slice(of_frame);
-                found.extend_from_slice(state.push(time_secs));
+                state.push(time_secs, &mut found);
             }
             found
         });
@@ -206,7 +218,7 @@ impl PyRecognizer {
     fn finish<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         let found = {
             let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
-            state.recognizer.finish().to_vec()
+            state.finish().to_vec()
         };
         self.rows(py, &found)
     }
@@ -249,7 +261,7 @@ impl PyRecognizer {
     #[pyo3(signature = (*_args))]
     fn __exit__(&self, _args: &Bound<'_, PyAny>) {
         let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
-        state.recognizer.finish();
+        state.finish();
     }
 
     fn __repr__(&self) -> String {

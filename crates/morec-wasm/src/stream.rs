@@ -5,7 +5,7 @@ use std::sync::Arc;
 use morec::features::{BoneSet, KeyPose};
 use morec::import::SignedAxis;
 use morec::index::MotionIndex;
-use morec::live::{Event, EventOptions, Frame, Performer, PerformerId, Recognizer, Rig};
+use morec::live::{Event, EventOptions, Frame, Model, Performer, PerformerId, Recognizer, Rig};
 use morec::math::{Quat, Vec3};
 use morec::roles::Role;
 use morec::roles::points::{PointJoint, places_of};
@@ -39,12 +39,16 @@ impl Default for PointOptions {
     }
 }
 
-/// A recogniser of the poses that named points make. After the first frame, [`push`](Self::push) allocates nothing.
+/// A recogniser of the poses that named points make. After the first frame, [`push`](Self::push) allocates nothing, but where
+/// parts that were announced do not come, or come late ([`ShownBones`](morec::live::ShownBones)).
 #[derive(Debug)]
 pub struct PointStream {
     performer: Performer,
+    model: Model,
     /// For [`Performer`] to take at its first frame: made early, so that what does not fit is said early.
     ready: Option<Recognizer>,
+    /// Why what the stream shows cannot be recognised.
+    problem: Option<String>,
     latency_secs: f64,
     places: Vec<(Role, PointJoint)>,
     /// Takes coordinates of the stream to Y up; `None` if they are.
@@ -105,6 +109,8 @@ impl PointStream {
             latency_secs: ready.latency_secs(),
             performer,
             ready: Some(ready),
+            problem: None,
+            model: index.model.clone(),
             places,
             turn: (up != SignedAxis::Y).then(|| up.to_y()),
             values: vec![f64::NAN; 3 * points.len()],
@@ -132,11 +138,15 @@ impl PointStream {
         self.frame.wall_secs = wall_secs;
         self.frame.set_key_pose(&self.key);
         self.events.clear();
-        let (ready, events) = (&mut self.ready, &mut self.events);
+        let events = &mut self.events;
+        let mut make = |bones| {
+            let ready = self.ready.take().map(Ok);
+            let made = ready.unwrap_or_else(|| Recognizer::new(&self.model, bones));
+            self.problem = made.as_ref().err().map(ToString::to_string);
+            made.ok()
+        };
         self.performer
-            .push(&self.frame, &mut |_| ready.take(), &mut |event| {
-                events.push(event)
-            });
+            .push(&self.frame, &mut make, &mut |event| events.push(event));
         &self.events
     }
 
@@ -157,6 +167,7 @@ impl PointStream {
     pub fn diagnosis(&self) -> Vec<String> {
         let known = self.performer.diagnosis().map(|known| known.findings());
         let findings = known.iter().flat_map(|findings| findings.iter());
-        findings.map(ToString::to_string).collect()
+        let problem = self.problem.iter().cloned();
+        problem.chain(findings.map(ToString::to_string)).collect()
     }
 }

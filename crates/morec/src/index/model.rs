@@ -42,13 +42,19 @@ impl Model {
         &self.classes()[class.index()].name
     }
 
+    /// The bones whose directions recognition compares; none of a model that looks at rotations.
+    pub fn bones(&self) -> BoneSet {
+        match self {
+            Model::Templates(model) => model.bones,
+            Model::Svrdm(_) => BoneSet::NONE,
+        }
+    }
+
     /// The parts of the body that recognition looks at, some perhaps more than once.
     pub fn roles(&self) -> impl Iterator<Item = Role> {
-        let (bones, pivots) = match self {
-            Model::Templates(model) => (model.bones, &[][..]),
-            Model::Svrdm(model) => (BoneSet::NONE, model.pivots.pivots()),
-        };
-        let ends = bones
+        let pivots = self.pivots().map_or(&[][..], PivotSet::pivots);
+        let ends = self
+            .bones()
             .indices()
             .flat_map(|bone| [ALL_BONES[bone].from, ALL_BONES[bone].to]);
         ends.chain(pivots.iter().filter_map(|pivot| pivot.role))

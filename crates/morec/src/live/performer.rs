@@ -10,18 +10,19 @@ use super::early::EarlyTracker;
 use super::event_tracker::EventTracker;
 use super::{
     EarlyDetection, Event, EventOptions, Frame, Model, PerformerId, PoseExtractor, Recognizer,
-    RecognizerInput, Rig,
+    RecognizerInput, Rig, ShownBones,
 };
 
 /// Follows one performer: skeletons and frames in, events out.
 ///
-/// Takes memory when a skeleton is new (a recogniser is made for its bones at its first frame); frames after that
-/// take none.
+/// Takes memory when a skeleton is new (a recogniser is made for its bones at its first frame), and when a second shows that the
+/// stream has other bones than that was made for ([`ShownBones`]); other frames take none.
 #[derive(Debug)]
 pub struct Performer {
     model: Model,
     rig: Option<Arc<Rig>>,
     recognizer: Option<Recognizer>,
+    shown: ShownBones,
     /// Reads what a model asks for beyond places of joints.
     reader: Option<PoseExtractor>,
     early: EarlyTracker,
@@ -43,6 +44,7 @@ impl Performer {
         let model: Model = model.clone().into();
         Self {
             tracker: EventTracker::new(actor, model.classes().len(), options.refractory_secs),
+            shown: ShownBones::new(model.bones()),
             model,
             reader: None,
             rig: None,
@@ -67,6 +69,7 @@ impl Performer {
         };
         self.dropped = self.dropped();
         self.recognizer = None;
+        self.shown.reset();
         self.diagnoser = Some(Box::new(Diagnoser::live()));
         self.reader = PoseExtractor::new(&self.model, &rig.skeleton, &rig.roles).ok();
         self.rig = Some(rig);
@@ -75,7 +78,7 @@ impl Performer {
     /// Takes a frame and calls `out` with what it settled. A frame without a rig, or of a skeleton that shows none of
     /// the index's bones, says nothing and is counted.
     ///
-    /// `make` gives a recogniser for the bones of a new skeleton, if there can be one.
+    /// `make` gives a recogniser for the bones of a new skeleton, or for those that the stream turns out to show, if there can be one.
     pub fn push(
         &mut self,
         frame: &Frame,
@@ -90,8 +93,17 @@ impl Performer {
         if let Some(diagnoser) = &mut self.diagnoser {
             diagnoser.push(frame.time_secs, frame.wall_secs, &pose);
         }
-        if self.recognizer.is_none() {
-            self.recognizer = make(rig.bones(&pose));
+        let bones = match &self.recognizer {
+            Some(recognizer) => {
+                let used = recognizer.model().bones();
+                self.shown.take(used, frame.time_secs, &pose)
+            }
+            None => Some(rig.bones(&pose)),
+        };
+        if let Some(new) = bones.and_then(make) {
+            self.end(out);
+            self.dropped = self.dropped();
+            self.recognizer = Some(new);
         }
         let Some(recognizer) = &mut self.recognizer else {
             self.unusable += 1;
@@ -120,6 +132,11 @@ impl Performer {
 
     /// The stream ends or breaks off: tells what its last moments hold. It may go on with another frame.
     pub fn finish(&mut self, out: &mut impl FnMut(Event)) {
+        self.end(out);
+        self.shown.reset();
+    }
+
+    fn end(&mut self, out: &mut impl FnMut(Event)) {
         let Some(recognizer) = &mut self.recognizer else {
             return;
         };

@@ -3,9 +3,14 @@
 use std::io;
 
 use morec::clip::Clip;
+use morec::features::{BoneSet, for_each_pose};
 use morec::formats::{Limits, Loaded, ParseError, c3d, jsonl, table, trc};
 use morec::import::{ImportOptions, Take, normalize};
-use morec::live::{Detection, recognize_clip};
+use morec::live::{
+    Detection, EventOptions, Frame, Performer, PerformerId, Phase, Recognizer, Rig, recognize_clip,
+};
+use morec::math::Vec3;
+use morec::roles::Role;
 use morec::synth::{DatabaseSpec, database};
 
 use crate::{kit, made};
@@ -87,6 +92,84 @@ fn the_same_motion_as_points_is_recognised_alike() {
 }
 
 /// The method of 2009 says what it lacks.
+/// Whoever declares a whole body and sits at a desk is recognised by what is seen of it; what comes into view later counts from then on.
+#[test]
+fn parts_that_were_announced_and_are_never_seen_are_left_out() {
+    const LEGS: [Role; 6] = [
+        Role::LeftThigh,
+        Role::LeftShin,
+        Role::LeftFoot,
+        Role::RightThigh,
+        Role::RightShin,
+        Role::RightFoot,
+    ];
+    let spec = DatabaseSpec {
+        people: 1,
+        repetitions: 2,
+        ..DatabaseSpec::default()
+    };
+    let take = ready(database(4, &spec).remove(0).clip);
+    let model = made::model();
+    // Sees the legs from then on.
+    let recognised = |legs_from_secs: f64| {
+        let mut performer = Performer::new(&model, PerformerId(0), &EventOptions::default());
+        performer.set_rig(&Rig::of_roles().into(), &mut |_| {});
+        let (mut frame, mut made, mut found) = (Frame::default(), Vec::new(), Vec::new());
+        let mut take_event = |event: morec::live::Event| {
+            if event.phase == Phase::End {
+                found.push((event.class, event.stop_secs));
+            }
+        };
+        for_each_pose(
+            &take.clip,
+            &take.roles,
+            &take.report.rest_frames,
+            |secs, pose| {
+                let mut pose = *pose;
+                if secs < legs_from_secs {
+                    for role in LEGS {
+                        pose.set(role, Vec3::repeat(f64::NAN));
+                    }
+                }
+                frame.time_secs = secs;
+                frame.set_key_pose(&pose);
+                let mut make = |bones| {
+                    // As a caller does who has announced everything.
+                    let bones = if made.is_empty() {
+                        BoneSet::BODY
+                    } else {
+                        bones
+                    };
+                    made.push(bones.len());
+                    Recognizer::new(&model, bones).ok()
+                };
+                performer.push(&frame, &mut make, &mut take_event);
+            },
+        );
+        performer.finish(&mut take_event);
+        (made, found)
+    };
+    let (made, all) = recognised(0.0);
+    assert_eq!(made.len(), 1);
+    let (made, upper) = recognised(f64::INFINITY);
+    assert!(made.len() == 2 && made[1] < made[0], "{made:?}");
+    assert!(
+        all.len() >= 5 && upper.len() + 2 >= all.len(),
+        "{upper:?}, {all:?}"
+    );
+    let (made, later) = recognised(20.0);
+    assert_eq!([made[0], made[2]], [11, 11]);
+    let is_late = |(_, stop_secs): &&(_, f64)| *stop_secs > 25.0;
+    let late = |found: &[(morec::ClassId, f64)]| -> Vec<_> {
+        found
+            .iter()
+            .filter(is_late)
+            .map(|(class, _)| *class)
+            .collect()
+    };
+    assert_eq!(late(&later), late(&all));
+}
+
 #[test]
 fn rotations_are_not_made_up() {
     use morec::pivots::{NoPivots, PivotMap, PivotSet};
