@@ -180,15 +180,20 @@ impl PosedBody<'_> {
 
     /// A head nearer to the feet than the hips are.
     fn upside_down(&self) -> Option<String> {
-        let up = self.median(|pose| {
-            let hips = self.at(pose, Role::Hips)?;
-            let head = self.at(pose, Role::Head).or(self.at(pose, Role::Neck))?;
-            let feet = self
-                .middle(pose, Role::LeftFoot, Role::RightFoot)
-                .or(self.middle(pose, Role::LeftShin, Role::RightShin))?;
-            Some((head - hips).normalize().dot(&(hips - feet).normalize()))
-        })?;
-        (up < -0.2).then(|| {
+        let up_from = |left, right| {
+            self.median(|pose| {
+                let hips = self.at(pose, Role::Hips)?;
+                let head = self.at(pose, Role::Head).or(self.at(pose, Role::Neck))?;
+                let below = self.middle(pose, left, right)?;
+                Some((head - hips).normalize().dot(&(hips - below).normalize()))
+            })
+        };
+        // Knees are above the hips of somebody who sits low, but not straight below the head.
+        let is_wrong = match up_from(Role::LeftFoot, Role::RightFoot) {
+            Some(up) => up < -0.2,
+            None => up_from(Role::LeftShin, Role::RightShin)? < -0.8,
+        };
+        is_wrong.then(|| {
             format!(
                 "the head (`{}`) is below the hips (`{}`), where the feet are: {REMEDY}",
                 self.name(Role::Head),
