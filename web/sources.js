@@ -1,9 +1,10 @@
 // Where poses come from: the camera or a film through MediaPipe (`camera.js`), or recorded lines of JSON. A source is a function
-// `(take, signal) → Promise` that calls `take(secs, positions, landmarks)` for each pose until the signal is aborted or the
-// source ends: places of parts of the body by name, metres, Y up; landmarks (x, y from 0 to 1) for drawing, if there is a picture.
+// `(take, signal) → Promise` that calls `take(secs, positions, seen)` for each pose until the signal is aborted or the source ends:
+// places of parts of body and hands by name, metres, Y up; what `drawLandmarks` draws, if there is a picture.
 import { posesOf } from "./teaching.js";
 
-export { camera, drawLandmarks, film, partsOf } from "./vendor/camera.js";
+export { camera, drawLandmarks, film } from "./vendor/camera.js";
+export { handsOf, partsOf } from "./vendor/mediapipe.js";
 
 const aborted = (signal) => new Promise((done) => signal.addEventListener("abort", done, { once: true }));
 

@@ -18,7 +18,7 @@ use crate::websocket::greet::{Manners, PATIENCE, greet};
 use crate::{Address, LiveError, Notices};
 
 /// The page's own files: path, type, content.
-const PAGE: [(&str, &str, &str); 3] = [
+const PAGE: [(&str, &str, &str); 4] = [
     ("/", "text/html", include_str!("webcam/index.html")),
     (
         "/page.js",
@@ -30,11 +30,18 @@ const PAGE: [(&str, &str, &str); 3] = [
         "text/javascript",
         include_str!("webcam/camera.js"),
     ),
+    (
+        "/mediapipe.js",
+        "text/javascript",
+        include_str!("webcam/mediapipe.js"),
+    ),
 ];
 /// Where the page finds MediaPipe's files.
 const MEDIAPIPE: &str = "/mediapipe/";
-/// The file by which a folder is known to have them.
-const KNOWN_BY: &str = "pose.js";
+/// The files by which a folder is known to have them: for bodies, for hands, for either by a model beside them.
+const KNOWN_BY: [&str; 3] = ["pose.js", "hands.js", "vision_bundle.mjs"];
+/// What the page tracks, as its list says; the first, unless the folder has nothing but hands.
+const TRACKED: [&str; 3] = ["body", "hand", "hands"];
 /// A longer request is none of a browser's.
 const LARGEST_HEAD: usize = 1 << 13;
 
@@ -46,7 +53,7 @@ pub fn webcam(
     address: &Address,
     mediapipe: Option<&Path>,
 ) -> Result<(JsonSource, SocketAddr), LiveError> {
-    address.allow(&["mediapipe"])?;
+    address.allow(&["mediapipe", "track"])?;
     let at = address.socket()?;
     if !at.ip().is_loopback() {
         return Err(LiveError::Address(format!(
@@ -55,26 +62,47 @@ pub fn webcam(
     }
     let named = address.text("mediapipe").map(Path::new);
     let folder = with_mediapipe(named.or(mediapipe))?;
+    let tracked = tracked(address, &folder)?;
     let notices = Notices::default();
     let attend = move |number, stream, sender: &SyncSender<Came>| {
         // Whoever goes away in the middle is none of our business.
-        let _ = answer(number, stream, sender, &folder);
+        let _ = answer(number, stream, sender, &folder, tracked);
     };
     let (lines, at) = Lines::serve(at, &notices, Arc::new(attend))?;
     Ok((JsonSource::of_connections(lines, notices), at))
 }
 
 fn with_mediapipe(folder: Option<&Path>) -> Result<PathBuf, LiveError> {
-    const HOW: &str = "the page needs MediaPipe's files, which do not come with morec: `npm pack @mediapipe/pose` gets them as \
-        mediapipe-pose-….tgz, `tar xzf` unpacks that into the folder `package`, and `--mediapipe package`, or webcam?mediapipe=package, names it";
+    const HOW: &str = "the page needs MediaPipe's files, which do not come with morec: `npm pack @mediapipe/pose` (or `@mediapipe/hands`) gets \
+        them as mediapipe-pose-….tgz, `tar xzf` unpacks that into the folder `package`, and `--mediapipe package`, or webcam?mediapipe=package, \
+        names it";
     match folder {
-        Some(folder) if folder.join(KNOWN_BY).is_file() => Ok(folder.to_owned()),
+        Some(folder) if KNOWN_BY.iter().any(|name| folder.join(name).is_file()) => {
+            Ok(folder.to_owned())
+        }
         Some(folder) => Err(LiveError::Address(format!(
-            "{} has no {KNOWN_BY}: {HOW}",
-            folder.display()
+            "{} has no {}: {HOW}",
+            folder.display(),
+            KNOWN_BY.join(", no ")
         ))),
         None => Err(LiveError::Address(format!("webcam: {HOW}"))),
     }
+}
+
+/// What the page tracks: what the address says, or what the folder has the files of.
+fn tracked(address: &Address, folder: &Path) -> Result<&'static str, LiveError> {
+    if let Some(asked) = address.text("track") {
+        let known = TRACKED.into_iter().find(|known| *known == asked);
+        return known.ok_or_else(|| {
+            LiveError::Address(format!(
+                "{address}: track is {}, not `{asked}`",
+                TRACKED.join(", ")
+            ))
+        });
+    }
+    let [body, hands, _] = KNOWN_BY.map(|name| folder.join(name).is_file());
+    let hands = !body && (hands || folder.join("hand_landmarker.task").is_file());
+    Ok(TRACKED[usize::from(hands)])
 }
 
 /// Serves one connection: a file, or lines over a WebSocket until it ends.
@@ -83,6 +111,7 @@ fn answer(
     mut stream: TcpStream,
     sender: &SyncSender<Came>,
     folder: &Path,
+    tracked: &str,
 ) -> std::io::Result<()> {
     let Some(head) = head_of(&stream)? else {
         return Ok(());
@@ -95,7 +124,7 @@ fn answer(
     stream.read_exact(&mut vec![0; head.len()])?;
     let asked = head.strip_prefix("GET ").unwrap_or_default();
     let path = asked.split([' ', '?']).next().unwrap_or_default();
-    let (status, kind, content) = match file_at(path, folder) {
+    let (status, kind, content) = match file_at(path, folder, tracked) {
         Some((kind, content)) => ("200 OK", kind, content),
         None => ("404 Not Found", "text/plain", b"no such file".to_vec()),
     };
@@ -128,17 +157,20 @@ fn head_of(stream: &TcpStream) -> std::io::Result<Option<String>> {
 }
 
 /// Type and content of a file of the page or of MediaPipe.
-fn file_at(path: &str, folder: &Path) -> Option<(&'static str, Vec<u8>)> {
+fn file_at(path: &str, folder: &Path, tracked: &str) -> Option<(&'static str, Vec<u8>)> {
     if let Some((_, kind, content)) = PAGE.iter().find(|(known, ..)| *known == path) {
-        return Some((kind, content.as_bytes().to_vec()));
+        let content = content.replace("data-track=\"body\"", &format!("data-track=\"{tracked}\""));
+        return Some((kind, content.into_bytes()));
     }
     let name = path.strip_prefix(MEDIAPIPE)?;
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "._-".contains(c);
-    if name.starts_with('.') || !name.chars().all(is_plain) {
+    // `wasm` is the one folder within MediaPipe's.
+    let file = name.strip_prefix("wasm/").unwrap_or(name);
+    if file.starts_with('.') || !file.chars().all(is_plain) {
         return None;
     }
     let kind = match name.rsplit('.').next() {
-        Some("js") => "text/javascript",
+        Some("js" | "mjs") => "text/javascript",
         Some("wasm") => "application/wasm",
         _ => "application/octet-stream",
     };

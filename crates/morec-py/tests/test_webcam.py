@@ -32,8 +32,11 @@ class Landmarker:
         row = self.marks[self.frame]
         self.frame += 1
         if self.frame % 10 == 0:
-            return SimpleNamespace(pose_world_landmarks=[])
-        return SimpleNamespace(pose_world_landmarks=[[SimpleNamespace(x=x, y=y, z=z) for x, y, z in row]])
+            return SimpleNamespace(pose_world_landmarks=[], pose_landmarks=[])
+        # The feet are hidden, the knees below the picture.
+        world = [SimpleNamespace(x=x, y=y, z=z, visibility=float(n < 27)) for n, (x, y, z) in enumerate(row)]
+        picture = [SimpleNamespace(x=0.5, y=1.1 if n in (25, 26) else 0.9) for n in range(len(row))]
+        return SimpleNamespace(pose_world_landmarks=[world], pose_landmarks=[picture])
 
 
 def stand_in(monkeypatch: pytest.MonkeyPatch, marks: Any) -> list[str]:
@@ -74,7 +77,8 @@ def test_poses_come_with_y_up_and_the_camera_is_let_go(
     assert len(poses) == 36 and released == ["camera"]
     secs, pose = poses[0]
     assert secs >= 0 and pose.shape == (33, 3)
-    np.testing.assert_allclose(pose, marks[0] * [1, -1, -1])
+    np.testing.assert_allclose(pose[:25], marks[0, :25] * [1, -1, -1])
+    assert np.isnan(pose[25:]).all()
     live = index.recognizer(morec.WEBCAM_POINTS)
     for secs, pose in poses:
         live.push(secs, pose)

@@ -24,7 +24,7 @@ pub struct TrackerArgs {
     /// 1.7 m]
     #[arg(long, value_name = "BVH")]
     pub skeleton: Option<PathBuf>,
-    /// The folder of MediaPipe's files, for --listen webcam: an unpacked `npm pack @mediapipe/pose`
+    /// The folder of MediaPipe's files, for --listen webcam: an unpacked `npm pack @mediapipe/pose`, or hands
     #[arg(long, value_name = "DIR")]
     pub mediapipe: Option<PathBuf>,
     /// Take T-poses that are too exact to be a person's, too: else they are a sender's that lost its tracker

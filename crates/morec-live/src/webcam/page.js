@@ -18,15 +18,29 @@ function connection() {
   return socket;
 }
 
-function take(secs, positions, landmarks) {
+function take(secs, positions, seen) {
   const { canvas } = drawing;
   [canvas.width, canvas.height] = [canvas.clientWidth, canvas.clientHeight];
   drawing.strokeStyle = getComputedStyle(canvas).getPropertyValue("--accent");
   drawing.lineWidth = 4;
-  drawLandmarks(drawing, at("video"), landmarks);
+  drawLandmarks(drawing, at("video"), seen);
   const { readyState } = connection();
   if (readyState === WebSocket.OPEN && Object.keys(positions).length > 0) socket.send(JSON.stringify({ t: secs, positions }));
 }
 
+let running = new AbortController();
+
+async function run() {
+  running.abort();
+  running = new AbortController();
+  try {
+    await camera(at("video"), "mediapipe", at("track").value)(take, running.signal);
+  } catch (error) {
+    say(String(error?.message ?? error));
+  }
+}
+
+at("track").value = document.body.dataset.track;
+at("track").addEventListener("change", run);
 connection();
-camera(at("video"), "mediapipe")(take, new AbortController().signal).catch((error) => say(String(error?.message ?? error)));
+run();

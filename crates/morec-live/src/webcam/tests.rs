@@ -11,7 +11,7 @@ impl UnpackedFiles {
     fn new(name: &str) -> Self {
         let folder = std::env::temp_dir().join(format!("morec-{name}-{}", std::process::id()));
         std::fs::create_dir_all(&folder).unwrap();
-        std::fs::write(folder.join(KNOWN_BY), "let pose;").unwrap();
+        std::fs::write(folder.join(KNOWN_BY[0]), "let pose;").unwrap();
         Self(folder)
     }
 }
@@ -42,6 +42,7 @@ fn the_page_and_mediapipe_are_served_and_nothing_else_is() {
         ("/", "page.js"),
         ("/page.js", "camera.js"),
         ("/camera.js?1", "landmarks"),
+        ("/mediapipe.js", "Handedness"),
         ("/mediapipe/pose.js", "let pose;"),
     ] {
         let text = get(at, path);
@@ -125,4 +126,19 @@ fn what_is_missing_is_said() {
     assert!(said("webcam://127.0.0.1:0?loop", Some(&folder.0)).contains("no option loop"));
     let named = format!("webcam?mediapipe={}", folder.0.display());
     assert!(webcam(&named.parse().unwrap(), None).is_ok());
+}
+
+#[test]
+fn the_page_tracks_what_is_asked_for_or_what_the_folder_has_files_of() {
+    let folder = UnpackedFiles::new("tracked");
+    let page_of = |address: &str| {
+        let (_source, at) = webcam(&address.parse().unwrap(), Some(&folder.0)).unwrap();
+        get(at, "/")
+    };
+    assert!(page_of("webcam").contains("<body data-track=\"body\">"));
+    assert!(page_of("webcam?track=hands").contains("<body data-track=\"hands\">"));
+    std::fs::rename(folder.0.join("pose.js"), folder.0.join("hands.js")).unwrap();
+    assert!(page_of("webcam").contains("<body data-track=\"hand\">"));
+    let wrong = webcam(&"webcam?track=feet".parse().unwrap(), Some(&folder.0)).map(|_| ());
+    assert!(wrong.unwrap_err().to_string().contains("body, hand, hands"));
 }

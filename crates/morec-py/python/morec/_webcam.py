@@ -30,7 +30,8 @@ def webcam(
 ) -> Generator[tuple[float, npt.NDArray[np.float64]], None, None]:
     """Poses of the person before a camera: seconds since the first frame, and the landmarks `WEBCAM_POINTS` of shape (33, 3).
 
-    Metres from the middle of the hips, Y up. Frames in which nobody is seen are left out. Takes the packages ``mediapipe`` (1.x)
+    Metres from the middle of the hips, Y up; not a number where MediaPipe only guesses: what is hidden, or outside of the picture.
+    Frames in which nobody is seen are left out. Takes the packages ``mediapipe`` (1.x)
     and ``opencv-python``, and ends with the camera, or when the iterator is closed.
 
     >>> live = index.recognizer(morec.WEBCAM_POINTS)                     # doctest: +SKIP
@@ -86,13 +87,21 @@ def frames(
                 image = mediapipe.Image(
                     image_format=mediapipe.ImageFormat.SRGB, data=cv2.cvtColor(picture, cv2.COLOR_BGR2RGB)
                 )
-                people = landmarker.detect_for_video(image, round(1000 * secs)).pose_world_landmarks
-                if people:
-                    # MediaPipe's Y is down, and its Z away from the camera.
-                    yield secs, np.array([[mark.x, -mark.y, -mark.z] for mark in people[0]])
+                found = landmarker.detect_for_video(image, round(1000 * secs))
+                if found.pose_world_landmarks:
+                    yield secs, points(found.pose_world_landmarks[0], found.pose_landmarks[0])
                 seen, picture = capture.read()
     finally:
         capture.release()
+
+
+def points(world: Any, picture: Any) -> npt.NDArray[np.float64]:
+    """The landmarks of a person whose places in the picture, from 0 to 1, are `picture`."""
+    # MediaPipe's Y is down, and its Z away from the camera.
+    pose = np.array([[mark.x, -mark.y, -mark.z] for mark in world])
+    seen = [mark.visibility > 0.5 and 0 <= at.x <= 1 and 0 <= at.y <= 1 for mark, at in zip(world, picture, strict=True)]
+    pose[~np.array(seen)] = np.nan
+    return pose
 
 
 def model_file(model: str | os.PathLike[str] | None) -> Path:
