@@ -35,9 +35,11 @@ async function run(source) {
   const own = (running = new AbortController());
   show();
   try {
-    await source((secs, positions, landmarks) => {
+    await source((secs, positions, seen) => {
+      const first = !teaching.hasPoses;
       teaching.pose(secs, positions);
-      draw(positions, landmarks);
+      if (first) show();
+      draw(positions, seen);
     }, own.signal);
   } finally {
     if (running === own) {
@@ -48,17 +50,18 @@ async function run(source) {
 }
 
 /** The skeleton, over the picture or, without one, seen from the front. */
-function draw(positions, landmarks) {
+function draw(positions, seen) {
   const canvas = drawing.canvas;
   [canvas.width, canvas.height] = [canvas.clientWidth, canvas.clientHeight];
   drawing.fillStyle = drawing.strokeStyle = getComputedStyle(canvas).getPropertyValue("--accent");
   drawing.lineWidth = 4;
-  if (landmarks) {
-    drawLandmarks(drawing, at("video"), landmarks);
+  if (seen) {
+    drawLandmarks(drawing, at("video"), seen);
     return;
   }
-  const scale = canvas.height / 2.4;
-  const middle = positions.hips ?? positions.neck ?? [0, 0, 0];
+  const body = positions.hips ?? positions.neck;
+  const scale = canvas.height / (body ? 2.4 : 0.6);
+  const middle = body ?? positions.right_hand ?? positions.left_hand ?? [0, 0, 0];
   for (const place of Object.values(positions)) {
     if (!place) continue;
     drawing.beginPath();
@@ -151,9 +154,10 @@ const onFile = (id, job) => on(id, "change", async () => {
   if (file) await job(file);
 });
 
-on("camera", "click", () => run(camera(at("video"), MEDIAPIPE)));
+on("camera", "click", () => run(camera(at("video"), MEDIAPIPE, at("track").value)));
+on("track", "change", () => running?.abort());
 on("stop", "click", () => running?.abort());
-onFile("source-file", async (file) => run(file.type.startsWith("video/") ? film(at("video"), MEDIAPIPE, file) : recorded(await file.text())));
+onFile("source-file", async (file) => run(file.type.startsWith("video/") ? film(at("video"), MEDIAPIPE, at("track").value, file) : recorded(await file.text())));
 on("sample", "submit", record);
 at("sample").addEventListener("submit", (event) => event.preventDefault());
 on("cut", "click", () => {

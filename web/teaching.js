@@ -2,8 +2,6 @@
 
 /** Seconds of poses that are kept, for cutting a sample out of what just happened. */
 const KEPT_SECS = 20;
-/** A part of the body is there if this share of the last second's poses shows it. */
-const SHOWN_SHARE = 0.8;
 /** Least seconds of a sample. */
 const LEAST_SECS = 0.5;
 
@@ -41,7 +39,7 @@ export class Teaching extends EventTarget {
     while (this.#recent[0].t < t - KEPT_SECS) this.#recent.shift();
     this.#recording?.push(pose);
     if (!this.index) return;
-    this.#recognizer ??= this.#begin(t);
+    this.#recognizer ??= this.#begin();
     if (!this.#recognizer) return;
     this.#row.fill(NaN);
     this.#roles.forEach((role, at) => {
@@ -60,16 +58,11 @@ export class Teaching extends EventTarget {
     this.#forget();
   }
 
-  /** A recogniser of the parts that the last second shows; null before there is one. */
-  #begin(t) {
-    if (t - this.#recent[0].t < 1) return null;
-    const last = this.#recent.filter((pose) => pose.t > t - 1);
-    const shown = (role) => last.filter(({ positions }) => positions[role]).length >= SHOWN_SHARE * last.length;
-    // Points that are no part of the body keep the places of those that are not shown.
-    const points = this.#roles.map((role) => (shown(role) ? role : `no ${role}`));
+  /** A recogniser; null if the index is of another performer, which is said. */
+  #begin() {
     this.#row = new Float32Array(3 * this.#roles.length);
     try {
-      return this.index.recognizer(points);
+      return this.index.recognizer(this.#roles);
     } catch (error) {
       this.#emit("diagnosis", [String(error.message ?? error)]);
       return null;

@@ -1,35 +1,40 @@
 // The page in Chromium: recorded landmarks drive teach → train → recognise → save → load. Needs what `web/test` gets.
 import assert from "node:assert/strict";
 import { createHash } from "node:crypto";
-import { readFileSync } from "node:fs";
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { createServer } from "node:http";
 import { createRequire } from "node:module";
-import { basename, extname, join } from "node:path";
+import { tmpdir } from "node:os";
+import { basename, join } from "node:path";
 import { after, before, test } from "node:test";
-import { fileURLToPath, pathToFileURL } from "node:url";
+import { pathToFileURL } from "node:url";
 
 const { MOREC_PACKAGE, MOREC_CASES, MOREC_TOOLS, MOREC_CHROMIUM } = process.env;
 const skip = MOREC_CHROMIUM ? false : "there is no Chromium here";
 const morec = await import(pathToFileURL(join(MOREC_PACKAGE, "morec.js")));
 const { learn, labels } = JSON.parse(readFileSync(join(MOREC_CASES, "cases.json"), "utf8"))[0];
-const folder = fileURLToPath(new URL("..", import.meta.url));
-const TYPES = { ".js": "text/javascript", ".html": "text/html", ".css": "text/css", ".wasm": "application/wasm" };
+const { serve } = await import(pathToFileURL(join(MOREC_PACKAGE, "serve.js")));
 
-let server, browser, page;
+/** Stands in for `@mediapipe/tasks-vision`: what it was made with, and a hand whose points are all in one place. */
+const VISION = `
+  export const FilesetResolver = { forVisionTasks: async (folder) => folder };
+  export const HandLandmarker = { createFromOptions: async (files, { baseOptions, runningMode, numHands }) => ({
+    close() {},
+    detectForVideo: () => ({
+      landmarks: [new Array(21).fill({ x: 0.5, y: 0.5 })],
+      worldLandmarks: [new Array(21).fill({ x: numHands, y: baseOptions.modelAssetBuffer.length, z: files.endsWith("/wasm") ? 1 : 0 })],
+      handedness: [[{ categoryName: runningMode === "VIDEO" ? "Right" : "" }]],
+    }),
+  }) };`;
+
+let server, browser, page, mediapipe;
 const errors = [];
 
 before(async () => {
   if (skip) return;
-  server = createServer(({ url }, response) => {
-    try {
-      const path = join(folder, url === "/" ? "index.html" : new URL(url, "http://a").pathname);
-      const bytes = readFileSync(path);
-      response.writeHead(200, { "content-type": TYPES[extname(path)] ?? "application/octet-stream" }).end(bytes);
-    } catch {
-      response.writeHead(404).end();
-    }
-  }).listen(0, "127.0.0.1");
-  await new Promise((done) => server.once("listening", done));
+  // As `npx morec` serves it.
+  mediapipe = mkdtempSync(join(tmpdir(), "morec-mediapipe-"));
+  server = await serve({ port: 0, mediapipe: [mediapipe] });
   const { chromium } = createRequire(join(MOREC_TOOLS, "tools.js"))("playwright-core");
   browser = await chromium.launch({ executablePath: MOREC_CHROMIUM, args: ["--no-sandbox"] });
   page = await browser.newPage({ viewport: { width: 390, height: 844 } });
@@ -41,6 +46,7 @@ before(async () => {
 after(async () => {
   await browser?.close();
   server?.close();
+  if (mediapipe) rmSync(mediapipe, { recursive: true });
 });
 
 /** Lines of JSON with two performances of each of two motions, in all and each by itself. */
@@ -159,4 +165,24 @@ test("without a body, and with a file that is none, the page says what is wrong"
   await page.waitForFunction(() => document.getElementById("state").textContent.length > 0);
   await page.locator("#index-file").setInputFiles({ name: "no.index", mimeType: "application/octet-stream", buffer: Buffer.from("no index") });
   await page.waitForFunction(() => /index/.test(document.getElementById("state").textContent));
+});
+
+test("MediaPipe's newer package sees by a model beside it, and what is missing is said", { skip }, async () => {
+  const track = (what) => page.evaluate(async (what) => {
+    const { tracker } = await import("/vendor/mediapipe.js");
+    const video = { videoWidth: 4, videoHeight: 3 };
+    return tracker("./vendor/mediapipe", what).then(({ track }) => track(video), (error) => error.message);
+  }, what);
+  assert.match(await track("body"), /neither pose.js nor vision_bundle.mjs/);
+  writeFileSync(join(mediapipe, "vision_bundle.mjs"), VISION);
+  await page.reload();
+  assert.match(await track("hand"), /there is no hand_landmarker.task/);
+  writeFileSync(join(mediapipe, "hand_landmarker.task"), "four");
+  const { positions, pictures, lines } = await track("hand");
+  // All points are in the middle of the picture.
+  assert.deepEqual(positions.left_hand.map((value) => value + 0), [0, 0, -1]);
+  assert.equal(Object.keys(positions).length, 21);
+  assert.equal(pictures[0].length, 21);
+  assert.ok(lines.flat().every((number) => number < 21));
+  assert.match(await track("feet"), /body, hand, hands, and not feet/);
 });

@@ -5,7 +5,7 @@ import { basename, join } from "node:path";
 import { before, test } from "node:test";
 import { pathToFileURL } from "node:url";
 
-import { partsOf, recorded } from "../sources.js";
+import { handsOf, partsOf, recorded } from "../sources.js";
 import { Teaching, linesOf } from "../teaching.js";
 
 const [packageFolder, caseFolder] = [process.env.MOREC_PACKAGE, process.env.MOREC_CASES];
@@ -109,4 +109,67 @@ test("MediaPipe's landmarks become parts of the body, without those that are har
   const parts = partsOf(world);
   assert.deepEqual(parts.hips, [23.5, -1, -2]);
   assert.ok(parts.right_hand && !parts.left_foot);
+});
+
+const FINGERS = ["thumb", "index", "middle", "ring", "little"];
+const HAND = ["hand", ...FINGERS.flatMap((finger) => ["1", "2", "3", "tip"].map((at) => `${finger}_${at}`))];
+
+/** A hand's 21 points, metres: fingers up, bent by `bend` radians a joint, the whole turned by `turn` about the line of sight. */
+function handPoints(bend, turn) {
+  const points = [[0, 0, 0]];
+  FINGERS.forEach((_, finger) => {
+    let [x, y, z, angle] = [0.02 * (finger - 2), finger === 0 ? 0.03 : 0.09, 0, 0];
+    for (let at = 0; at < 4; at++) {
+      points.push([x, y, z]);
+      angle += bend;
+      [y, z] = [y + 0.03 * Math.cos(angle), z + 0.03 * Math.sin(angle)];
+    }
+  });
+  return points.map(([x, y, z]) => [x * Math.cos(turn) - y * Math.sin(turn), x * Math.sin(turn) + y * Math.cos(turn), z]);
+}
+
+const bump = (t) => (t > 0 && t < 1.2 ? (1 - Math.cos((2 * Math.PI * t) / 1.2)) / 2 : 0);
+/** Poses of `secs` seconds in which a fist is made from each of `fists` on, and the hand waves from each of `waves` on. */
+function handPoses(secs, { fists = [], waves = [] }, side = "right") {
+  return Array.from({ length: 30 * secs }, (_, frame) => {
+    const t = frame / 30;
+    const sum = (starts) => starts.reduce((total, start) => total + bump(t - start), 0);
+    const points = handPoints(0.05 + 1.2 * sum(fists), 0.8 * sum(waves));
+    const mirrored = side === "left" ? points.map(([x, y, z]) => [-x, y, z]) : points;
+    return { t, positions: Object.fromEntries(HAND.map((part, at) => [`${side}_${part}`, mirrored[at]])) };
+  });
+}
+
+test("one hand is taught, and recognised on either side", async () => {
+  const teaching = new Teaching(morec, trainInWorker);
+  for (const [name, what] of [["fist", "fists"], ["wave", "waves"]]) {
+    for (let sample = 0; sample < 2; sample++) teaching.add(name, handPoses(3, { [what]: [0.9] }));
+  }
+  await teaching.train();
+  for (const side of ["right", "left"]) {
+    const events = [];
+    teaching.addEventListener("motion", ({ detail }) => detail.phase === "end" && events.push(detail.class));
+    for (const { t, positions } of handPoses(14, { fists: [3, 9], waves: [6] }, side)) teaching.pose(t, positions);
+    teaching.finish();
+    assert.deepEqual(events.slice(-3), ["fist", "wave", "fist"], side);
+  }
+});
+
+test("a hand is placed where the picture shows it, by the other side's name", () => {
+  const world = handPoints(0.3, 0.2).map(([x, y, z]) => ({ x, y: -y, z: -z }));
+  // 0.3 m of the room are as high as the picture; the wrist is 0.1 m right of the middle and 0.05 m below.
+  const picture = world.map(({ x, y }) => ({ x: 0.5 + (x + 0.1) / 0.3 / 1.5, y: 0.5 + (y + 0.05) / 0.3 }));
+  const seen = handsOf({ pictures: [picture], worlds: [world], sides: ["Left"] }, 1.5);
+  const off = Math.hypot(...seen.right_hand.map((value, axis) => value - [0.1, -0.05, 0][axis]));
+  assert.ok(off < 1e-9, `${seen.right_hand}`);
+  assert.equal(Object.keys(seen).length, 21);
+});
+
+test("an index of bodies says what it is when a hand is shown", async () => {
+  const teaching = new Teaching(morec, trainInWorker);
+  teaching.load(whole.index.toBytes());
+  const said = [];
+  teaching.addEventListener("diagnosis", ({ detail }) => said.push(...detail));
+  for (const { t, positions } of handPoses(4, {})) teaching.pose(t, positions);
+  assert.match(said.join("\n"), /this index is of a body; what is shown here is a (right )?hand/);
 });

@@ -48,7 +48,7 @@ const standIn = (rows, rate_hz) => `
     async send() {
       begun ??= performance.now();
       const row = rows[Math.floor((performance.now() - begun) / 1000 * ${rate_hz})];
-      if (row) this.take({ poseWorldLandmarks: row, poseLandmarks: row.map((mark) => mark ?? { x: 0, y: 0 }) });
+      if (row) this.take({ poseWorldLandmarks: row, poseLandmarks: row.map(() => ({ x: 0.5, y: 0.5 })) });
       else document.title = "done";
     }
     async close() {}
