@@ -78,6 +78,9 @@
 //! [`smooth`] turns clips into keyframes and curves, a small form to keep them in. [`synth`] makes people, clips and
 //! labels where there are none; [`resample`], [`math`], [`classes`] and [`progress`] are shared by several of these.
 //!
+//! Clips and what is read from them are the crate `mocap`, rows and classes `morec-features`, [`pivots`], [`pca`] and [`svrdm`]
+//! (the method of 2009) `morec-svrdm`; their modules have their paths here.
+//!
 //! # Features
 //!
 //! All are on by default but `fbx`.
@@ -118,9 +121,6 @@
 
 #![warn(clippy::missing_errors_doc, clippy::missing_panics_doc)]
 
-pub mod classes;
-pub mod features;
-
 #[cfg(any(feature = "formats", feature = "live"))]
 mod error;
 
@@ -139,8 +139,6 @@ pub mod live;
 mod periodicity;
 #[cfg(feature = "live")]
 pub mod templates;
-#[cfg(feature = "live")]
-mod thesis;
 
 #[cfg(feature = "train")]
 pub mod cluster;
@@ -186,7 +184,6 @@ mod documents {
     mod guide {}
 }
 
-pub use classes::{ClassId, ClassInfo};
 #[cfg(any(feature = "formats", feature = "live"))]
 pub use error::Error;
 #[cfg(feature = "live")]
@@ -203,7 +200,10 @@ pub use mocap::{
 };
 #[cfg(feature = "formats")]
 pub use mocap::{ImportOptions, Take, fitting, formats, import, smooth};
+#[doc(inline)]
+pub use morec_features as features;
+pub use morec_features::{ClassId, ClassInfo, classes};
 #[cfg(feature = "live")]
-pub use thesis::{pca, pivots, svrdm};
+pub use morec_svrdm::{pca, pivots, svrdm};
 #[cfg(feature = "train")]
 pub use train::{Trainer, TrainingReport};

@@ -118,7 +118,7 @@ fn the_demo_is_described_as_it_is() {
 /// The library recognises a stream without hips by the shoulders (`features::observe`): no document may deny it.
 #[test]
 fn documents_agree_about_hips() {
-    let observe = read("crates/morec/src/features/observe.rs");
+    let observe = read("crates/morec-features/src/observe.rs");
     assert!(observe.contains("fn shoulders_stand_in_for_hips_that_are_never_seen()"));
     for path in [
         "docs/guide/limits.md",

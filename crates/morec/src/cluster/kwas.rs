@@ -3,7 +3,7 @@
 use nalgebra::DMatrix;
 
 use crate::features::Rows;
-use crate::thesis::pca::Eigen;
+use crate::pca::Eigen;
 
 /// Scaling of `kWAS`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]

@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use crate::classes::{ClassId, ClassInfo};
 use crate::decode::DecodeParams;
 use crate::features::{BoneSet, FeatureParams};
+use crate::pivots::{PivotSet, PoseParams};
 use crate::roles::Role;
+use crate::svrdm::SvrdmParams;
 use crate::templates::{Calibration, LinearScore, OperatingPoint, StrangerGate};
-use crate::thesis::pivots::{PivotSet, PoseParams};
-use crate::thesis::svrdm::SvrdmParams;
 
 use super::Provenance;
 

@@ -6,10 +6,10 @@ use std::sync::Arc;
 use crate::classes::{ClassId, ClassInfo};
 use crate::clip::Skeleton;
 use crate::features::{ALL_BONES, BoneSet};
+use crate::pivots::PivotSet;
 use crate::roles::{Role, RoleMap};
+use crate::svrdm::SvrdmModel;
 use crate::templates::{PerformerKind, TemplateModel};
-use crate::thesis::pivots::PivotSet;
-use crate::thesis::svrdm::SvrdmModel;
 
 /// A trained model of any method. Cheap to copy: the tables are shared.
 #[derive(Debug, Clone, PartialEq)]

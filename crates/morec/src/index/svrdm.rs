@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use crate::classes::ClassId;
-use crate::thesis::pca::Pca;
-use crate::thesis::svrdm::tree::{Branch, Node, Tree, TreeParts};
-use crate::thesis::svrdm::{Profiles, SvrdmModel};
+use crate::pca::Pca;
+use crate::svrdm::tree::{Branch, Node, Tree, TreeParts};
+use crate::svrdm::{Profiles, SvrdmModel};
 
 use super::manifest::{BranchWords, FORMAT, NodeWords, SvrdmManifest};
 use super::tensors::{Tables, Tensor, class_id};

@@ -7,8 +7,8 @@ use std::time::Duration;
 use crate::clip::{Clip, Span};
 use crate::features::{BoneSet, KeyPose, all_bones_of_clip};
 use crate::kinematics::for_each_world_pose;
+use crate::pivots::NoPivots;
 use crate::roles::RoleMap;
-use crate::thesis::pivots::NoPivots;
 
 use super::start::check_shown;
 use super::{

@@ -3,8 +3,8 @@
 use crate::clip::Skeleton;
 use crate::features::KeyPose;
 use crate::kinematics::WorldPose;
+use crate::pivots::{PivotMap, PivotPose};
 use crate::roles::RoleMap;
-use crate::thesis::pivots::{PivotMap, PivotPose};
 
 use super::{Model, StartError};
 

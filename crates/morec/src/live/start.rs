@@ -1,8 +1,8 @@
 //! Why a stream cannot be recognised.
 
 use crate::features::{BoneSet, Profile};
+use crate::pivots::NoPivots;
 use crate::templates::TemplateModelError;
-use crate::thesis::pivots::NoPivots;
 
 /// An error if nothing of what an index `uses` is `shown`.
 pub(super) fn check_shown(uses: BoneSet, shown: BoneSet) -> Result<(), StartError> {
@@ -30,7 +30,7 @@ pub enum StartError {
     Templates(#[from] TemplateModelError),
     /// The model's parts do not fit together.
     #[error(transparent)]
-    Svrdm(#[from] crate::thesis::svrdm::ModelError),
+    Svrdm(#[from] crate::svrdm::ModelError),
     /// The stream shows a performer of another kind than the index is of.
     #[error("this index is of {index}; what is shown here is {shown}")]
     OtherProfile {

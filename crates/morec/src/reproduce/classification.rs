@@ -12,10 +12,10 @@ use crate::index::{MotionIndex, Provenance};
 use crate::labels::Sample;
 use crate::plot::HeatMap;
 use crate::report::pictures::{branch_picture, tree_picture};
-use crate::thesis::svrdm::{SampleClassifier, SvrdmModel};
-use crate::thesis::train_tree::{BranchReport, FeatureSample};
+use crate::svrdm::{SampleClassifier, SvrdmModel};
 use crate::train::LabelSet;
 use crate::train::thesis::{Estimated, SvrdmOptions, train_svrdm};
+use morec_svrdm::train_tree::{BranchReport, FeatureSample};
 
 use super::study::{Picture, ReproduceError, Setting, Study, frames_of, rows_of};
 

@@ -6,8 +6,8 @@ use crate::cluster::{
     KwasForm, KwasParams, PairCounts, Spectrum, adjusted_rand_index, kwas_clusters,
 };
 use crate::features::Rows;
-use crate::thesis::pca::{ComponentCount, Moments, Pca};
-use crate::thesis::pivots::{PivotSet, PoseParams};
+use crate::pca::{ComponentCount, Moments, Pca};
+use crate::pivots::{PivotSet, PoseParams};
 use crate::train::StreamKind;
 
 use super::study::{ReproduceError, Study, frames_of, rows_of};

@@ -3,9 +3,9 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
+use crate::pivots::{PivotSet, PoseParams};
 use crate::plot::{Bar, LaneChart};
 use crate::segment::{PpcaParams, segment};
-use crate::thesis::pivots::{PivotSet, PoseParams};
 use crate::train::{StreamKind, TrainClip};
 
 use super::study::{Picture, ReproduceError, Study, rows_of};

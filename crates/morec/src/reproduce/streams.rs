@@ -8,7 +8,8 @@ use crate::crossval::{CrossvalData, FoldBy, crossval};
 use crate::eval::{Evaluation, Timeline, timelines};
 use crate::live::Model;
 use crate::plot::{Bar, LaneChart};
-use crate::thesis::svrdm::{ConfidenceMap, SvrdmEngine, SvrdmModel};
+use crate::report::pictures::confidence_picture;
+use crate::svrdm::{ConfidenceMap, SvrdmEngine, SvrdmModel};
 use crate::train::StreamKind;
 
 use crate::train::thesis::SvrdmOptions;
@@ -133,9 +134,14 @@ fn map_picture(
     Ok(Some(Picture {
         name: format!("{setting}_map_{name}"),
         caption: format!("{setting}: confidences of {name}'s segments (Fig. 4.3)"),
-        svg: cells
-            .picture(&title, &model.classes, &model.params, model.rate_hz())
-            .svg(),
+        svg: confidence_picture(
+            &cells,
+            &title,
+            &model.classes,
+            &model.params,
+            model.rate_hz(),
+        )
+        .svg(),
         table: Some(map_table(&cells, model)),
     }))
 }

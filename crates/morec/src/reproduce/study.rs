@@ -9,8 +9,8 @@ use crate::eval::EvalError;
 use crate::features::Rows;
 use crate::index::IndexError;
 use crate::labels::Sample;
+use crate::pivots::{NoPivots, PivotMap, PivotSet, PoseParams, pose_rows_of_clip};
 use crate::segment::SegmentError;
-use crate::thesis::pivots::{NoPivots, PivotMap, PivotSet, PoseParams, pose_rows_of_clip};
 use crate::train::thesis::{SvrdmOptions, SvrdmTrainParams};
 use crate::train::{TrainClip, TrainError};
 

@@ -5,7 +5,7 @@ use nalgebra::DMatrix;
 use super::pass::{Pass, PassLengths, Values, pass};
 use super::{PassDirections, PpcaParams, SegmentError};
 use crate::features::Rows;
-use crate::thesis::pca::{Eigen, Moments};
+use crate::pca::{Eigen, Moments};
 
 /// The boundary between two behaviours.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]

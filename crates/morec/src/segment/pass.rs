@@ -1,6 +1,6 @@
 //! One way through a clip: Algorithm 2.
 
-use crate::thesis::pca::{ComponentCount, Moments};
+use crate::pca::{ComponentCount, Moments};
 
 use super::peaks::Peaks;
 use super::{Ppca, PpcaParams};

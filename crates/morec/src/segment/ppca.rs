@@ -1,6 +1,6 @@
 //! A Gaussian of few dimensions and noise in all others.
 
-use crate::thesis::pca::{ComponentCount, Eigen, Moments};
+use crate::pca::{ComponentCount, Eigen, Moments};
 
 /// Probabilistic principal components: rows as a Gaussian whose covariance is
 /// `C = V diag(λ₁ … λᵣ, λ … λ) Vᵀ`, `λ` the mean of the eigenvalues left out (thesis Eq. 3.13, 3.15).

@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use super::peaks::Peaks;
 use super::*;
 use crate::features::Rows;
-use crate::thesis::pca::{ComponentCount, Moments};
+use crate::pca::{ComponentCount, Moments};
 
 fn values(dim: usize, len: usize) -> impl Strategy<Value = Vec<f64>> {
     prop::collection::vec(-1.0f64..1.0, dim * len)

@@ -41,7 +41,7 @@ pub enum TrainError {
     Params(String),
     /// Parts came out unusable.
     #[error(transparent)]
-    Svrdm(#[from] crate::thesis::svrdm::ModelError),
+    Svrdm(#[from] crate::svrdm::ModelError),
     /// Parts came out unusable.
     #[error(transparent)]
     Model(#[from] TemplateModelError),

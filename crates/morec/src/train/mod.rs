@@ -30,7 +30,6 @@ mod trainer;
 mod trim;
 mod verifier;
 
-pub use crate::thesis::train_tree as svrdm;
 pub use align::align;
 pub use alike::AlikeClasses;
 pub use clips::{everyday_clips, train_clips};
@@ -39,6 +38,7 @@ pub use error::TrainError;
 pub use from_clips::{LabelSet, Prepared, TrainClip, build_train_set};
 pub use kind::{ClassKind, ClassLabels};
 pub use mirror::{Mirror, add_mirrored};
+pub use morec_svrdm::train_tree as svrdm;
 pub(crate) use notes::class_notes;
 pub use options::{ENOUGH_BACKGROUND_SECS, EVERYDAY_SEED, Everyday, TrainOptions};
 pub use params::{StrangerParams, TrainParams};

@@ -1,4 +1,5 @@
-//! Rules about imports that cargo features cannot express; the layers themselves are features (`.ci/run`).
+//! Rules about imports that cargo features cannot express; the layers themselves are features (`.ci/run`). For every library below
+//! `morec`, too (by `#[path]`).
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -52,7 +53,7 @@ fn the_library_touches_no_file_and_prints_nothing() {
         "File::open",
     ];
     let sources = sources();
-    assert!(sources.len() > 50);
+    assert!(sources.len() > 10);
     // What opens files is the module of that name, and paths given to it. An index notes when it was trained, and
     // SOURCE_DATE_EPOCH fixes that.
     for (path, _, code) in sources.iter().filter(|(_, module, _)| module != "files") {
@@ -69,9 +70,12 @@ fn the_library_touches_no_file_and_prints_nothing() {
 /// What the standard library takes from the system differs in its last bits from one system to the next, and detections must not.
 #[test]
 fn recognition_takes_no_function_from_the_system() {
-    let modules = "decode features import math roles templates thesis train";
+    let modules = "decode import math roles templates train";
+    // Those of rows and of the method of 2009 are all for recognition.
+    let all = ["morec-features", "morec-svrdm"].contains(&env!("CARGO_PKG_NAME"));
     let functions = "sin() cos() sin_cos() tan() asin() acos() atan() atan2( exp() ln() log2() log10() powf( hypot( cbrt() tanh()";
-    for (path, _, code) in (sources().iter()).filter(|(_, m, _)| modules.split(' ').any(|n| n == m))
+    for (path, _, code) in (sources().iter())
+        .filter(|(_, module, _)| all || modules.split(' ').any(|name| name == module))
     {
         for function in functions.split(' ') {
             let call = format!(".{function}");

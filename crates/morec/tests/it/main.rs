@@ -25,6 +25,7 @@ mod made;
 mod parameters;
 mod pose_golden;
 mod positions;
+mod rows;
 mod sensitivity;
 mod session;
 mod stages;

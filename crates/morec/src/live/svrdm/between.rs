@@ -2,7 +2,7 @@
 //! takes from has ended, and its going ends the next.
 
 use crate::live::MAX_PERFORMERS;
-use crate::thesis::svrdm::{
+use crate::svrdm::{
     Cell, FeatureExtraction, Gram, RowRing, SegmentAssembly, SegmentScoring, SvrdmModel,
     SvrdmParams,
 };

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use crate::features::Pushed;
 use crate::live::detection::Steps;
 use crate::live::{Frame, Model, PoseExtractor, Rig};
-use crate::thesis::pivots::{PivotPose, PoseStream};
-use crate::thesis::svrdm::{ChunkAssembly, SvrdmModel};
+use crate::pivots::{PivotPose, PoseStream};
+use crate::svrdm::{ChunkAssembly, SvrdmModel};
 
 use super::belt::{RingReceiver, RingSender};
 use super::message::{Chunk, End, MessageStamp, Of};

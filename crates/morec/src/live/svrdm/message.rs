@@ -1,7 +1,7 @@
 //! Messages between stages.
 
 use crate::live::detection::Steps;
-use crate::thesis::svrdm::{Cell, ClassCandidates, Gram, SvrdmModel, Window};
+use crate::svrdm::{Cell, ClassCandidates, Gram, SvrdmModel, Window};
 
 /// Performer and time of a message.
 #[derive(Debug, Clone, Copy)]

@@ -19,7 +19,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::time::Duration;
 
-use crate::thesis::svrdm::{SegmentScoring, SvrdmModel};
+use crate::svrdm::{SegmentScoring, SvrdmModel};
 
 use self::belt::belt;
 use self::between::{Segments, classify, extract, score};

@@ -6,8 +6,8 @@ use crate::features::Pushed;
 use crate::live::detection::{DetectionBuffer, Steps};
 use crate::live::pipeline::Pipeline;
 use crate::live::{RecognizerInput, StartError};
-use crate::thesis::pivots::{PivotPose, PoseStream};
-use crate::thesis::svrdm::{FrameDetection, SvrdmEngine, SvrdmModel};
+use crate::pivots::{PivotPose, PoseStream};
+use crate::svrdm::{FrameDetection, SvrdmEngine, SvrdmModel};
 
 /// Pose rows and the stages of the thesis.
 #[derive(Debug, Clone)]

@@ -11,7 +11,7 @@ use crate::live::early::EarlyTracker;
 use crate::live::event_tracker::EventTracker;
 use crate::live::status::SessionCounters;
 use crate::live::{Detection, MAX_PERFORMERS, PerformerId, wall_now_secs};
-use crate::thesis::svrdm::{Cell, ChunkDetection, SegmentScoring, SegmentTracking, SvrdmModel};
+use crate::svrdm::{Cell, ChunkDetection, SegmentScoring, SegmentTracking, SvrdmModel};
 
 use super::belt::{RingReceiver, RingSender};
 use super::message::{End, MessageStamp, StageMessage, What};

@@ -1,9 +1,9 @@
 //! Pictures of a tree and of its branches.
 
 use crate::plot::{Chart, Regions, TreeBox, tree_svg};
-use crate::thesis::svrdm::{Branch, Node, Tree};
+use crate::svrdm::{Branch, Node, Tree};
 
-use crate::thesis::train_tree::FeatureSample;
+use morec_svrdm::train_tree::FeatureSample;
 
 /// Cells along each axis.
 const CELLS: usize = 120;

@@ -9,6 +9,7 @@ mod quality;
 #[cfg(test)]
 mod tests;
 
+pub use confidence_map::confidence_picture;
 pub use curves::channel_chart;
 pub use machines::{branch_picture, tree_picture};
 pub use quality::quality_chart;

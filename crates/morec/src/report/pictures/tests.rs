@@ -1,9 +1,30 @@
-use super::{branch_picture, tree_picture};
+use morec_svrdm::train_tree::{FeatureSample, SigmaRule, TreeParams, grow};
+
+use super::{branch_picture, quality_chart, tree_picture};
 use crate::classes::ClassId;
+use crate::features::Rows;
+use crate::pca::{ComponentCount, Moments, Pca};
 use crate::rng::Rng;
-use crate::thesis::svrdm::Node;
-use crate::thesis::train_tree::tests::cloud;
-use crate::thesis::train_tree::{FeatureSample, SigmaRule, TreeParams, grow};
+use crate::svrdm::Node;
+
+/// `count` vectors around a centre, by chance.
+fn cloud(rng: &mut Rng, count: usize, centre: &[f64], spread: f64) -> Vec<Vec<f64>> {
+    (0..count)
+        .map(|_| centre.iter().map(|c| c + spread * rng.normal()).collect())
+        .collect()
+}
+
+#[test]
+fn a_chart_of_quality_says_what_was_chosen() {
+    let mut moments = Moments::new(2);
+    moments.push_rows(&Rows::from_values(
+        2,
+        vec![3.0, 0.0, -3.0, 0.0, 0.0, 1.0, 0.0, -1.0],
+    ));
+    let pca = Pca::fit(&moments, ComponentCount::Quality(0.9)).unwrap();
+    let svg = quality_chart(&pca.quality_table(), pca.dims(), "kept").svg();
+    assert!(svg.contains("share of the variance") && svg.contains("chosen"));
+}
 
 #[test]
 fn pictures_show_every_class_by_name_and_where_machines_accept() {

@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use crate::thesis::pca::QualityRow;
-use crate::thesis::train_tree::BranchReport;
+use crate::pca::QualityRow;
+use morec_svrdm::train_tree::BranchReport;
 
 use super::thresholds::Estimated;
 

@@ -1,10 +1,10 @@
 //! Samples to a model.
 
 use crate::classes::ClassInfo;
-use crate::thesis::pca::Pca;
-use crate::thesis::svrdm::{Directions, FeatureExtraction, Gram, Profiles, SvrdmModel};
-use crate::thesis::train_tree::{BranchReport, FeatureSample, SignVector, grow, sign_vector};
+use crate::pca::Pca;
+use crate::svrdm::{Directions, FeatureExtraction, Gram, Profiles, SvrdmModel};
 use crate::train::TrainError;
+use morec_svrdm::train_tree::{BranchReport, FeatureSample, SignVector, grow, sign_vector};
 
 use super::{SvrdmTrainParams, ThesisSample};
 

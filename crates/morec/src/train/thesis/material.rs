@@ -8,8 +8,8 @@ use rayon::prelude::*;
 use crate::classes::{ClassId, ClassInfo};
 use crate::features::Rows;
 use crate::labels::Sample;
-use crate::thesis::pca::{Moments, Pca};
-use crate::thesis::pivots::{PivotMap, PivotSet, pose_rows_of_clip};
+use crate::pca::{Moments, Pca};
+use crate::pivots::{PivotMap, PivotSet, pose_rows_of_clip};
 use crate::train::{LabelSet, StreamKind, TrainClip, TrainError};
 
 use super::SvrdmOptions;

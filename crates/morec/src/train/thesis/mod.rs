@@ -14,7 +14,7 @@ pub use options::{Pivots, SvrdmOptions, SvrdmTrainParams, ThresholdRule};
 pub use thresholds::Estimated;
 
 use crate::progress::Progress;
-use crate::thesis::svrdm::SvrdmModel;
+use crate::svrdm::SvrdmModel;
 use crate::train::{LabelSet, TrainClip, TrainError, TrainingReport};
 
 /// Trains the thesis's recogniser on labelled and background clips (§4.2 to §4.5).

@@ -2,10 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::thesis::pca::ComponentCount;
-use crate::thesis::pivots::{PivotSet, PoseParams};
-use crate::thesis::svrdm::{Centring, Descent, Scaling, SegmentDistance, SvrdmParams};
-use crate::thesis::train_tree::{SigmaRule, SignRule, TreeParams};
+use crate::pca::ComponentCount;
+use crate::pivots::{PivotSet, PoseParams};
+use crate::svrdm::{Centring, Descent, Scaling, SegmentDistance, SvrdmParams};
+use morec_svrdm::train_tree::{SigmaRule, SignRule, TreeParams};
 
 /// Origin of the thresholds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::thesis::svrdm::SvrdmModel;
+use crate::svrdm::SvrdmModel;
 use crate::train::{TrainingReport, class_notes};
 
 use super::details::SvrdmReport;

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::progress::Progress;
-use crate::thesis::svrdm::{FrameDetection, SampleClassifier, SvrdmEngine, SvrdmModel};
+use crate::svrdm::{FrameDetection, SampleClassifier, SvrdmEngine, SvrdmModel};
 use crate::train::{TrainError, overlap_share};
 
 use super::fit::fit;

@@ -45,7 +45,7 @@ fn templates() -> Vec<Group> {
         },
         Group {
             intro: "### Feature rows (`FeatureParams`)",
-            source: include_str!("../../../src/features/params.rs"),
+            source: include_str!("../../../../morec-features/src/params.rs"),
             name: "FeatureParams",
             prefix: "features.",
             values: vec![
@@ -102,28 +102,28 @@ fn svrdm() -> Vec<Group> {
         ),
         group!(
             "### Pose rows (`PoseParams`)",
-            "../../../src/thesis/pivots/params.rs",
+            "../../../../morec-svrdm/src/pivots/params.rs",
             "PoseParams",
             "pose.",
             pose
         ),
         group!(
             "### Live stages (`SvrdmParams`)",
-            "../../../src/thesis/svrdm/params.rs",
+            "../../../../morec-svrdm/src/svrdm/params.rs",
             "SvrdmParams",
             "stages.",
             stages
         ),
         group!(
             "### The tree (`TreeParams`)",
-            "../../../src/thesis/train_tree/params.rs",
+            "../../../../morec-svrdm/src/train_tree/params.rs",
             "TreeParams",
             "tree.",
             tree
         ),
         group!(
             "### Machines (`MachineParams`)",
-            "../../../src/thesis/train_tree/svrm.rs",
+            "../../../../morec-svrdm/src/train_tree/svrm.rs",
             "MachineParams",
             "tree.machine.",
             tree,
@@ -131,7 +131,7 @@ fn svrdm() -> Vec<Group> {
         ),
         group!(
             "### Algorithm 4 (`Algorithm4`)",
-            "../../../src/thesis/train_tree/sigma.rs",
+            "../../../../morec-svrdm/src/train_tree/sigma.rs",
             "Algorithm4",
             "tree.algorithm4.",
             tree,
@@ -139,7 +139,7 @@ fn svrdm() -> Vec<Group> {
         ),
         group!(
             "### Partition of classes (`PartitionParams`)",
-            "../../../src/thesis/train_tree/partition.rs",
+            "../../../../morec-svrdm/src/train_tree/partition.rs",
             "PartitionParams",
             "tree.partition.",
             tree,
