@@ -44,9 +44,9 @@
 #define MOREC_ROLE_COUNT 18
 
 /**
- * Number of parts of the body, points of both hands and points of a custom skeleton together; they are numbered from 0.
+ * Number of parts of the body, points of both hands, points of a custom skeleton and `face` together; they are numbered from 0.
  */
-#define MOREC_POINT_COUNT 84
+#define MOREC_POINT_COUNT 85
 
 /**
  * Result of a call. Numbers stay what they are; later versions may add some.

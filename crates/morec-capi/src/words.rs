@@ -37,8 +37,8 @@ pub enum MorecRole {
 /// Number of parts of the body; they are numbered from 0.
 pub const MOREC_ROLE_COUNT: u32 = 18;
 
-/// Number of parts of the body, points of both hands and points of a custom skeleton together; they are numbered from 0.
-pub const MOREC_POINT_COUNT: u32 = 84;
+/// Number of parts of the body, points of both hands, points of a custom skeleton and `face` together; they are numbered from 0.
+pub const MOREC_POINT_COUNT: u32 = 85;
 
 const _: () = assert!(MOREC_POINT_COUNT as usize == Role::COUNT);
 const _: () = assert!(
@@ -131,6 +131,7 @@ const NAMES: [&CStr; Role::COUNT] = [
     c"right_point_6",
     c"right_point_7",
     c"right_point_8",
+    c"face",
 ];
 
 /// The role of this number, if it is one.
@@ -179,6 +180,6 @@ mod tests {
             let named = unsafe { morec_role_from_name(NAMES[known.index()].as_ptr()) };
             assert_eq!(named, number);
         }
-        assert_eq!((role(-1), role(84), role(i32::MIN)), (None, None, None));
+        assert_eq!((role(-1), role(85), role(i32::MIN)), (None, None, None));
     }
 }

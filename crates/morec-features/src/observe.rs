@@ -125,6 +125,7 @@ impl Observer {
                 Profile::Body => heading,
                 // A skeleton that has no pair of points has no heading either.
                 Profile::Custom if heading == HeadingLine::Points && has_pair(bones) => heading,
+                Profile::Points3 if heading == HeadingLine::Headset => heading,
                 _ => HeadingLine::Sensor,
             },
             last: Observation::blank(bones),
@@ -191,6 +192,18 @@ impl Observer {
             return Some(0.0);
         }
         let last = self.begun.then_some(self.last.yaw_rad);
+        if self.heading == HeadingLine::Headset {
+            let unknown = last.or(Some(0.0));
+            let Some((head, face)) = pair(pose, Role::Head, Role::Face) else {
+                return unknown;
+            };
+            let forward = face - head;
+            // Whoever looks straight up or down faces as before.
+            return match portable::hypot(forward.x, forward.z) < 1e-3 * forward.norm() {
+                true => unknown,
+                false => Some(unrolled(portable::atan2(forward.x, forward.z), last)),
+            };
+        }
         let lateral = match self.heading {
             HeadingLine::Points => pair(pose, Role::LeftPoint1, Role::RightPoint1),
             _ if self.hips_seen => pair(pose, Role::LeftThigh, Role::RightThigh),
@@ -204,14 +217,7 @@ impl Observer {
         if portable::hypot(lateral.x, lateral.z) < 1e-9 {
             return last;
         }
-        let yaw = portable::atan2(-lateral.z, lateral.x);
-        Some(match last {
-            Some(previous) => {
-                let turn = yaw - previous;
-                previous + turn - std::f64::consts::TAU * (turn / std::f64::consts::TAU).round()
-            }
-            None => yaw,
-        })
+        Some(unrolled(portable::atan2(-lateral.z, lateral.x), last))
     }
 
     fn root(&self, pose: &KeyPose) -> Option<Vec3> {
@@ -299,6 +305,13 @@ fn size(pose: &KeyPose, root: Role, ends: impl Iterator<Item = Role>) -> Option<
     Some(sum / count)
 }
 
+/// `yaw` by as many whole turns as bring it nearest to the last one.
+fn unrolled(yaw: f64, last: Option<f64>) -> f64 {
+    let Some(last) = last else { return yaw };
+    let turn = yaw - last;
+    last + turn - std::f64::consts::TAU * (turn / std::f64::consts::TAU).round()
+}
+
 /// True if the points that give the heading of a custom skeleton are among the ends of `bones`.
 fn has_pair(bones: BoneSet) -> bool {
     let pair = [Role::LeftPoint1, Role::RightPoint1];
@@ -333,6 +346,7 @@ pub fn heading_from_world(sin: f64, cos: f64, v: &Vec3) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use mocap::math::Axis;
 
     fn observed(bones: BoneSet, pose: &KeyPose) -> Observation {
         let mut observer = Observer::new(bones, HeadingLine::Hips);
@@ -453,5 +467,41 @@ mod tests {
             observer.observe(&hidden).unwrap().directions[6],
             seen.directions[6]
         );
+    }
+
+    #[test]
+    fn tracked_points_turn_with_the_headset_if_it_says_where_it_looks() {
+        let pose = |turned_rad: f64, face: bool| {
+            let mut pose = KeyPose::default();
+            let turned = Axis::Y.rotation(turned_rad);
+            let places = [
+                (Role::Head, Vec3::new(0.0, 1.6, 0.0)),
+                (Role::LeftHand, Vec3::new(0.3, 1.1, 0.2)),
+                (Role::RightHand, Vec3::new(-0.2, 1.4, 0.5)),
+                (Role::Face, Vec3::new(0.0, 1.55, 0.1)),
+            ];
+            for (role, at) in places {
+                if role != Role::Face || face {
+                    pose.set(role, turned * at);
+                }
+            }
+            pose
+        };
+        let directions = |heading, pose: &KeyPose| {
+            let mut observer = Observer::new(BoneSet::POINTS3, heading);
+            observer.observe(pose).unwrap().directions.clone()
+        };
+        use HeadingLine::{Headset, Sensor};
+        let ahead = directions(Sensor, &pose(0.0, false));
+        for turned_rad in [0.0, 1.0, -2.5, 3.1] {
+            let seen = directions(Headset, &pose(turned_rad, true));
+            let off = seen.iter().zip(&ahead).map(|(a, b)| (a - b).norm());
+            assert!(off.fold(0.0, f64::max) < 1e-9, "{turned_rad}");
+            // Without a face, as the source has it.
+            let (pose, faceless) = (pose(turned_rad, true), pose(turned_rad, false));
+            let expected = directions(Sensor, &faceless);
+            assert_eq!(directions(Sensor, &pose), expected);
+            assert_eq!(directions(Headset, &faceless), expected);
+        }
     }
 }

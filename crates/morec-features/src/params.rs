@@ -23,11 +23,12 @@ pub enum HeadingLine {
     Hips,
     /// The shoulders, whether or not hips are seen.
     Shoulders,
-    /// None: directions are the source's own, as of a device that stands still before the performer. Hands and tracked points have
-    /// this in any case.
+    /// None: directions are the source's own, as of a device that stands still before the performer. Hands have this in any case.
     Sensor,
     /// Of a custom skeleton, the line between its points `left_point_1` and `right_point_1`.
     Points,
+    /// Of a head and two hands, where the headset looks: from `head` to `face`. As of `sensor` while no `face` has been seen.
+    Headset,
 }
 
 /// Parameters of resampling, smoothing and weighting. An index keeps the values it was trained with.
@@ -56,7 +57,7 @@ pub struct FeatureParams {
     pub follow_noise: bool,
     /// Line of the body that gives the heading and the root: `hips` (shoulders until hips are seen) or `shoulders`, which training
     /// takes by itself where a clip with samples shows no hips; `sensor` for directions as the source has them; `points` of a custom
-    /// skeleton.
+    /// skeleton; `headset` of a head and two hands, which training takes where every clip with samples shows the `face`.
     #[serde(default)]
     pub heading: HeadingLine,
 }

@@ -72,11 +72,11 @@ fn columns(bones: BoneSet) -> Vec<String> {
 #[pyfunction]
 pub fn key_positions<'py>(py: Python<'py>, clip: &PyClip) -> PyResult<Bound<'py, PyAny>> {
     let data = clip.data.clone();
-    let last = data.roles.played().last().map(|(role, _)| role);
-    let roles = match last {
-        Some(role) if role.is_custom() => &Role::ALL[..],
-        Some(role) if role.is_of_hand() => &Role::ALL[..Role::HUMAN_COUNT],
-        _ => &Role::BODY[..],
+    let shows = |of: fn(Role) -> bool| data.roles.played().any(|(role, _)| of(role));
+    let roles = match (shows(Role::is_custom), shows(Role::is_of_hand)) {
+        (true, _) => &Role::ALL[..Role::Face.index()],
+        (false, true) => &Role::ALL[..Role::HUMAN_COUNT],
+        (false, false) => &Role::BODY[..],
     };
     let values = py.detach(|| {
         let mut values = Vec::with_capacity(data.clip.frames * roles.len() * 3);

@@ -5,7 +5,9 @@ use crate::formats::ParseError;
 use crate::kinematics::WorldPose;
 use crate::math::Vec3;
 use crate::roles::mapping::Mapping;
-use crate::roles::points::{PointJoint, recognise_hands, recognise_numbered_hand, recognise_posed};
+use crate::roles::points::{
+    PointJoint, recognise_hands, recognise_numbered_hand, recognise_posed, recognise_tracked,
+};
 use crate::roles::{Role, RoleMap};
 
 /// Frames that settle what names leave open.
@@ -38,8 +40,9 @@ pub(super) fn find_roles(clip: &mut Clip) -> (RoleMap, Option<&'static str>) {
         return played(hand);
     }
     let Some(found) = recognise_posed(&names, &poses(LOOKED_AT)) else {
-        let hands = recognise_hands(&names, &poses(HANDS_LOOKED_AT));
-        return hands.map_or_else(|| (RoleMap::default(), None), played);
+        let found = recognise_hands(&names, &poses(HANDS_LOOKED_AT));
+        let found = found.or_else(|| recognise_tracked(&names));
+        return found.map_or_else(|| (RoleMap::default(), None), played);
     };
     let places = found
         .roles

@@ -31,7 +31,8 @@ use std::fmt;
 
 /// A part of the body, a point of a hand or a point of a custom skeleton. A part of the body is played by the joint at its near end (the
 /// thigh by the hip joint, the shin by the knee, the hand by the wrist); a finger has four points from its base (1) to its tip. A
-/// custom skeleton, of whatever moves and is no person, has the points that a [mapping] says: `Point1` is its root.
+/// custom skeleton, of whatever moves and is no person, has the points that a [mapping] says: `Point1` is its root. `Face` is any point
+/// straight before the head, where a headset looks: it gives a head and two hands their heading.
 #[derive(
     Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
 )]
@@ -177,6 +178,7 @@ pub enum Role {
     RightPoint7,
     #[serde(rename = "right_point_8")]
     RightPoint8,
+    Face,
 }
 
 /// Both legs, left first: thigh, shin, foot.
@@ -276,17 +278,18 @@ const NAMES: [&str; Role::COUNT] = [
     "right_point_6",
     "right_point_7",
     "right_point_8",
+    "face",
 ];
 
 impl Role {
     /// Number of roles.
-    pub const COUNT: usize = 84;
+    pub const COUNT: usize = 85;
     /// Number of parts of the body, which come first.
     pub const BODY_COUNT: usize = 18;
     /// Number of parts of the body and points of hands, which come before the points of a custom skeleton.
     pub const HUMAN_COUNT: usize = 60;
 
-    /// Every role, in the order of their numbers: the body, the left hand, the right hand, the points of a custom skeleton.
+    /// Every role, in the order of their numbers: the body, the left hand, the right hand, the points of a custom skeleton, the face.
     pub const ALL: [Role; Role::COUNT] = [
         Role::Hips,
         Role::LeftThigh,
@@ -372,6 +375,7 @@ impl Role {
         Role::RightPoint6,
         Role::RightPoint7,
         Role::RightPoint8,
+        Role::Face,
     ];
 
     /// The parts of the body.
@@ -385,14 +389,14 @@ impl Role {
         body
     };
 
-    /// Its number, 0 to 83.
+    /// Its number, 0 to 84.
     pub const fn index(self) -> usize {
         self as usize
     }
 
     /// True of points of hands beside the wrist.
     pub const fn is_of_hand(self) -> bool {
-        self.index() >= Role::BODY_COUNT && !self.is_custom()
+        self.index() >= Role::BODY_COUNT && self.index() < Role::HUMAN_COUNT
     }
 
     /// True of parts of the body.
@@ -402,7 +406,7 @@ impl Role {
 
     /// True of points of a custom skeleton.
     pub const fn is_custom(self) -> bool {
-        self.index() >= Role::HUMAN_COUNT
+        self.index() >= Role::HUMAN_COUNT && self.index() < Role::Face.index()
     }
 
     /// The same part on the other side of the body; itself in the middle.
@@ -410,7 +414,7 @@ impl Role {
         let (left, right) = (Role::LeftPalm.index(), Role::RightPalm.index());
         let at = self.index();
         let other = match self {
-            Role::Hips | Role::Torso | Role::Neck | Role::Head => at,
+            Role::Hips | Role::Torso | Role::Neck | Role::Head | Role::Face => at,
             Role::LeftThigh | Role::LeftShin | Role::LeftFoot => at + 3,
             Role::RightThigh | Role::RightShin | Role::RightFoot => at - 3,
             Role::LeftShoulder | Role::LeftArm | Role::LeftForearm | Role::LeftHand => at + 4,

@@ -192,7 +192,7 @@ namespace Morec
         public const int MOREC_PERFORMER_TEACHER = 4;
         public const int MOREC_REPETITION_EVENTS = 8;
         public const int MOREC_ROLE_COUNT = 18;
-        public const int MOREC_POINT_COUNT = 84;
+        public const int MOREC_POINT_COUNT = 85;
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern MorecStatus morec_recognizer_diagnosis(IntPtr recognizer, ref MorecDiagnosis diagnosis);
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]

@@ -89,11 +89,17 @@ impl MotionIndex {
     }
 
     /// A sentence about a stream that never shows the parts in `missing`, if the index takes the heading from the hips, saw them in
-    /// training, and the stream has shoulders alone.
+    /// training, and the stream has shoulders alone; or from where a headset looks, and the stream does not tell.
     pub fn heading_doubt(&self, missing: RoleSet) -> Option<&'static str> {
         let Model::Templates(model) = &self.model else {
             return None;
         };
+        if model.features.heading == HeadingLine::Headset && missing.contains(Role::Face) {
+            return Some(
+                "the index takes the heading from where the headset looks, which is not sent (`face`): whoever turns away from where \
+                 the teacher faced is missed",
+            );
+        }
         const HIPS: [Role; 2] = [Role::LeftThigh, Role::RightThigh];
         let taught = HIPS.iter().all(|role| self.roles.contains_key(role));
         let lacks = |left, right| missing.contains(left) || missing.contains(right);

@@ -12,7 +12,7 @@ use crate::features::{
 };
 use crate::import::Take;
 use crate::labels::Sample;
-use crate::roles::RoleMap;
+use crate::roles::{Role, RoleMap};
 
 use super::error::TrainError;
 use super::params::TrainParams;
@@ -155,7 +155,10 @@ pub fn build_train_set(
         true => Profile::usual_bones(common),
         false => common.and(wanted),
     };
-    let params = &features(params, Profile::of(bones), hipless > 0);
+    let faced = taught
+        .clone()
+        .all(|(c, _)| c.roles.joint(Role::Face).is_some());
+    let params = &features(params, Profile::of(bones), hipless > 0, faced);
     let serves = |shown: &BoneSet| shown.and(bones) == bones && !bones.is_empty();
     let (usable, left_out): (Vec<_>, Vec<_>) =
         clips.iter().zip(&shown).partition(|(_, b)| serves(b));
@@ -199,7 +202,7 @@ fn with_fingers(clips: &[TrainClip], wanted: BoneSet) -> Cow<'_, [TrainClip]> {
 }
 
 /// `params` for the rows of a profile: its own in place of each that is as usual for bodies.
-fn features(params: &FeatureParams, profile: Profile, hipless: bool) -> FeatureParams {
+fn features(params: &FeatureParams, profile: Profile, hipless: bool, faced: bool) -> FeatureParams {
     match profile {
         Profile::Body if hipless && params.heading == HeadingLine::Hips => FeatureParams {
             heading: HeadingLine::Shoulders,
@@ -213,6 +216,7 @@ fn features(params: &FeatureParams, profile: Profile, hipless: bool) -> FeatureP
             FeatureParams {
                 heading: match params.heading {
                     HeadingLine::Sensor => HeadingLine::Sensor,
+                    _ if profile == Profile::Points3 && faced => HeadingLine::Headset,
                     _ => own.heading,
                 },
                 velocity_saturation: choose(

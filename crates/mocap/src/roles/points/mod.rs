@@ -11,6 +11,7 @@ mod markers;
 mod names;
 mod place;
 mod set;
+mod tracked;
 
 pub use hands::{
     NUMBERED_HANDS, NumberedPoints, SideVotes, hand_role, numbered_hand, recognise_hands,
@@ -19,6 +20,7 @@ pub use hands::{
 pub use place::PointJoint;
 pub(in crate::roles) use place::said;
 pub use set::Recognised;
+pub use tracked::recognise_tracked;
 
 use super::Role;
 use crate::math::Vec3;
@@ -54,7 +56,7 @@ pub fn recognise(names: &[&str]) -> Option<Recognised> {
 }
 
 /// Who plays what among points of these names: names of roles if most are, else those of the set that they belong to, else
-/// points of hands, of the right one if no name says a side. Empty if no part of a body or hand is known. O(sets × points).
+/// points of hands, of the right one if no name says a side, else tracked points. Empty if nothing is known. O(sets × points).
 pub fn places_of(names: &[&str]) -> Vec<(Role, PointJoint)> {
     let named = names.iter().enumerate();
     let by_role: Vec<(Role, PointJoint)> = named
@@ -63,17 +65,15 @@ pub fn places_of(names: &[&str]) -> Vec<(Role, PointJoint)> {
     if by_role.len() >= 5 && 2 * by_role.len() > names.len() {
         return by_role;
     }
-    let hands = || {
-        let (_, roles) = recognise_hands(names, &[])?;
-        let points = roles.into_iter();
-        Some(
-            points
-                .map(|(role, at)| (role, PointJoint::Point(at)))
-                .collect(),
-        )
-    };
-    let body = recognise(names).map(|found| found.roles);
-    body.or_else(hands).unwrap_or_default()
+    if let Some(body) = recognise(names) {
+        return body.roles;
+    }
+    let found = recognise_hands(names, &[]).or_else(|| recognise_tracked(names));
+    let roles = found.map_or_else(Vec::new, |(_, roles)| roles);
+    let places = roles.into_iter();
+    places
+        .map(|(role, at)| (role, PointJoint::Point(at)))
+        .collect()
 }
 
 /// [`recognise`] with the points in some frames, which settle what numbers alone do not: 17 points may be COCO's or

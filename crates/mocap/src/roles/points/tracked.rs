@@ -1,0 +1,74 @@
+//! Points that trackers follow: a headset and what is in the hands, or points of a custom skeleton by their roles' names.
+
+use super::names::words;
+use crate::roles::Role;
+
+/// The points of a head and two hands (and `face`), or of a custom skeleton, among points of these names, with their set's name: names of
+/// roles, or of a headset and its controllers. `None` unless the head and both hands are there, or the skeleton's root. O(points).
+pub fn recognise_tracked(names: &[&str]) -> Option<(&'static str, Vec<(Role, usize)>)> {
+    let mut roles: Vec<(Role, usize)> = Vec::new();
+    for (at, name) in names.iter().enumerate() {
+        if let Some(role) = Role::from_name(name).or_else(|| of_device(name))
+            && !roles.iter().any(|(known, _)| *known == role)
+        {
+            roles.push((role, at));
+        }
+    }
+    let has = |role| roles.iter().any(|(known, _)| *known == role);
+    if has(Role::Point1) {
+        return Some(("points of a custom skeleton", roles));
+    }
+    let all = [Role::Head, Role::LeftHand, Role::RightHand];
+    all.into_iter()
+        .all(has)
+        .then_some(("a head and two hands", roles))
+}
+
+/// `HMD`, `LeftController`, `controller_right`, `wrist.l`.
+fn of_device(name: &str) -> Option<Role> {
+    let words = words(name);
+    let has = |known: &[&str]| words.iter().any(|word| known.contains(&word.as_str()));
+    if words.len() <= 2 && has(&["head", "hmd", "headset"]) {
+        return Some(Role::Head);
+    }
+    if !has(&["hand", "wrist", "controller"]) {
+        return None;
+    }
+    match (has(&["left", "l"]), has(&["right", "r"])) {
+        (true, false) => Some(Role::LeftHand),
+        (false, true) => Some(Role::RightHand),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn headsets_and_controllers_are_known_by_their_names() {
+        let expected = [(Role::Head, 0), (Role::LeftHand, 1), (Role::RightHand, 2)];
+        for names in [
+            ["head", "left_hand", "right_hand"],
+            ["HMD", "LeftController", "RightController"],
+            ["headset", "controller_left", "controller_right"],
+            ["XR Head", "wrist.l", "wrist.r"],
+        ] {
+            let (set, roles) = recognise_tracked(&names).unwrap();
+            assert_eq!((set, &roles[..]), ("a head and two hands", &expected[..]));
+        }
+        let (_, roles) = recognise_tracked(&["hmd", "left_hand", "right_hand", "face"]).unwrap();
+        assert_eq!(roles[3], (Role::Face, 3));
+        for names in [["head", "left_hand", "ball"], ["hand", "controller", "hmd"]] {
+            assert_eq!(recognise_tracked(&names), None, "{names:?}");
+        }
+    }
+
+    #[test]
+    fn points_of_a_custom_skeleton_are_known_by_their_names() {
+        let names = ["point_1", "left_point_1", "right_point_1", "base"];
+        let (_, roles) = recognise_tracked(&names).unwrap();
+        assert_eq!(roles[0], (Role::Point1, 0));
+        assert_eq!(roles.len(), 3);
+    }
+}
