@@ -12,6 +12,7 @@ const at = (id) => document.getElementById(id);
 const teaching = new Teaching(morec, trainInWorker);
 const drawing = at("drawing").getContext("2d");
 let running = null;
+let ended = Promise.resolve();
 let busy = false;
 let send = () => {};
 
@@ -34,7 +35,12 @@ async function run(source) {
   running?.abort();
   const own = (running = new AbortController());
   show();
+  const before = ended;
+  let end;
+  ended = new Promise((done) => (end = done));
   try {
+    await before;
+    if (own.signal.aborted) return;
     await source((secs, positions, seen) => {
       const first = !teaching.hasPoses;
       teaching.pose(secs, positions);
@@ -42,10 +48,9 @@ async function run(source) {
       draw(positions, seen);
     }, own.signal);
   } finally {
-    if (running === own) {
-      running = null;
-      teaching.finish();
-    }
+    teaching.finish();
+    if (running === own) running = null;
+    end();
   }
 }
 

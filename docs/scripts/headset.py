@@ -77,7 +77,7 @@ def measure(morec, data, folder, has_face, turn):
         subprocess.run(command, check=True, capture_output=True)
         for performer in people:
             command = [morec, "recognize", folder / "index", folder / f"session_{performer}.jsonl"]
-            done = subprocess.run(command, check=False, capture_output=True, text=True)
+            done = subprocess.run(command, check=True, capture_output=True, text=True)
             found = list(csv.DictReader(done.stdout.splitlines(), delimiter="\t"))
             right, missed = counts(found, labels[performer])
             total = totals["same" if performer == person else "others"]

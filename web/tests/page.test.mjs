@@ -180,7 +180,7 @@ test("MediaPipe's newer package sees by a model beside it, and what is missing i
   writeFileSync(join(mediapipe, "hand_landmarker.task"), "four");
   const { positions, pictures, lines } = await track("hand");
   // All points are in the middle of the picture.
-  assert.deepEqual(positions.left_hand.map((value) => value + 0), [0, 0, -1]);
+  assert.deepEqual(positions.right_hand.map((value) => value + 0), [0, 0, -1]);
   assert.equal(Object.keys(positions).length, 21);
   assert.equal(pictures[0].length, 21);
   assert.ok(lines.flat().every((number) => number < 21));

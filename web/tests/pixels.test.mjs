@@ -1,7 +1,7 @@
 // The whole way from pixels: Chromium's camera plays a film of a photographed person who leans to one side and to the other; MediaPipe sees
 // her, the page teaches, trains and recognises. Needs what `web/test` gets.
 import assert from "node:assert/strict";
-import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
@@ -10,7 +10,7 @@ import { fileURLToPath, pathToFileURL } from "node:url";
 
 const { MOREC_PACKAGE, MOREC_TOOLS, MOREC_CHROMIUM, MOREC_PHOTOGRAPH } = process.env;
 const mediapipe = fileURLToPath(new URL("../vendor/mediapipe", import.meta.url));
-const missing = { "Chromium": MOREC_CHROMIUM, "a photograph": MOREC_PHOTOGRAPH };
+const missing = { Chromium: MOREC_CHROMIUM, "a photograph": MOREC_PHOTOGRAPH, MediaPipe: existsSync(join(mediapipe, "pose.js")) };
 const skip = Object.entries(missing).filter(([, found]) => !found).map(([name]) => `there is no ${name} here`).join(", ") || false;
 const { serve } = await import(pathToFileURL(join(MOREC_PACKAGE, "serve.js")));
 

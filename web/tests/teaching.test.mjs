@@ -155,14 +155,16 @@ test("one hand is taught, and recognised on either side", async () => {
   }
 });
 
-test("a hand is placed where the picture shows it, by the other side's name", () => {
+test("a hand is placed where the picture shows it, and two hands are two", () => {
   const world = handPoints(0.3, 0.2).map(([x, y, z]) => ({ x, y: -y, z: -z }));
   // 0.3 m of the room are as high as the picture; the wrist is 0.1 m right of the middle and 0.05 m below.
   const picture = world.map(({ x, y }) => ({ x: 0.5 + (x + 0.1) / 0.3 / 1.5, y: 0.5 + (y + 0.05) / 0.3 }));
-  const seen = handsOf({ pictures: [picture], worlds: [world], sides: ["Left"] }, 1.5);
+  const seen = handsOf({ pictures: [picture], worlds: [world], sides: ["right"] }, 1.5);
   const off = Math.hypot(...seen.right_hand.map((value, axis) => value - [0.1, -0.05, 0][axis]));
   assert.ok(off < 1e-9, `${seen.right_hand}`);
   assert.equal(Object.keys(seen).length, 21);
+  const both = handsOf({ pictures: [picture, picture], worlds: [world, world], sides: ["left", "left"] }, 1.5);
+  assert.equal(Object.keys(both).length, 42);
 });
 
 test("an index of bodies says what it is when a hand is shown", async () => {

@@ -492,8 +492,8 @@ typedef struct MorecSkeleton {
     const double *offsets;
     /**
      * `joint_count` times a `MorecRole`, `MOREC_ROLE_NONE` for most; or null: found by the tree, then the names. Points of hands
-     * have the numbers from `MOREC_ROLE_COUNT` to below `MOREC_POINT_COUNT`, which `morec_role_from_name` tells:
-     * `left_palm`, `left_thumb_1` … `right_little_tip`.
+     * (`left_palm`, `left_thumb_1` … `right_little_tip`), points of a custom skeleton and `face` have the numbers from `MOREC_ROLE_COUNT`
+     * to below `MOREC_POINT_COUNT`, which `morec_role_from_name` tells.
      */
     const int32_t *roles;
 } MorecSkeleton;

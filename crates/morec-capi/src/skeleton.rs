@@ -32,8 +32,8 @@ pub struct MorecSkeleton {
     /// `joint_count` times x, y, z: where the joint is in its parent's frame; or null if every frame says it.
     pub offsets: *const f64,
     /// `joint_count` times a `MorecRole`, `MOREC_ROLE_NONE` for most; or null: found by the tree, then the names. Points of hands
-    /// have the numbers from `MOREC_ROLE_COUNT` to below `MOREC_POINT_COUNT`, which `morec_role_from_name` tells:
-    /// `left_palm`, `left_thumb_1` … `right_little_tip`.
+    /// (`left_palm`, `left_thumb_1` … `right_little_tip`), points of a custom skeleton and `face` have the numbers from `MOREC_ROLE_COUNT`
+    /// to below `MOREC_POINT_COUNT`, which `morec_role_from_name` tells.
     pub roles: *const i32,
 }
 

@@ -10,7 +10,7 @@ use crate::{ALL_BONES, Bone, BoneKind, BoneSet, Hand, HeadingLine, KeyPose, Palm
 /// The heading frame turns about the vertical with the hips: lateral axis from the right to the left hip joint
 /// without its vertical part, up is +Y, forward is lateral × up. Coordinates are (lateral, up, forward). The shoulders have
 /// the hips' place in a stream that shows no hip joints, as of a performer behind a table, and for an index that was trained
-/// without hips ([`HeadingLine`]). Performers without a body have no heading: lateral is the source's X, forward its Z.
+/// without hips ([`HeadingLine`]). Hands have no heading: lateral is the source's X, forward its Z.
 #[derive(Debug, PartialEq)]
 pub struct Observation {
     /// Of each bone of the set's [span](BoneSet::span) what its [`BoneKind`] says, mostly unit vectors, `heading_from_world` applied;

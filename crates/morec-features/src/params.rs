@@ -2,8 +2,8 @@
 
 use crate::Profile;
 
-/// The line whose turning about the vertical gives the heading: of a body, of which it says where the root is, too, or of a custom
-/// skeleton; none for other performers without a body.
+/// The line whose turning about the vertical gives the heading: of a body, of which it says where the root is, too, of a custom
+/// skeleton, or of a headset; none for hands.
 #[derive(
     Debug,
     Clone,

@@ -100,9 +100,11 @@ fn tracked(address: &Address, folder: &Path) -> Result<&'static str, LiveError> 
             ))
         });
     }
-    let [body, hands, _] = KNOWN_BY.map(|name| folder.join(name).is_file());
-    let hands = !body && (hands || folder.join("hand_landmarker.task").is_file());
-    Ok(TRACKED[usize::from(hands)])
+    let has = |name: &str| folder.join(name).is_file();
+    let models = ["full", "heavy", "lite"].map(|size| format!("pose_landmarker_{size}.task"));
+    let body = has(KNOWN_BY[0]) || models.iter().any(|model| has(model));
+    let hands = has(KNOWN_BY[1]) || has("hand_landmarker.task");
+    Ok(TRACKED[usize::from(hands && !body)])
 }
 
 /// Serves one connection: a file, or lines over a WebSocket until it ends.

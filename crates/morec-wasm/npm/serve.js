@@ -36,29 +36,30 @@ const folders = (mediapipe) => [
   ["/", [join(here, "page")]],
 ];
 
+/** The file at a path; throws if there is none. */
 function fileAt(url, places) {
-  let asked;
-  try {
-    asked = decodeURIComponent(url.split("?")[0]);
-  } catch {
-    return null;
-  }
-  if (asked === "/") asked = "/index.html";
-  const [prefix, roots] = places.find(([start]) => asked.startsWith(start)) ?? ["", []];
+  const path = decodeURIComponent(url.split("?")[0]);
+  const asked = path === "/" ? "/index.html" : path;
+  const [prefix, roots] = places.find(([start]) => asked.startsWith(start));
+  const isFile = (file, root) => file.startsWith(root + sep) && statSync(file, { throwIfNoEntry: false })?.isFile();
   for (const root of roots) {
     const file = join(root, asked.slice(prefix.length));
-    if (file.startsWith(root + sep) && statSync(file, { throwIfNoEntry: false })?.isFile()) return file;
+    if (isFile(file, root)) return file;
   }
-  return null;
+  throw new Error(`no file ${asked}`);
 }
 
 /** Serves the page on a port of this machine, with MediaPipe's files from the first folder that has each: the server, listening. */
 export async function serve({ port = 8000, mediapipe = installed() } = {}) {
   const places = folders(mediapipe);
   const server = createServer(({ url }, response) => {
-    const file = fileAt(url, places);
-    if (!file) return response.writeHead(404).end("no such file");
-    response.writeHead(200, { "content-type": TYPES[extname(file)] ?? "application/octet-stream" }).end(readFileSync(file));
+    try {
+      const file = fileAt(url, places);
+      const bytes = readFileSync(file);
+      response.writeHead(200, { "content-type": TYPES[extname(file)] ?? "application/octet-stream" }).end(bytes);
+    } catch {
+      response.writeHead(404).end("no such file");
+    }
   });
   await new Promise((done, failed) => server.once("error", failed).listen(port, "127.0.0.1", done));
   return server;

@@ -167,7 +167,8 @@ impl PointStream {
     pub fn diagnosis(&self) -> Vec<String> {
         let known = self.performer.diagnosis().map(|known| known.findings());
         let findings = known.iter().flat_map(|findings| findings.iter());
-        let problem = self.problem.iter().cloned();
+        let is_other = self.performer.shows_another();
+        let problem = self.problem.iter().filter(|_| is_other).cloned();
         problem.chain(findings.map(ToString::to_string)).collect()
     }
 }

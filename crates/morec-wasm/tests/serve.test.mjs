@@ -33,7 +33,7 @@ test("the page, the package and MediaPipe's files are served, and nothing else i
       const { status, text } = await get(base, path);
       assert.ok(status === 200 && text.includes(holds), `${path}: ${status}`);
     }
-    for (const path of ["/no", "/../package.json", "/%2e%2e/package.json", "/vendor/mediapipe/%2e%2e%2fpose.js", "/%"]) {
+    for (const path of ["/no", "/../package.json", "/%2e%2e/package.json", "/vendor/mediapipe/%2e%2e%2fpose.js", "/%", "/app.js/", "/%00", `/${"a".repeat(300)}`]) {
       assert.equal((await get(base, path)).status, 404, path);
     }
   } finally {

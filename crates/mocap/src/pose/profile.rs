@@ -58,7 +58,7 @@ impl Profile {
     }
 
     /// The roles that a performer has of whom those are seen for which `is_seen` holds: every part of a body, every point of the hands
-    /// that are seen at all, a head and two hands with the face, the points of a custom skeleton that are seen. A palm stands for a wrist that is not seen. No allocation.
+    /// that are seen at all, the points of a custom skeleton that are seen. A palm stands for a wrist that is not seen. No allocation.
     pub fn expected(self, is_seen: impl Fn(Role) -> bool) -> impl Iterator<Item = Role> {
         let of_hand = Hand::BOTH.map(|hand| {
             let HandPoints { wrist, palm, .. } = hand.points();
@@ -72,10 +72,7 @@ impl Profile {
             Profile::Hand | Profile::Hands => of_hand.iter().any(|(hand, absent, seen)| {
                 *seen && Hand::of(*role) == Some(*hand) && role != absent
             }),
-            Profile::Points3 => matches!(
-                role,
-                Role::Head | Role::LeftHand | Role::RightHand | Role::Face
-            ),
+            Profile::Points3 => matches!(role, Role::Head | Role::LeftHand | Role::RightHand),
             Profile::Custom => role.is_custom() && is_seen(*role),
         };
         Role::ALL.into_iter().filter(expects)

@@ -165,7 +165,8 @@ fn role_of(name: &str) -> Option<Role> {
 /// Writes `map` as a mapping file that names every role of a person, and the points of a custom skeleton.
 pub fn write(map: &RoleMap, skeleton: &Skeleton) -> String {
     let mut text = String::from("# role\tjoint (- for none)\n");
-    let is_named = |role: &Role| !role.is_custom() || map.joint(*role).is_some();
+    let is_optional = |role: &Role| role.is_custom() || *role == Role::Face;
+    let is_named = |role: &Role| !is_optional(role) || map.joint(*role).is_some();
     for role in Role::ALL.into_iter().filter(is_named) {
         let name = map
             .joint(role)

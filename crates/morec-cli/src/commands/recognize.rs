@@ -341,7 +341,9 @@ pub fn adapt(imported: &mut Take, index: &MotionIndex, path: &Path, complete: bo
             )
         }
     };
-    if let Some(doubt) = index.heading_doubt(imported.roles.missing().collect()) {
+    if let Some(doubt) =
+        index.heading_doubt(imported.roles.played().map(|(role, _)| role).collect())
+    {
         eprintln!("morec: {}: {doubt}", path.display());
     }
     if !missing.is_empty() {

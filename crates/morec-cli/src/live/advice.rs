@@ -133,8 +133,9 @@ fn heading(diagnosis: &Diagnosis, index: &MotionIndex) -> Option<String> {
         return other;
     }
     let missing = |finding: &Finding| matches!(finding, Finding::JointsMissing { .. });
-    let known = diagnosis.findings().iter().any(missing);
-    let doubt = index.heading_doubt(diagnosis.missing).filter(|_| known);
+    // Joints that were missing at first may come.
+    let known = diagnosis.findings().iter().any(missing) || diagnosis.secs >= SILENCE.as_secs_f64();
+    let doubt = index.heading_doubt(diagnosis.seen).filter(|_| known);
     doubt.map(str::to_owned)
 }
 

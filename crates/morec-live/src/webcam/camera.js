@@ -31,7 +31,7 @@ export const camera = (video, folder, what) => async (take, signal) => {
     await pictures(video, folder, what)(take, signal);
   } finally {
     stream.getTracks().forEach((track) => track.stop());
-    video.srcObject = null;
+    if (video.srcObject === stream) video.srcObject = null;
   }
 };
 

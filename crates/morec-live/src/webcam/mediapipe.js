@@ -29,7 +29,9 @@ const hands = (count) => ({
   script: "hands.js", global: "Hands", options: { modelComplexity: 1, maxNumHands: count },
   task: "HandLandmarker", limit: { numHands: count }, models: ["hand_landmarker.task"],
   read: ({ multiHandLandmarks, multiHandWorldLandmarks, multiHandedness }) => ({
-    pictures: multiHandLandmarks ?? [], worlds: multiHandWorldLandmarks ?? [], sides: (multiHandedness ?? []).map(({ label }) => label),
+    pictures: multiHandLandmarks ?? [], worlds: multiHandWorldLandmarks ?? [],
+    // This package names sides as in a mirror, and pictures come unmirrored.
+    sides: (multiHandedness ?? []).map(({ label }) => (label === "Left" ? "right" : "left")),
   }),
   lines: HAND_LINES, positions: handsOf,
 });
@@ -53,7 +55,8 @@ export function partsOf(world, picture) {
 
 /**
  * Places of the parts of hands. World landmarks have their origin in each hand; where it is follows from the picture, which shows the hand
- * `scale` times as large (weak perspective), but for the distance from the camera, which stays unknown. `aspect` is width by height.
+ * `scale` times as large (weak perspective), but for the distance from the camera, which stays unknown. `aspect` is width by height; `sides`
+ * are `left` or `right`.
  */
 export function handsOf({ pictures, worlds, sides }, aspect) {
   const positions = {};
@@ -67,8 +70,9 @@ export function handsOf({ pictures, worlds, sides }, aspect) {
     const scale = spread(picture) > 0 ? spread(world) / spread(picture) : 0;
     const aside = (mean(picture, "x") - aspect / 2) * scale - mean(world, "x");
     const down = (mean(picture, "y") - 0.5) * scale - mean(world, "y");
-    // MediaPipe names sides as in a mirror, and pictures come unmirrored.
-    const side = sides[at] === "Left" ? "right" : "left";
+    // Of two hands of one side, one is taken for the other's.
+    const isTaken = at > 0 && sides[at] === sides[0];
+    const side = (sides[at] === "right") !== isTaken ? "right" : "left";
     HAND.forEach((part, number) => {
       const { x, y, z } = world[number];
       positions[`${side}_${part}`] = [x + aside, -(y + down), -z];
@@ -131,7 +135,7 @@ async function byTask(folder, { script, task, limit, models }) {
     const made = await vision[task].createFromOptions(files, { baseOptions: { modelAssetBuffer, delegate }, runningMode: "VIDEO", ...limit });
     const see = async (video) => {
       const { landmarks, worldLandmarks, handedness } = made.detectForVideo(video, performance.now());
-      return { pictures: landmarks, worlds: worldLandmarks, sides: (handedness ?? []).map(([first]) => first?.categoryName) };
+      return { pictures: landmarks, worlds: worldLandmarks, sides: (handedness ?? []).map(([first]) => first?.categoryName.toLowerCase()) };
     };
     return { see, close: async () => made.close() };
   }

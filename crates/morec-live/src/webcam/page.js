@@ -28,16 +28,20 @@ function take(secs, positions, seen) {
   if (readyState === WebSocket.OPEN && Object.keys(positions).length > 0) socket.send(JSON.stringify({ t: secs, positions }));
 }
 
-let running = new AbortController();
+let stop = new AbortController();
+let ended = Promise.resolve();
 
+/** Tracks what the list says, once what ran before has ended. */
 async function run() {
-  running.abort();
-  running = new AbortController();
-  try {
-    await camera(at("video"), "mediapipe", at("track").value)(take, running.signal);
-  } catch (error) {
-    say(String(error?.message ?? error));
-  }
+  stop.abort();
+  const own = (stop = new AbortController());
+  const before = ended;
+  ended = (async () => {
+    await before;
+    if (own.signal.aborted) return;
+    say(socket?.readyState === WebSocket.OPEN ? "morec listens." : "Starting the camera …");
+    await camera(at("video"), "mediapipe", at("track").value)(take, own.signal);
+  })().catch((error) => say(String(error?.message ?? error)));
 }
 
 at("track").value = document.body.dataset.track;

@@ -139,6 +139,8 @@ fn the_page_tracks_what_is_asked_for_or_what_the_folder_has_files_of() {
     assert!(page_of("webcam?track=hands").contains("<body data-track=\"hands\">"));
     std::fs::rename(folder.0.join("pose.js"), folder.0.join("hands.js")).unwrap();
     assert!(page_of("webcam").contains("<body data-track=\"hand\">"));
+    std::fs::write(folder.0.join("pose_landmarker_lite.task"), "model").unwrap();
+    assert!(page_of("webcam").contains("<body data-track=\"body\">"));
     let wrong = webcam(&"webcam?track=feet".parse().unwrap(), Some(&folder.0)).map(|_| ());
     assert!(wrong.unwrap_err().to_string().contains("body, hand, hands"));
 }

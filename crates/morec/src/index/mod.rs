@@ -88,13 +88,13 @@ impl MotionIndex {
         Ok(written.map_err(|error| crate::files::FileErrorKind::Io(error).at(path))?)
     }
 
-    /// A sentence about a stream that never shows the parts in `missing`, if the index takes the heading from the hips, saw them in
+    /// A sentence about a stream that shows the parts in `shown` and no other, if the index takes the heading from the hips, saw them in
     /// training, and the stream has shoulders alone; or from where a headset looks, and the stream does not tell.
-    pub fn heading_doubt(&self, missing: RoleSet) -> Option<&'static str> {
+    pub fn heading_doubt(&self, shown: RoleSet) -> Option<&'static str> {
         let Model::Templates(model) = &self.model else {
             return None;
         };
-        if model.features.heading == HeadingLine::Headset && missing.contains(Role::Face) {
+        if model.features.heading == HeadingLine::Headset && !shown.contains(Role::Face) {
             return Some(
                 "the index takes the heading from where the headset looks, which is not sent (`face`): whoever turns away from where \
                  the teacher faced is missed",
@@ -102,11 +102,11 @@ impl MotionIndex {
         }
         const HIPS: [Role; 2] = [Role::LeftThigh, Role::RightThigh];
         let taught = HIPS.iter().all(|role| self.roles.contains_key(role));
-        let lacks = |left, right| missing.contains(left) || missing.contains(right);
+        let shows = |left, right| shown.contains(left) && shown.contains(right);
         let differs = model.features.heading == HeadingLine::Hips
             && taught
-            && lacks(HIPS[0], HIPS[1])
-            && !lacks(Role::LeftArm, Role::RightArm);
+            && !shows(HIPS[0], HIPS[1])
+            && shows(Role::LeftArm, Role::RightArm);
         differs.then_some(
             "the index takes the heading from the hips, which are not seen here: the shoulders stand in for them, and motions may \
              be missed; an index trained on recordings without hips, or with --param features.heading=shoulders, fits better",

@@ -133,9 +133,11 @@ impl Performer {
     /// The stream ends or breaks off: tells what its last moments hold. It may go on with another frame.
     pub fn finish(&mut self, out: &mut impl FnMut(Event)) {
         self.end(out);
+        self.tracker.forget();
         self.shown.reset();
     }
 
+    /// Tells what the recogniser still holds.
     fn end(&mut self, out: &mut impl FnMut(Event)) {
         let Some(recognizer) = &mut self.recognizer else {
             return;
@@ -146,7 +148,6 @@ impl Performer {
         }
         self.early
             .cancel(None, &mut self.tracker.say(self.wall_secs, out));
-        self.tracker.forget();
     }
 
     /// [`push`](Self::push) that makes recognisers of its own.
@@ -175,6 +176,11 @@ impl Performer {
         self.diagnoser
             .as_ref()
             .map(|diagnoser| diagnoser.diagnosis())
+    }
+
+    /// True if the last second showed nothing that the index can use, and something else: a performer of another kind.
+    pub fn shows_another(&self) -> bool {
+        self.shown.is_other()
     }
 
     /// See [`Recognizer::admits_strangers`].

@@ -33,6 +33,9 @@ impl RecognizerCache {
     /// # Errors
     /// As [`Recognizer::new`].
     pub fn recognizer(&self, bones: BoneSet) -> Result<Recognizer, StartError> {
+        // What the model has not makes no difference, unless nothing else is offered.
+        let used = bones.and(self.model.bones());
+        let bones = if used.is_empty() { bones } else { used };
         let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((_, known)) = made.iter().find(|(of, _)| *of == bones) {
             return Ok(known.clone());

@@ -1,6 +1,6 @@
 //! Which bones a stream really shows.
 
-use crate::features::{ALL_BONES, BoneSet, KeyPose};
+use crate::features::{ALL_BONES, BoneSet, KeyPose, MAX_GAP_SECS};
 
 /// What is looked at together.
 const WINDOW_SECS: f64 = 1.0;
@@ -13,8 +13,13 @@ const LEAST_POSES: u16 = 5;
 pub struct ShownBones {
     /// What the model can use.
     possible: BoneSet,
+    /// What is never left out: where hands are kept apart, one that is seen alone would be taken for either.
+    kept: BoneSet,
     is_first: bool,
-    begun_secs: Option<f64>,
+    /// True if the last window showed nothing of that, and something else.
+    is_other: bool,
+    /// Times of the window's first and last pose.
+    secs: Option<(f64, f64)>,
     poses: u16,
     /// Poses of the window that show each bone.
     counts: [u16; ALL_BONES.len()],
@@ -23,10 +28,16 @@ pub struct ShownBones {
 impl ShownBones {
     /// Of a model that can use the bones `possible`.
     pub fn new(possible: BoneSet) -> Self {
+        let keeps_hands_apart = !possible.and(BoneSet::LEFT_HAND).is_empty();
         Self {
             possible,
+            kept: match keeps_hands_apart {
+                true => possible.and(BoneSet::HANDS),
+                false => BoneSet::NONE,
+            },
             is_first: true,
-            begun_secs: None,
+            is_other: false,
+            secs: None,
             poses: 0,
             counts: [0; ALL_BONES.len()],
         }
@@ -39,7 +50,12 @@ impl ShownBones {
         if self.possible.is_empty() || (!self.is_first && used == self.possible) {
             return None;
         }
-        let begun_secs = *self.begun_secs.get_or_insert(time_secs);
+        let breaks = |(_, last): (f64, f64)| !(0.0..=MAX_GAP_SECS).contains(&(time_secs - last));
+        if self.secs.is_some_and(breaks) {
+            self.begin_window();
+        }
+        let (begun_secs, _) = self.secs.unwrap_or((time_secs, time_secs));
+        self.secs = Some((begun_secs, time_secs));
         for bone in BoneSet::of_pose(pose).indices() {
             self.counts[bone] += 1;
         }
@@ -51,12 +67,13 @@ impl ShownBones {
             .filter(|&bone| 2 * u32::from(self.counts[bone]) >= u32::from(self.poses))
             .fold(BoneSet::NONE, BoneSet::with);
         let (was_first, is_known) = (self.is_first, self.poses >= LEAST_POSES);
-        self.reset();
+        self.begin_window();
         if !is_known || shown.is_empty() {
-            self.is_first = was_first;
             return None;
         }
         let usable = shown.and(self.possible);
+        self.is_other = usable.is_empty();
+        let usable = usable.or(self.kept);
         self.is_first = was_first && usable.is_empty();
         match (was_first, usable.is_empty()) {
             (true, true) => Some(shown),
@@ -66,9 +83,20 @@ impl ShownBones {
         .filter(|wanted| *wanted != used)
     }
 
+    /// True if the last second showed nothing that the model can use, and something else: a performer of another kind.
+    pub fn is_other(&self) -> bool {
+        self.is_other
+    }
+
     /// The next pose is of another stream.
     pub fn reset(&mut self) {
-        *self = Self::new(self.possible);
+        (self.is_first, self.is_other) = (true, false);
+        self.begin_window();
+    }
+
+    fn begin_window(&mut self) {
+        (self.secs, self.poses) = (None, 0);
+        self.counts.fill(0);
     }
 }
 
@@ -127,6 +155,16 @@ mod tests {
             assert_eq!(gone, [all]);
             assert_eq!(used(rate_hz, 10.0, |_| Vec::new()), [all]);
         }
+        // A clock that goes back, as of another recording, begins anew.
+        let again = |secs: f64| if secs < 0.5 { 100.0 } else { secs };
+        let possible = BoneSet::of_pose(&showing(&both));
+        let mut watch = ShownBones::new(possible);
+        let mut last = None;
+        for frame in 0..90 {
+            let secs = again(f64::from(frame) / 30.0);
+            last = last.or(watch.take(possible, secs, &showing(&ARM)));
+        }
+        assert_eq!(last, Some(arm));
         // Two poses a second say too little.
         assert_eq!(used(2.0, 10.0, |_| ARM.to_vec()), [all]);
     }

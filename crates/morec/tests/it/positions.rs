@@ -10,7 +10,7 @@ use morec::live::{
     Detection, EventOptions, Frame, Performer, PerformerId, Phase, Recognizer, Rig, recognize_clip,
 };
 use morec::math::Vec3;
-use morec::roles::Role;
+use morec::roles::LEGS;
 use morec::synth::{DatabaseSpec, database};
 
 use crate::{kit, made};
@@ -95,14 +95,6 @@ fn the_same_motion_as_points_is_recognised_alike() {
 /// Whoever declares a whole body and sits at a desk is recognised by what is seen of it; what comes into view later counts from then on.
 #[test]
 fn parts_that_were_announced_and_are_never_seen_are_left_out() {
-    const LEGS: [Role; 6] = [
-        Role::LeftThigh,
-        Role::LeftShin,
-        Role::LeftFoot,
-        Role::RightThigh,
-        Role::RightShin,
-        Role::RightFoot,
-    ];
     let spec = DatabaseSpec {
         people: 1,
         repetitions: 2,
@@ -127,7 +119,7 @@ fn parts_that_were_announced_and_are_never_seen_are_left_out() {
             |secs, pose| {
                 let mut pose = *pose;
                 if secs < legs_from_secs {
-                    for role in LEGS {
+                    for role in LEGS.concat() {
                         pose.set(role, Vec3::repeat(f64::NAN));
                     }
                 }

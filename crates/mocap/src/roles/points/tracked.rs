@@ -3,32 +3,42 @@
 use super::names::words;
 use crate::roles::Role;
 
+/// Points of a custom skeleton that are enough: the root and something else.
+const LEAST_CUSTOM: usize = 2;
+
 /// The points of a head and two hands (and `face`), or of a custom skeleton, among points of these names, with their set's name: names of
-/// roles, or of a headset and its controllers. `None` unless the head and both hands are there, or the skeleton's root. O(points).
+/// roles, or of a headset and its controllers. `None` unless the head and both hands are there, or the skeleton's root, and at least half of
+/// the points are known. O(points²).
 pub fn recognise_tracked(names: &[&str]) -> Option<(&'static str, Vec<(Role, usize)>)> {
     let mut roles: Vec<(Role, usize)> = Vec::new();
-    for (at, name) in names.iter().enumerate() {
-        if let Some(role) = Role::from_name(name).or_else(|| of_device(name))
-            && !roles.iter().any(|(known, _)| *known == role)
-        {
-            roles.push((role, at));
+    // A name that is a role's own goes before one that only means it.
+    for meaning in [Role::from_name, of_device] {
+        for (at, name) in names.iter().enumerate() {
+            let Some(role) = meaning(name) else { continue };
+            if !roles.iter().any(|(known, of)| *known == role || *of == at) {
+                roles.push((role, at));
+            }
         }
     }
+    roles.sort_by_key(|(_, at)| *at);
     let has = |role| roles.iter().any(|(known, _)| *known == role);
-    if has(Role::Point1) {
-        return Some(("points of a custom skeleton", roles));
-    }
-    let all = [Role::Head, Role::LeftHand, Role::RightHand];
-    all.into_iter()
-        .all(has)
-        .then_some(("a head and two hands", roles))
+    let tracked = [Role::Head, Role::LeftHand, Role::RightHand];
+    let set = match has(Role::Point1) {
+        true if roles.len() >= LEAST_CUSTOM => "points of a custom skeleton",
+        false if tracked.into_iter().all(has) => "a head and two hands",
+        _ => return None,
+    };
+    (2 * roles.len() >= names.len()).then_some((set, roles))
 }
 
 /// `HMD`, `LeftController`, `controller_right`, `wrist.l`.
 fn of_device(name: &str) -> Option<Role> {
     let words = words(name);
     let has = |known: &[&str]| words.iter().any(|word| known.contains(&word.as_str()));
-    if words.len() <= 2 && has(&["head", "hmd", "headset"]) {
+    if words.len() > 2 {
+        return None;
+    }
+    if has(&["head", "hmd", "headset"]) {
         return Some(Role::Head);
     }
     if !has(&["hand", "wrist", "controller"]) {
