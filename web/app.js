@@ -2,7 +2,7 @@
 import * as morec from "./vendor/morec/morec.js";
 import { trainInWorker } from "./vendor/morec/worker.js";
 import { outlets } from "./outlets.js";
-import { camera, drawLandmarks, film, recorded } from "./sources.js";
+import { camera, drawLandmarks, film, inTurn, recorded } from "./sources.js";
 import { Teaching } from "./teaching.js";
 
 const MEDIAPIPE = "./vendor/mediapipe";
@@ -11,8 +11,9 @@ const COUNTDOWN_SECS = 2;
 const at = (id) => document.getElementById(id);
 const teaching = new Teaching(morec, trainInWorker);
 const drawing = at("drawing").getContext("2d");
-let running = null;
-let ended = Promise.resolve();
+const turns = inTurn();
+/** Sources that run or wait for their turn. */
+let running = 0;
 let busy = false;
 let send = () => {};
 
@@ -32,25 +33,23 @@ const handled = (job) => async (...given) => {
 const on = (id, type, job) => at(id).addEventListener(type, handled(job));
 
 async function run(source) {
-  running?.abort();
-  const own = (running = new AbortController());
+  running++;
   show();
-  const before = ended;
-  let end;
-  ended = new Promise((done) => (end = done));
   try {
-    await before;
-    if (own.signal.aborted) return;
-    await source((secs, positions, seen) => {
-      const first = !teaching.hasPoses;
-      teaching.pose(secs, positions);
-      if (first) show();
-      draw(positions, seen);
-    }, own.signal);
+    await turns.run(async (signal) => {
+      try {
+        await source((secs, positions, seen) => {
+          const first = !teaching.hasPoses;
+          teaching.pose(secs, positions);
+          if (first) show();
+          draw(positions, seen);
+        }, signal);
+      } finally {
+        teaching.finish();
+      }
+    });
   } finally {
-    teaching.finish();
-    if (running === own) running = null;
-    end();
+    running--;
   }
 }
 
@@ -160,8 +159,8 @@ const onFile = (id, job) => on(id, "change", async () => {
 });
 
 on("camera", "click", () => run(camera(at("video"), MEDIAPIPE, at("track").value)));
-on("track", "change", () => running?.abort());
-on("stop", "click", () => running?.abort());
+on("track", "change", () => turns.stop());
+on("stop", "click", () => turns.stop());
 onFile("source-file", async (file) => run(file.type.startsWith("video/") ? film(at("video"), MEDIAPIPE, at("track").value, file) : recorded(await file.text())));
 on("sample", "submit", record);
 at("sample").addEventListener("submit", (event) => event.preventDefault());

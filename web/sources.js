@@ -3,7 +3,7 @@
 // places of parts of body and hands by name, metres, Y up; what `drawLandmarks` draws, if there is a picture.
 import { posesOf } from "./teaching.js";
 
-export { camera, drawLandmarks, film } from "./vendor/camera.js";
+export { camera, drawLandmarks, film, inTurn } from "./vendor/camera.js";
 export { handsOf, partsOf } from "./vendor/mediapipe.js";
 
 const aborted = (signal) => new Promise((done) => signal.addEventListener("abort", done, { once: true }));

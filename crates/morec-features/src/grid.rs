@@ -4,6 +4,12 @@
 /// interpolating it would invent motion.
 pub const MAX_GAP_SECS: f64 = 0.5;
 
+/// True if a pose at `time_secs` begins a new stretch after one at `last_secs`: it comes too long after it, or from another clock.
+#[inline]
+pub fn breaks_stretch(last_secs: f64, time_secs: f64) -> bool {
+    time_secs > last_secs + MAX_GAP_SECS || time_secs < last_secs - MAX_GAP_SECS
+}
+
 /// Clock of a stream at a fixed rate: which grid frames a new pose completes, and where between two poses they lie.
 ///
 /// `S` is what is known of a pose. The first pose of a stretch is its grid frame 0.
@@ -56,8 +62,8 @@ impl<S: Clone> Grid<S> {
 
     /// True if a pose at `time_secs` would begin a new stretch.
     pub fn breaks_at(&self, time_secs: f64) -> bool {
-        let breaks = |last: f64| time_secs > last + MAX_GAP_SECS || time_secs < last - MAX_GAP_SECS;
-        self.last_secs.is_some_and(breaks)
+        self.last_secs
+            .is_some_and(|last_secs| breaks_stretch(last_secs, time_secs))
     }
 
     /// True if a pose at `time_secs` comes too late to count, or at no time at all.

@@ -30,7 +30,7 @@ mod stream;
 mod weights;
 
 pub use classes::{ClassId, ClassInfo};
-pub use grid::{Grid, GridFrame, MAX_GAP_SECS};
+pub use grid::{Grid, GridFrame, MAX_GAP_SECS, breaks_stretch};
 pub use layout::RowLayout;
 pub use mirror::{mirrored_rows, opposite_bone, reflected_direction};
 pub use mocap::pose::{

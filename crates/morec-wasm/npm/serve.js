@@ -13,7 +13,7 @@ Serves a page that teaches motions before the camera and recognises them. Nothin
 
   --port PORT         the port of 127.0.0.1 (8000; 0: any that is free)
   --mediapipe FOLDER  MediaPipe's files, which see bodies and hands in pictures: unpacked npm packages, or
-                      @mediapipe/tasks-vision with a model beside it. Without it, the packages that npm has:
+                      @mediapipe/tasks-vision with a model beside it. Without it, the packages installed beside morec:
                       npx -p morec -p @mediapipe/pose -p @mediapipe/hands morec`;
 const TYPES = {
   ".css": "text/css", ".html": "text/html", ".js": "text/javascript", ".mjs": "text/javascript", ".wasm": "application/wasm",

@@ -48,6 +48,22 @@ export const film = (video, folder, what, file) => async (take, signal) => {
   }
 };
 
+/** Jobs of which one runs at a time: a new one ends the one before, and begins when that has ended. A job is given a signal to end. */
+export function inTurn() {
+  let own = new AbortController();
+  let ended = Promise.resolve();
+  return {
+    stop: () => own.abort(),
+    run(job) {
+      own.abort();
+      const { signal } = (own = new AbortController());
+      const turn = ended.then(() => (signal.aborted ? undefined : job(signal)));
+      ended = turn.catch(() => {});
+      return turn;
+    },
+  };
+}
+
 /** The landmarks over the picture in `video`. */
 export function drawLandmarks(drawing, video, seen) {
   const { canvas } = drawing;

@@ -1,5 +1,5 @@
 // The page of `--listen webcam`: poses go to morec as lines of JSON.
-import { camera, drawLandmarks } from "./camera.js";
+import { camera, drawLandmarks, inTurn } from "./camera.js";
 
 const at = (id) => document.getElementById(id);
 const say = (text) => (at("state").textContent = text);
@@ -28,21 +28,13 @@ function take(secs, positions, seen) {
   if (readyState === WebSocket.OPEN && Object.keys(positions).length > 0) socket.send(JSON.stringify({ t: secs, positions }));
 }
 
-let stop = new AbortController();
-let ended = Promise.resolve();
+const turns = inTurn();
 
-/** Tracks what the list says, once what ran before has ended. */
-async function run() {
-  stop.abort();
-  const own = (stop = new AbortController());
-  const before = ended;
-  ended = (async () => {
-    await before;
-    if (own.signal.aborted) return;
-    say(socket?.readyState === WebSocket.OPEN ? "morec listens." : "Starting the camera …");
-    await camera(at("video"), "mediapipe", at("track").value)(take, own.signal);
-  })().catch((error) => say(String(error?.message ?? error)));
-}
+/** Tracks what the list says. */
+const run = () => turns.run((signal) => {
+  say(socket?.readyState === WebSocket.OPEN ? "morec listens." : "Starting the camera …");
+  return camera(at("video"), "mediapipe", at("track").value)(take, signal);
+}).catch((error) => say(String(error?.message ?? error)));
 
 at("track").value = document.body.dataset.track;
 at("track").addEventListener("change", run);

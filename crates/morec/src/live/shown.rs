@@ -1,6 +1,6 @@
 //! Which bones a stream really shows.
 
-use crate::features::{ALL_BONES, BoneSet, KeyPose, MAX_GAP_SECS};
+use crate::features::{ALL_BONES, BoneSet, KeyPose, breaks_stretch};
 
 /// What is looked at together.
 const WINDOW_SECS: f64 = 1.0;
@@ -13,7 +13,7 @@ const LEAST_POSES: u16 = 5;
 pub struct ShownBones {
     /// What the model can use.
     possible: BoneSet,
-    /// What is never left out: where hands are kept apart, one that is seen alone would be taken for either.
+    /// What is used on, if it was: where hands are kept apart, one that is seen alone would be taken for either.
     kept: BoneSet,
     is_first: bool,
     /// True if the last window showed nothing of that, and something else.
@@ -50,11 +50,17 @@ impl ShownBones {
         if self.possible.is_empty() || (!self.is_first && used == self.possible) {
             return None;
         }
-        let breaks = |(_, last): (f64, f64)| !(0.0..=MAX_GAP_SECS).contains(&(time_secs - last));
-        if self.secs.is_some_and(breaks) {
+        if !time_secs.is_finite() {
+            return None;
+        }
+        if (self.secs).is_some_and(|(_, last_secs)| breaks_stretch(last_secs, time_secs)) {
             self.begin_window();
         }
-        let (begun_secs, _) = self.secs.unwrap_or((time_secs, time_secs));
+        let (begun_secs, last_secs) = self.secs.unwrap_or((time_secs, time_secs));
+        // The recogniser leaves out what was overtaken, too.
+        if time_secs < last_secs {
+            return None;
+        }
         self.secs = Some((begun_secs, time_secs));
         for bone in BoneSet::of_pose(pose).indices() {
             self.counts[bone] += 1;
@@ -73,14 +79,13 @@ impl ShownBones {
         }
         let usable = shown.and(self.possible);
         self.is_other = usable.is_empty();
-        let usable = usable.or(self.kept);
-        self.is_first = was_first && usable.is_empty();
-        match (was_first, usable.is_empty()) {
-            (true, true) => Some(shown),
-            (true, false) => Some(usable),
-            (false, _) => Some(used.or(usable)),
-        }
-        .filter(|wanted| *wanted != used)
+        self.is_first = was_first && self.is_other;
+        let wanted = match (was_first, self.is_other) {
+            (true, true) => shown,
+            (true, false) => usable.or(self.kept.and(used)),
+            (false, _) => used.or(usable),
+        };
+        (wanted != used).then_some(wanted)
     }
 
     /// True if the last second showed nothing that the model can use, and something else: a performer of another kind.
@@ -103,6 +108,7 @@ impl ShownBones {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::features::Hand;
     use crate::math::Vec3;
     use crate::roles::Role;
 
@@ -165,7 +171,44 @@ mod tests {
             last = last.or(watch.take(possible, secs, &showing(&ARM)));
         }
         assert_eq!(last, Some(arm));
+        // Poses that were overtaken on the way do not count, and neither does one at no time.
+        let mut watch = ShownBones::new(possible);
+        let mut last = None;
+        for frame in 0..60 {
+            let secs = f64::from(frame) / 30.0;
+            for secs in [secs, secs - 0.05, f64::NAN] {
+                last = last.or(watch.take(possible, secs, &showing(&ARM)));
+            }
+        }
+        assert_eq!(last, Some(arm));
         // Two poses a second say too little.
         assert_eq!(used(2.0, 10.0, |_| ARM.to_vec()), [all]);
+    }
+
+    /// A hand by its wrist and fingers.
+    fn hand(hand: Hand) -> Vec<Role> {
+        let points = hand.points();
+        [&[points.wrist], points.fingers.as_flattened()].concat()
+    }
+
+    #[test]
+    fn hands_that_are_kept_apart_stay_so_and_none_is_added() {
+        let apart = BoneSet::LEFT_HAND.or(BoneSet::HAND);
+        let windows = |used, show: &[Role]| {
+            let mut watch = ShownBones::new(apart);
+            let poses = (0..90).map(|frame| f64::from(frame) / 30.0);
+            let wanted: Vec<BoneSet> = poses
+                .filter_map(|secs| watch.take(used, secs, &showing(show)))
+                .collect();
+            (wanted, watch.is_other())
+        };
+        // One that was announced and is not seen may come.
+        assert_eq!(windows(apart, &hand(Hand::Right)), (vec![], false));
+        // One that was not announced is not waited for.
+        assert_eq!(windows(BoneSet::HAND, &hand(Hand::Right)), (vec![], false));
+        // A performer of another kind.
+        let (wanted, is_other) = windows(apart, &ARM);
+        assert!(is_other && wanted.iter().all(|bones| bones.and(apart).is_empty()));
+        assert!(!wanted.is_empty());
     }
 }

@@ -17,7 +17,7 @@ use crate::roles::Role;
 /// | `rotations` | f, j, 4 | `parent_from_joint`, quaternions x y z w; absent in a clip of points |
 /// | `local_positions` | f, j, 3 | positions in the parent's frame, metres; absent in a clip of points |
 /// | `joint_names`, `parents` | j | names; the parent's number, −1 for a root |
-/// | `role_names`, `role_joints` | 18 | the roles, and the joint that plays each, −1 for none |
+/// | `role_names`, `role_joints` | [`Role::COUNT`] | the roles, and the joint that plays each, −1 for none |
 /// | `features`, `feature_names` | r, d; d | feature rows and their columns; absent where hips are not known |
 /// | `rate_hz`, `feature_rate_hz` | | frames and rows a second |
 /// | `rest_frames` | 2 | start and stop of the rest pose at the beginning |
