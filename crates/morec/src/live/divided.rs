@@ -7,7 +7,7 @@
 use crate::clip::{Clip, Span};
 use crate::features::{BoneSet, FeatureStream, KeyPose, all_bones_of_clip, for_each_pose};
 use crate::roles::RoleMap;
-use crate::templates::{ClassMatcher, ClassMatches, Metric, TemplateModel, reach_of};
+use crate::templates::{ClassMatcher, ClassMatches, Metric, TemplateModel};
 
 use super::of_clip::recognize_with;
 use super::start::check_shown;
@@ -77,7 +77,7 @@ impl PartMatcher {
             steps: MatchSteps {
                 matcher: ClassMatcher::new(&part, &metric),
                 matches: ClassMatches::new(part.longest()),
-                reach: reach_of(&part),
+                reach: part.reach(),
                 mapped: vec![0.0; metric.dim()],
                 metric,
             },

@@ -5,7 +5,9 @@ use std::sync::Arc;
 use crate::decode::FAR;
 use crate::features::Rows;
 
-use super::kernel::{self, Cells, LANES, Lanes, interleaved};
+use super::dot::{self, AT_ONCE, Dots, Pairs};
+use super::kernel::{self, Cells, CellsFixed, LANES};
+use super::units::{self, StreamRows, Units};
 
 /// Cells left empty before each template, so that transitions from "before the first row" cost [`FAR`] without
 /// a branch.
@@ -31,14 +33,22 @@ const GUARDS: usize = 2;
 #[derive(Debug, Clone)]
 pub struct TemplateBank {
     dim: usize,
-    /// The cells' rows, [`interleaved`].
-    rows: Arc<[Lanes]>,
-    /// `|T_j|²` of every cell.
-    norms: Arc<[Lanes]>,
+    units: Units,
+    /// The cells' rows: pair by pair of coordinates, of all cells of a block together.
+    rows: Arc<[Pairs]>,
+    fixed: Arc<[CellsFixed]>,
+    dots: Dots,
     /// First and last cell of each template.
     extents: Arc<[(usize, usize)]>,
-    /// At this tick and the one before, in turn.
+    last: Arc<[usize]>,
+    /// At the last tick and the one before, in turn.
     cells: Vec<Cells>,
+    /// The rows of the last ticks.
+    stream: StreamRows,
+    /// Totals and ages of the templates' last cells at each of those ticks.
+    ends: Vec<(f32, i32)>,
+    /// The tick that is looked at, of those.
+    shown: usize,
     tick: usize,
 }
 
@@ -60,27 +70,33 @@ impl TemplateBank {
             extents.push((cells, (cells + template.len()).saturating_sub(1)));
             cells += template.len() + GUARDS;
         }
-        let cell_rows = || {
-            let pairs = templates.iter().zip(&extents);
-            pairs.flat_map(|(template, (first, _))| {
-                template
-                    .iter()
-                    .enumerate()
-                    .map(move |(j, r)| (first + j, r))
-            })
-        };
-        let rows = interleaved(cells, dim, cell_rows());
-        let blocks = cells.div_ceil(LANES);
-        let mut norms = vec![[0.0; LANES]; blocks];
-        for (cell, row) in cell_rows() {
-            norms[cell / LANES][cell % LANES] = row.iter().map(|v| v * v).sum();
+        let units = Units::of(templates);
+        let (blocks, pairs) = (cells.div_ceil(LANES), dim.div_ceil(2));
+        let mut rows = vec![Pairs([[0; 2]; LANES]); blocks * pairs];
+        let mut fixed = vec![CellsFixed::OUTSIDE; blocks];
+        for (template, (first, _)) in templates.iter().zip(&extents) {
+            for (cell, row) in (*first..).zip(template.iter()) {
+                let (block, lane) = (cell / LANES, cell % LANES);
+                let mut norm = 0;
+                for (place, pair) in rows[block * pairs..].iter_mut().zip(units.pairs(row)) {
+                    place.0[lane] = pair;
+                    norm += units::norm(&[pair]);
+                }
+                fixed[block].set(lane, norm, cell == *first);
+            }
         }
         Self {
             dim,
+            units,
             rows: rows.into(),
-            norms: norms.into(),
+            fixed: fixed.into(),
+            dots: dot::fastest(),
+            last: extents.iter().map(|(_, last)| *last).collect(),
             extents: extents.into(),
             cells: vec![Cells::EMPTY; blocks],
+            stream: StreamRows::new(dim),
+            ends: vec![(FAR, 0); AT_ONCE * templates.len()],
+            shown: 0,
             tick: 0,
         }
     }
@@ -120,38 +136,59 @@ impl TemplateBank {
     /// # Panics
     /// `z` has another width than the templates.
     pub fn step(&mut self, z: &[f32]) {
-        assert_eq!(
-            z.len(),
-            self.dim,
-            "a stream row of another width than the templates'"
-        );
-        let now = self.tick % 2;
-        kernel::step(&self.rows, &self.norms, z, now, &mut self.cells);
-        for &(first, last) in self.extents.iter() {
-            for guard in first - GUARDS..first {
-                self.cells[guard / LANES].total[now][guard % LANES] = FAR;
-            }
-            if last >= first {
-                let block = &mut self.cells[first / LANES];
-                block.total[now][first % LANES] = block.local[first % LANES];
-                block.age[now][first % LANES] = 0;
-            }
-        }
-        self.tick += 1;
+        self.step_through(std::iter::once(z), |_| {});
     }
 
-    /// Match of template `index` to a stretch that ends with the last tick stepped.
+    /// Advances by the stream's rows, of `dim` values each, and shows itself at each of them to `look`, which may ask what
+    /// [`matched`](Self::matched). As one by one, and faster: a template's row comes from memory once for some of them.
+    ///
+    /// # Panics
+    /// A row has another width than the templates.
+    pub fn step_through<'r>(
+        &mut self,
+        rows: impl Iterator<Item = &'r [f32]>,
+        mut look: impl FnMut(&Self),
+    ) {
+        let mut rows = rows.fuse();
+        loop {
+            self.stream.count = 0;
+            for z in rows.by_ref().take(AT_ONCE) {
+                assert_eq!(
+                    z.len(),
+                    self.dim,
+                    "a stream row of another width than the templates'"
+                );
+                self.stream.push(z, self.units);
+            }
+            if self.stream.count == 0 {
+                return;
+            }
+            self.advance();
+            for shown in 0..self.stream.count {
+                self.shown = shown;
+                look(self);
+            }
+        }
+    }
+
+    /// Advances by the ticks of the rows in `stream`.
+    fn advance(&mut self) {
+        kernel::step(
+            (&self.rows, &self.fixed, self.units.square()),
+            (&self.stream, self.dots),
+            self.tick % 2,
+            &mut self.cells,
+            (&self.last, &mut self.ends),
+        );
+        self.tick += self.stream.count;
+    }
+
+    /// Match of template `index` to a stretch that ends with the last tick stepped, or the one that is shown.
     pub fn matched(&self, index: usize) -> Match {
         let length = self.template_len(index);
-        if length == 0 || self.tick == 0 {
-            return Match {
-                distance: FAR,
-                age: 0,
-            };
-        }
-        let (total, age) = self.at(self.extents[index].1);
+        let (total, age) = self.ends[self.shown * self.len() + index];
         // A path that came out of a guard cell is no path.
-        if total >= FAR / 2.0 {
+        if length == 0 || self.tick == 0 || total >= FAR / 2.0 {
             return Match {
                 distance: FAR,
                 age: 0,
@@ -312,6 +349,41 @@ mod tests {
                     None => prop_assert!(best > 1e20),
                 }
             }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn values_between_units_and_rows_beyond_them_match_nearly_alike(
+            template in prop::collection::vec(-3.0f32..3.0, 3 * 12),
+            stream in prop::collection::vec(prop_oneof![30 => -3.0f32..3.0, 1 => -1e4f32..1e4], 3 * 40),
+        ) {
+            let (template, stream) = (Rows::from_values(3, template), Rows::from_values(3, stream));
+            let mut bank = TemplateBank::new(std::slice::from_ref(&template), 3);
+            for (z, (distance, _)) in stream.iter().zip(plain(&template, &stream)) {
+                bank.step(z);
+                let found = f64::from(bank.matched(0).distance);
+                prop_assert!(distance > 1e20 || (found - distance).abs() < 1e-3 * distance, "{found} {distance}");
+            }
+        }
+
+        #[test]
+        fn many_rows_match_as_one_by_one(
+            templates in prop::collection::vec(rows(0..90), 1..5),
+            stream in rows(1..40),
+        ) {
+            let mut bank = TemplateBank::new(&templates, 3);
+            let mut together = bank.clone();
+            let all = |bank: &TemplateBank| (0..templates.len()).map(|i| bank.matched(i)).collect::<Vec<_>>();
+            let one_by_one = stream.iter().map(|z| {
+                bank.step(z);
+                all(&bank)
+            });
+            let one_by_one: Vec<_> = one_by_one.collect();
+            let mut found = vec![];
+            together.step_through(stream.iter(), |bank| found.push(all(bank)));
+            prop_assert_eq!(found, one_by_one);
+            prop_assert_eq!(together.partial(0, 1), bank.partial(0, 1));
         }
     }
 

@@ -18,6 +18,8 @@ pub struct ClassMatcher {
     stretches: Stretches,
     template_classes: Arc<[ClassId]>,
     gate: MatchGate,
+    /// See [`TemplateModel::reach`].
+    reach: f32,
     near: Vec<ClassDistance>,
     negative: f32,
 }
@@ -38,6 +40,7 @@ impl ClassMatcher {
             negatives,
             template_classes: model.samples.iter().map(|s| s.class).collect(),
             gate: MatchGate::plain(model.decode.rest_share(model.rule())),
+            reach: model.reach(),
             near: vec![ClassDistance::NONE; model.classes.len()],
             negative: FAR,
         }
@@ -72,9 +75,8 @@ impl ClassMatcher {
             ..self.gate
         };
         for i in 0..self.negatives.bank().len() {
-            let nearer = self
-                .negatives
-                .nearer(i, self.negative, all, &mut self.stretches);
+            let within = self.negative.min(self.reach);
+            let nearer = self.negatives.nearer(i, within, all, &mut self.stretches);
             if let Some(found) = nearer {
                 self.negative = found.distance;
             }
@@ -85,9 +87,8 @@ impl ClassMatcher {
         self.near.fill(ClassDistance::NONE);
         for (template, class) in self.template_classes.iter().enumerate() {
             let best = &mut self.near[class.index()];
-            let nearer =
-                self.matcher
-                    .nearer(template, best.distance, self.gate, &mut self.stretches);
+            let within = best.distance.min(self.reach);
+            let nearer = (self.matcher).nearer(template, within, self.gate, &mut self.stretches);
             if let Some(found) = nearer {
                 *best = ClassDistance {
                     distance: found.distance,
@@ -99,12 +100,12 @@ impl ClassMatcher {
         }
     }
 
-    /// The nearest match of each class at the last tick that is no body at rest.
+    /// The nearest match of each class at the last tick that is no body at rest, of those that [have a say](TemplateModel::reach).
     pub fn near(&self) -> &[ClassDistance] {
         &self.near
     }
 
-    /// Distance of the nearest negative at the last tick; [`FAR`] if nothing matches.
+    /// Distance of the nearest negative at the last tick; [`FAR`] if none has a say.
     pub fn negative(&self) -> f32 {
         self.negative
     }

@@ -2,8 +2,6 @@
 
 use crate::decode::{ClassDistance, FAR};
 
-use super::TemplateModel;
-
 /// First bytes of [`ClassMatches::to_bytes`]: the name and the version.
 const MAGIC: [u8; 4] = *b"MCM1";
 /// Bytes of what stands before the ticks.
@@ -12,8 +10,6 @@ const HEADER_BYTES: usize = 12;
 const MATCH_BYTES: usize = 18;
 /// Rows of a template at most: nine hours of ticks.
 const MAX_LONGEST: u32 = 1 << 20;
-/// Candidates look at distances up to this far whatever the threshold is (`Evidence`), and a margin.
-const LEAST_REACH: f32 = 9.5;
 
 /// Nearest match of each class and nearest negative at each tick of a stream. Matches too far to have a say in any
 /// decision are left out.
@@ -49,15 +45,6 @@ pub enum ClassMatchesError {
         /// Of another.
         other: usize,
     },
-}
-
-/// Distances from here on have no say in what `model` reports. The largest distance that counts is the largest
-/// threshold; the end of a stream compares it with the tick before by [`end_fall`](crate::decode::DecodeParams::end_fall).
-pub fn reach_of(model: &TemplateModel) -> f32 {
-    let thresholds = model.class_thresholds.iter().copied();
-    let verified = model.verifier.iter().map(|v| v.reach);
-    let largest = thresholds.chain(verified).fold(model.threshold, f32::max);
-    (largest * (1.0 + model.decode.end_fall)).max(LEAST_REACH)
 }
 
 impl ClassMatches {

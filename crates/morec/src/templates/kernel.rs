@@ -2,11 +2,14 @@
 //!
 //! Each is an ordinary loop over lanes that do not depend on each other, so every choice does the same additions in
 //! the same order and gives the same bits; multiplications and additions are never fused. Without the choosing they
-//! would run on what every processor of the kind has (on x86-64: SSE2, four numbers at a time).
+//! would run on what every processor of the kind has (on x86-64: SSE2, four numbers at a time). Products of whole numbers are in [`dot`](super::dot).
 
 use multiversion::multiversion;
 
 use crate::decode::FAR;
+
+use super::dot::{AT_ONCE, Dots, Pairs};
+use super::units::StreamRows;
 
 /// Cells or exemplars that are worked on at once, kept in registers while the coordinates go by: four of AVX-512, eight
 /// of AVX2, sixteen of SSE2 and NEON. Memory is then read once and in order, which is what bounds the time.
@@ -53,89 +56,163 @@ impl Cells {
     };
 }
 
-/// The last of a block's cells, which the first of the next look back to.
+/// What never changes of [`LANES`] cells, but for their rows.
+#[derive(Debug, Clone, Copy)]
+#[repr(align(64))]
+pub struct CellsFixed {
+    /// `|T_j|²`, in whole units.
+    pub norm: [i32; LANES],
+    /// Added to `c(j,t)`: [`FAR`] where there is no template, else 0.
+    pub outside: Lanes,
+    /// Total of a path that begins here, before `c(j,t)`: 0 in the first cell of a template and where there is none, else [`FAR`].
+    pub begun: Lanes,
+}
+
+impl CellsFixed {
+    /// Where there is no template.
+    pub const OUTSIDE: Self = Self {
+        norm: [0; LANES],
+        outside: [FAR; LANES],
+        begun: [0.0; LANES],
+    };
+
+    /// A cell of a template.
+    pub fn set(&mut self, lane: usize, norm: i32, is_first: bool) {
+        self.norm[lane] = norm;
+        self.outside[lane] = 0.0;
+        self.begun[lane] = if is_first { 0.0 } else { FAR };
+    }
+}
+
+/// The last of a block's cells at a tick, which the first of the next look back to.
+#[derive(Clone, Copy)]
 struct Behind {
     local: f32,
     before: [(f32, i32); 2],
     earlier: (f32, i32),
 }
 
-/// One tick of [`TemplateBank`](super::TemplateBank): distances of the cells' rows `T` from `z`, as `max(0, |T|² + |z|² − 2 T·z)`
-/// (cancellation can leave a hair below zero), and the three transitions of every cell. `rows` are [`interleaved`], `norms`
-/// hold the `|T|²`; the totals and ages at `now` are those of two ticks before and become those of this tick.
+/// Ticks of [`TemplateBank`](super::TemplateBank): the squared distances of the cells' rows `T` from each `z` of `stream`, as
+/// `|T|² + |z|² − 2 T·z` in whole units, of which one is `unit` of a squared distance, and the three transitions of every cell.
+/// Of `cells`, the totals and ages at `now` are those of two ticks before. Writes totals and ages of the cells `last` at each tick to
+/// `ends`, tick by tick.
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
-pub fn step(rows: &[Lanes], norms: &[Lanes], z: &[f32], now: usize, cells: &mut [Cells]) {
-    let z_norm: f32 = z.iter().map(|v| v * v).sum();
-    let mut behind = Behind {
+pub fn step(
+    (rows, fixed, unit): (&[Pairs], &[CellsFixed], f32),
+    (stream, dots): (&StreamRows, Dots),
+    now: usize,
+    cells: &mut [Cells],
+    (last, ends): (&[usize], &mut [(f32, i32)]),
+) {
+    let nothing = Behind {
         local: 0.0,
         before: [(FAR, 0); 2],
         earlier: (FAR, 0),
     };
-    for ((block, norm), cells) in rows.chunks_exact(z.len()).zip(norms).zip(cells) {
-        // Columns with the cells behind them in front: a step back along the template is a step back in these.
-        let [mut before, mut earlier] = [[0.0; LANES + 2], [0.0; LANES + 2]];
-        let [mut before_age, mut earlier_age] = [[0; LANES + 2], [0; LANES + 2]];
-        [(before[0], before_age[0]), (before[1], before_age[1])] = behind.before;
-        (earlier[1], earlier_age[1]) = behind.earlier;
-        before[2..].copy_from_slice(&cells.total[1 - now]);
-        before_age[2..].copy_from_slice(&cells.age[1 - now]);
-        earlier[2..].copy_from_slice(&cells.total[now]);
-        earlier_age[2..].copy_from_slice(&cells.age[now]);
-
-        let local_before = cells.local;
-        distances(block, norm, z_norm, z, &mut cells.local);
-        let mut local = [0.0; LANES + 1];
-        local[0] = behind.local;
-        local[1..].copy_from_slice(&cells.local);
-
-        let (total, age) = (&mut cells.total[now], &mut cells.age[now]);
-        for lane in 0..LANES {
-            let mut best = before[lane + 1] + local[lane + 1];
-            let mut best_age = before_age[lane + 1] + 1;
-            let two_stream = earlier[lane + 1] + 0.5 * (local_before[lane] + local[lane + 1]);
-            let better = two_stream < best;
-            best = if better { two_stream } else { best };
-            best_age = if better {
-                earlier_age[lane + 1] + 2
-            } else {
-                best_age
+    let mut behind = [nothing; AT_ONCE];
+    let count = stream.count;
+    let pairs = stream.pairs.each_ref().map(Vec::as_slice);
+    let width = pairs[0].len();
+    let mut sums = [[0; LANES]; AT_ONCE];
+    let mut end = 0;
+    for (place, (fixed, cells)) in fixed.iter().zip(cells).enumerate() {
+        let rows = &rows[place * width..][..width];
+        dots(rows, &pairs[..count], &mut sums[..count]);
+        let first_end = end;
+        for tick in 0..count {
+            let local = match stream.norms[tick] {
+                Some(norm) => distances(fixed, norm, &sums[tick], unit),
+                None => far_distances(fixed, rows, &stream.exact[tick], unit),
             };
-            let two_template = before[lane] + local[lane] + local[lane + 1];
-            let better = two_template < best;
-            total[lane] = if better { two_template } else { best };
-            age[lane] = if better {
-                before_age[lane] + 1
-            } else {
-                best_age
-            };
+            behind[tick] = advance(fixed, &local, &behind[tick], cells, (now + tick) % 2);
+            end = first_end;
+            while let Some(cell) = last.get(end)
+                && cell / LANES == place
+            {
+                let (now, lane) = ((now + tick) % 2, cell % LANES);
+                ends[tick * last.len() + end] = (cells.total[now][lane], cells.age[now][lane]);
+                end += 1;
+            }
         }
-        behind = Behind {
-            local: local[LANES],
-            before: [
-                (before[LANES], before_age[LANES]),
-                (before[LANES + 1], before_age[LANES + 1]),
-            ],
-            earlier: (earlier[LANES + 1], earlier_age[LANES + 1]),
+    }
+}
+
+/// The recurrence, for cells whose rows are at the distances `local`. Returns what the cells behind them ask for.
+#[inline(always)]
+fn advance(
+    fixed: &CellsFixed,
+    local: &Lanes,
+    behind: &Behind,
+    cells: &mut Cells,
+    now: usize,
+) -> Behind {
+    // Columns with the cells behind them in front: a step back along the template is a step back in these.
+    let [mut before, mut earlier] = [[0.0; LANES + 2], [0.0; LANES + 2]];
+    let [mut before_age, mut earlier_age] = [[0; LANES + 2], [0; LANES + 2]];
+    [(before[0], before_age[0]), (before[1], before_age[1])] = behind.before;
+    (earlier[1], earlier_age[1]) = behind.earlier;
+    before[2..].copy_from_slice(&cells.total[1 - now]);
+    before_age[2..].copy_from_slice(&cells.age[1 - now]);
+    earlier[2..].copy_from_slice(&cells.total[now]);
+    earlier_age[2..].copy_from_slice(&cells.age[now]);
+    let local_before = cells.local;
+    cells.local = *local;
+    let mut shifted = [0.0; LANES + 1];
+    shifted[0] = behind.local;
+    shifted[1..].copy_from_slice(local);
+    let local = shifted;
+
+    let (total, age) = (&mut cells.total[now], &mut cells.age[now]);
+    for lane in 0..LANES {
+        let mut best = before[lane + 1] + local[lane + 1];
+        let mut best_age = before_age[lane + 1] + 1;
+        let mut take = |total: f32, age: i32| {
+            let better = total < best;
+            best = if better { total } else { best };
+            best_age = if better { age } else { best_age };
         };
+        let slow = earlier[lane + 1] + 0.5 * (local_before[lane] + local[lane + 1]);
+        take(slow, earlier_age[lane + 1] + 2);
+        let fast = before[lane] + local[lane] + local[lane + 1];
+        take(fast, before_age[lane] + 1);
+        take(fixed.begun[lane] + local[lane + 1], 0);
+        total[lane] = best;
+        age[lane] = best_age;
+    }
+    Behind {
+        local: local[LANES],
+        before: [
+            (before[LANES], before_age[LANES]),
+            (before[LANES + 1], before_age[LANES + 1]),
+        ],
+        earlier: (earlier[LANES + 1], earlier_age[LANES + 1]),
     }
 }
 
 #[inline(always)]
-fn distances(block: &[Lanes], norm: &Lanes, z_norm: f32, z: &[f32], out: &mut Lanes) {
-    let mut cost = *norm;
+fn distances(fixed: &CellsFixed, norm: i32, products: &[i32; LANES], unit: f32) -> Lanes {
+    let mut out = [0.0; LANES];
     for lane in 0..LANES {
-        cost[lane] += z_norm;
+        let units = (fixed.norm[lane] + norm) - 2 * products[lane];
+        out[lane] = units as f32 * unit + fixed.outside[lane];
     }
-    for (t, value) in block.iter().zip(z) {
-        let twice = -2.0 * value;
+    out
+}
+
+/// The same for a `z` that is too long for whole units.
+#[inline(always)]
+fn far_distances(fixed: &CellsFixed, rows: &[Pairs], z: &[f32], unit: f32) -> Lanes {
+    let mut out = [0.0; LANES];
+    for (pairs, z) in rows.iter().zip(z.as_chunks::<2>().0) {
         for lane in 0..LANES {
-            cost[lane] += twice * t[lane];
+            let [a, b] = pairs.0[lane].map(f32::from);
+            out[lane] += (a - z[0]) * (a - z[0]) + (b - z[1]) * (b - z[1]);
         }
     }
     for lane in 0..LANES {
-        cost[lane] = cost[lane].max(0.0);
+        out[lane] = out[lane] * unit + fixed.outside[lane];
     }
-    *out = cost;
+    out
 }
 
 /// `|T − z|²` for every row `T` of `rows`, as [`interleaved`]: the sum of the squares in order of the coordinates.
@@ -327,57 +404,6 @@ mod tests {
             combination(lines, &row, &mut out);
             let sum = |k: usize| lines.chunks_exact(dim).zip(&row).fold(0.0, |s, (line, v)| s + line[k] * v);
             prop_assert_eq!(bits(&out), bits(&(0..dim).map(sum).collect::<Vec<f32>>()));
-        }
-
-        #[test]
-        fn a_tick_is_as_it_is_written((dim, rows, _) in table(), stream in values(9 * 8)) {
-            let rows: Vec<&[f32]> = rows.chunks_exact(dim).collect();
-            let n = rows.len();
-            let blocks = interleaved(n, dim, rows.iter().copied().enumerate());
-            let norm = |row: &[f32]| row.iter().map(|v| v * v).sum::<f32>();
-            let mut norms = vec![[0.0; LANES]; n.div_ceil(LANES)];
-            rows.iter().enumerate().for_each(|(i, row)| norms.as_flattened_mut()[i] = norm(row));
-            let mut cells = vec![Cells::EMPTY; norms.len()];
-            // The column before the last, and the last one: cost, total and age of each cell.
-            let nothing = vec![(0.0f32, FAR, 0i32); n];
-            let (mut earlier, mut before) = (nothing.clone(), nothing);
-            for (tick, z) in stream.chunks_exact(dim).enumerate() {
-                // Something to begin with: without first cells every path would come from nowhere.
-                if tick == 2 {
-                    before.iter_mut().zip(0..).for_each(|(cell, j)| (cell.1, cell.2) = ((j % 3) as f32, j));
-                    before.iter().enumerate().for_each(|(j, (_, total, age))| {
-                        cells[j / LANES].total[1][j % LANES] = *total;
-                        cells[j / LANES].age[1][j % LANES] = *age;
-                    });
-                }
-                step(&blocks, &norms, z, tick % 2, &mut cells);
-                let cost = |row: &&[f32]| {
-                    let from = norm(row) + norm(z);
-                    row.iter().zip(z).fold(from, |sum, (t, v)| sum + -2.0 * v * t).max(0.0)
-                };
-                let costs: Vec<f32> = rows.iter().map(cost).collect();
-                let back = |column: &[(f32, f32, i32)], j: usize, by: usize| {
-                    j.checked_sub(by).map_or((0.0, FAR, 0), |j| column[j])
-                };
-                let now: Vec<_> = (0..n).map(|j| {
-                    let (even, slow, fast) = (back(&before, j, 1), back(&earlier, j, 1), back(&before, j, 2));
-                    let cost_1 = if j > 0 { costs[j - 1] } else { 0.0 };
-                    let ways = [
-                        (even.1 + costs[j], even.2 + 1),
-                        (slow.1 + 0.5 * (before[j].0 + costs[j]), slow.2 + 2),
-                        (fast.1 + cost_1 + costs[j], fast.2 + 1),
-                    ];
-                    let best = ways.into_iter().reduce(|a, b| if b.0 < a.0 { b } else { a }).unwrap();
-                    (costs[j], best.0, best.1)
-                }).collect();
-                for (j, (cost, total, age)) in now.iter().enumerate() {
-                    let (block, lane) = (&cells[j / LANES], j % LANES);
-                    prop_assert_eq!(block.local[lane].to_bits(), cost.to_bits());
-                    prop_assert_eq!(block.total[tick % 2][lane].to_bits(), total.to_bits());
-                    prop_assert_eq!(block.age[tick % 2][lane], *age);
-                }
-                (earlier, before) = (before, now);
-            }
         }
 
         #[test]

@@ -6,8 +6,8 @@ use crate::features::{BoneSet, FeatureParams, RowLayout, Rows};
 use crate::math::portable;
 
 use super::{
-    Activities, Calibration, Exemplars, HeldPoses, OperatingPoint, PackedSymmetric, PerformerKind,
-    StrangerGate, Verifier, threshold_at,
+    Activities, Calibration, Evidence, Exemplars, HeldPoses, OperatingPoint, PackedSymmetric,
+    PerformerKind, StrangerGate, Verifier, threshold_at,
 };
 
 /// One labelled sample's rows, before the metric.
@@ -241,6 +241,24 @@ impl TemplateModel {
     pub(super) fn calibration_in_use(&self) -> Option<Calibration> {
         let stale = self.verifier.is_some() && self.calibration == Some(Calibration::OF_MARGINS);
         self.calibration.filter(|_| !stale)
+    }
+
+    /// Distances from here on have no say in what the model reports, of classes and of negatives. A distance below its threshold is held
+    /// against rivals, negatives, the tick before, and as far as [`separation`](crate::decode::Candidate::separation) tells apart;
+    /// a verifier's evidence looks further.
+    pub fn reach(&self) -> f32 {
+        let wide = self.stranger.iter();
+        let thresholds = (self.class_thresholds.iter().copied())
+            .chain(wide.clone().map(|gate| gate.threshold))
+            .chain(self.verifier.iter().map(|v| v.reach));
+        let threshold = thresholds.fold(self.threshold, f32::max);
+        let decode = &self.decode;
+        let factor = (wide.map(|gate| gate.rival_share))
+            .chain([decode.rival_share, 1.0 + decode.end_fall, 1.0 / decode.gate])
+            .fold(std::f32::consts::E, f32::max);
+        let evidence = self.verifier.as_ref().map_or(0.0, |_| Evidence::REACH);
+        // A margin covers rounding.
+        1.01 * (threshold * factor).max(evidence)
     }
 
     /// Rows of the longest template.

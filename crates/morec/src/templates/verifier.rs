@@ -38,6 +38,9 @@ pub struct Evidence {
 }
 
 impl Evidence {
+    /// Distances from here on count alike.
+    pub const REACH: f32 = NOTHING_NEAR as f32;
+
     /// That of a candidate.
     pub fn of(candidate: &Candidate) -> Self {
         let Candidate {

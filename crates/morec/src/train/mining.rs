@@ -139,11 +139,9 @@ pub fn for_each_match(
             let ticks = first..(first + TICKS_AT_ONCE).min(span.end);
             for (part, matched) in parts.iter_mut().zip(&mut matched) {
                 matched.clear();
-                for tick in ticks.clone() {
-                    part.step(rows.row(tick));
-                    let bank = part.bank();
+                part.step_through(ticks.clone().map(|tick| rows.row(tick)), |bank| {
                     matched.extend((0..bank.len()).map(|template| bank.matched(template)));
-                }
+                });
             }
             for tick in ticks {
                 // Sums run over the whole stream, or they would round otherwise.
