@@ -14,6 +14,7 @@ mod write;
 pub use classes::ClassCount;
 pub use plan::{ChangedLabel, LabelChange, LabelOptions, Labelled};
 pub use sample::{Added, DbSample, GROUPED_BY, NewSample, SampleFilter, SampleId, SampleState};
+pub(crate) use samples::list;
 pub use whole::WholeClip;
 
 #[cfg(test)]

@@ -197,7 +197,5 @@ fn snapshot(load: &Load, motion: &ClipMotion) -> Snapshot {
         (0..load.clips).map(clip).collect(),
         (0..CLASSES).map(class).collect(),
         (0..load.labels).map(sample).collect(),
-        Vec::new(),
-        Vec::new(),
     )
 }

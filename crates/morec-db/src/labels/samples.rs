@@ -1,6 +1,6 @@
 //! Samples: added, judged, listed.
 
-use rusqlite::{Connection, OptionalExtension, Row, params};
+use rusqlite::{Connection, OptionalExtension, Row, ToSql, params};
 
 use super::plan::LabelOptions;
 use super::sample::{Added, DbSample, NewSample, SampleFilter, SampleId, SampleState};
@@ -40,6 +40,47 @@ fn find(conn: &Connection, id: SampleId) -> Result<DbSample, DbError> {
     found.ok_or_else(|| DbError::unknown("sample", &format!("#{}", id.0)))
 }
 
+/// The samples of a filter, by clip and time.
+pub(crate) fn list(conn: &Connection, filter: &SampleFilter) -> Result<Vec<DbSample>, DbError> {
+    let (clip, state) = (
+        filter.clip.map(|c| c.0),
+        filter.state.map(SampleState::name),
+    );
+    // Only the conditions that there are: one that may be left out would keep SQLite from its indexes.
+    let mut sql = format!("{SELECT} WHERE 1");
+    let mut given: Vec<&dyn ToSql> = Vec::new();
+    let mut need = |column, value| {
+        given.push(value);
+        sql.push_str(&format!(" AND {column} = ?{}", given.len()));
+    };
+    if let Some(clip) = &clip {
+        need("s.clip", clip);
+    }
+    if let Some(class) = &filter.class {
+        need("n.name", class);
+    }
+    if let Some(state) = &state {
+        need("s.state", state);
+    }
+    sql.push_str(" ORDER BY c.name, s.start_secs, s.stop_secs, n.name");
+    let mut statement = conn.prepare_cached(&sql)?;
+    let samples = statement.query_map(&given[..], sample)?;
+    Ok(samples.collect::<Result<_, _>>()?)
+}
+
+/// Refuses samples that are not as somebody saw them who now takes them away: what another program made of them would be lost.
+fn need_unchanged(conn: &Connection, seen: &[DbSample]) -> Result<(), DbError> {
+    for old in seen {
+        if NewSample::from(&find(conn, old.id)?) != NewSample::from(old) {
+            return Err(DbError::Invalid(format!(
+                "another program changed sample {} meanwhile: nothing was done",
+                old.id.0
+            )));
+        }
+    }
+    Ok(())
+}
+
 impl MotionDb {
     /// The sample of a number.
     ///
@@ -51,19 +92,15 @@ impl MotionDb {
 
     /// The samples of a filter, by clip and time.
     pub fn samples(&self, filter: &SampleFilter) -> Result<Vec<DbSample>, DbError> {
-        let mut statement = self.conn.prepare_cached(&format!(
-            "{SELECT} WHERE (?1 IS NULL OR s.clip = ?1) AND (?2 IS NULL OR n.name = ?2) AND (?3 IS NULL OR s.state = ?3) \
-             ORDER BY c.name, s.start_secs, s.stop_secs, n.name",
-        ))?;
-        let given = params![
-            filter.clip.map(|c| c.0),
-            filter.class,
-            filter.state.map(SampleState::name)
-        ];
-        let samples = statement
-            .query_map(given, sample)?
-            .collect::<Result<_, _>>()?;
-        Ok(samples)
+        list(&self.conn, filter)
+    }
+
+    /// Numbers of the samples that a step touched, there or gone.
+    pub fn samples_of_step(&self, step: i64) -> Result<Vec<SampleId>, DbError> {
+        let sql = "SELECT DISTINCT c0 FROM was WHERE edit = ?1 AND tab = 'samples'";
+        let mut statement = self.conn.prepare_cached(sql)?;
+        let samples = statement.query_map(params![step], |row| Ok(SampleId(row.get(0)?)))?;
+        Ok(samples.collect::<Result<_, _>>()?)
     }
 
     /// Adds samples, all or none, as one step: [`MotionDb::label`] without replacing.
@@ -105,20 +142,19 @@ impl MotionDb {
     /// samples are as in [`MotionDb::label`].
     ///
     /// # Errors
-    /// As [`MotionDb::label`]; an old sample that is not there.
+    /// As [`MotionDb::label`]; an old sample that is not there, or of another clip, class, extent or state than was seen.
     pub fn change_samples(
         &mut self,
         what: &str,
-        old: &[SampleId],
+        old: &[DbSample],
         new: &[NewSample],
         by: &str,
     ) -> Result<(), DbError> {
         self.edit(what, |conn| {
-            for id in old {
-                let sql = "DELETE FROM samples WHERE id = ?1";
-                if conn.prepare_cached(sql)?.execute(params![id.0])? == 0 {
-                    return Err(DbError::unknown("sample", &format!("#{}", id.0)));
-                }
+            need_unchanged(conn, old)?;
+            for sample in old {
+                conn.prepare_cached("DELETE FROM samples WHERE id = ?1")?
+                    .execute(params![sample.id.0])?;
             }
             new.iter()
                 .try_for_each(|sample| add(conn, sample, by).map(drop))

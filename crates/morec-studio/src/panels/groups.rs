@@ -125,11 +125,15 @@ fn class_now<'a>(state: &'a State, item: &GroupItem) -> Option<&'a str> {
     let near = |a: f64, b: f64| (a - b).abs() < 0.02;
     let sample = match item.sample {
         Some(id) => snapshot.sample(id),
-        None => snapshot.samples_of(item.clip).iter().find(|s| {
-            s.state != SampleState::Rejected
-                && near(s.start_secs, item.start_secs)
-                && near(s.stop_secs, item.stop_secs)
-        }),
+        None => snapshot
+            .samples_of(item.clip)
+            .iter()
+            .find(|s| {
+                s.state != SampleState::Rejected
+                    && near(s.start_secs, item.start_secs)
+                    && near(s.stop_secs, item.stop_secs)
+            })
+            .map(|s| &**s),
     };
     Some(sample?.class.as_str())
 }

@@ -1,5 +1,7 @@
 //! Labels on the timeline: selected, dragged, split, merged, nudged.
 
+use std::sync::Arc;
+
 use morec_db::labels::{DbSample, NewSample, SampleState as Judged};
 
 use super::lines::ShownCommand;
@@ -21,7 +23,7 @@ impl State {
     }
 
     /// The labels of the clip that is shown.
-    pub fn shown_samples(&self) -> &[DbSample] {
+    pub fn shown_samples(&self) -> &[Arc<DbSample>] {
         match (&self.store, &self.player.motion) {
             (Some(store), Some(motion)) => store.snapshot.samples_of(motion.id),
             _ => &[],
@@ -183,14 +185,10 @@ impl State {
 
     fn split(&mut self) {
         let at = self.player.at_secs;
-        let inside = |s: &&&DbSample| s.start_secs < at - 1e-6 && at + 1e-6 < s.stop_secs;
-        let selected = self.selected();
-        let there = self.shown_samples();
-        let found = selected
-            .iter()
-            .find(inside)
-            .copied()
-            .or_else(|| there.iter().find(|s| inside(&s)));
+        let inside = |s: &&DbSample| s.start_secs < at - 1e-6 && at + 1e-6 < s.stop_secs;
+        let selected = self.selected().into_iter();
+        let there = self.shown_samples().iter().map(|s| &**s);
+        let found = selected.chain(there).find(inside);
         let Some(sample) = found else {
             self.say("no label lies under the playhead");
             return;
@@ -203,7 +201,7 @@ impl State {
         };
         let edit = Edit::Replace {
             what: format!("split {} of {}", sample.class, sample.clip_name),
-            old: vec![sample.id],
+            old: vec![sample.clone()],
             new: vec![part(sample.start_secs, at), part(at, sample.stop_secs)],
         };
         self.edit(edit);
@@ -222,7 +220,7 @@ impl State {
         let stop_secs = selected.iter().map(|s| s.stop_secs).fold(0.0, f64::max);
         let edit = Edit::Replace {
             what: format!("merge {} labels of {}", selected.len(), first.class),
-            old: selected.iter().map(|s| s.id).collect(),
+            old: selected.iter().map(|s| (*s).clone()).collect(),
             new: vec![NewSample {
                 stop_secs,
                 whole_clip: false,

@@ -18,7 +18,11 @@ impl State {
 
     /// Proposals without an answer.
     fn proposed(&self) -> impl Iterator<Item = &DbSample> {
-        let samples = self.store.iter().flat_map(|s| &s.snapshot.samples);
+        let samples = self
+            .store
+            .iter()
+            .flat_map(|s| &s.snapshot.samples)
+            .map(|s| &**s);
         samples.filter(|s| s.state == Judged::Proposed)
     }
 

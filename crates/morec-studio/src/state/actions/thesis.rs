@@ -93,7 +93,7 @@ impl State {
             return;
         };
         self.train.sample = Some(at);
-        let clips = self.store.iter().flat_map(|s| &s.snapshot.clips);
+        let clips = self.store.iter().flat_map(|s| s.snapshot.clips.iter());
         let clip = clips
             .filter(|clip| clip.name == sample.clip)
             .map(|clip| clip.id)
