@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use rusqlite::{Connection, params};
 
+use super::read::list;
 use super::sample::{Added, DbSample, NewSample, SampleFilter, SampleState};
-use super::samples::list;
 use super::write::{Change, add, alter};
 use crate::history::counted;
 use crate::{DbError, MotionDb};
