@@ -14,6 +14,9 @@ pub struct TimeSpan {
 }
 
 impl TimeSpan {
+    /// Two times that differ by no more than this are one: frames that became seconds carry rounding errors.
+    pub const SAME_SECS: f64 = 1e-9;
+
     /// From one moment to another.
     pub const fn new(start_secs: f64, stop_secs: f64) -> Self {
         Self {
@@ -75,7 +78,14 @@ impl TimeSpan {
 
     /// What both have in common over the shorter of the two, 0 to 1.
     pub fn overlap_share(self, other: Self) -> f64 {
-        self.overlap_secs(other) / self.duration_secs().min(other.duration_secs())
+        let shorter = self.duration_secs().min(other.duration_secs());
+        self.overlap_secs(other) / shorter.max(f64::MIN_POSITIVE)
+    }
+
+    /// True if more than half of the shorter one is common to both: the match of the thesis (§5.4).
+    pub fn matches(self, other: Self) -> bool {
+        let shorter = self.duration_secs().min(other.duration_secs());
+        self.overlap_secs(other) > 0.5 * shorter + Self::SAME_SECS
     }
 
     /// Intersection over union, 0 to 1.
@@ -142,6 +152,14 @@ mod tests {
     }
 
     #[test]
+    fn half_of_the_shorter_one_is_no_match_and_rounding_makes_none() {
+        let of = TimeSpan::new(1.0, 3.0);
+        let found = [2.0, 2.0 - 1e-12, 1.9].map(|start| TimeSpan::new(start, start + 2.0));
+        assert_eq!(found.map(|found| of.matches(found)), [false, false, true]);
+        assert!(of.matches(TimeSpan::new(1.2, 1.3)));
+    }
+
+    #[test]
     fn the_start_is_inside_and_the_stop_is_not() {
         let span = TimeSpan::new(1.0, 2.5);
         assert_eq!((span.duration_secs(), span.middle_secs()), (1.5, 1.75));
@@ -153,7 +171,12 @@ mod tests {
 
     #[test]
     fn spans_without_a_length_are_no_stretches() {
-        for (start, stop) in [(1.0, 1.0), (2.0, 1.0), (f64::NAN, 1.0), (0.0, f64::INFINITY)] {
+        for (start, stop) in [
+            (1.0, 1.0),
+            (2.0, 1.0),
+            (f64::NAN, 1.0),
+            (0.0, f64::INFINITY),
+        ] {
             assert!(!TimeSpan::new(start, stop).is_stretch());
         }
         assert_eq!(TimeSpan::new(2.0, 1.0).frames(30.0), 60..60);
