@@ -20,9 +20,7 @@ pub fn drops(database: &Path, times: usize) -> Result<Vec<f64>, String> {
     window.command(Command::Show(Panel::Label));
     window.settle();
     let label = window.studio.state.shown_samples().first();
-    let (id, start, stop) = label
-        .map(|s| (s.id, s.start_secs, s.stop_secs))
-        .ok_or("no label")?;
+    let (id, span) = label.map(|s| (s.id, s.span())).ok_or("no label")?;
     let mut took = Vec::with_capacity(times);
     for number in 0..times {
         let by_secs = [0.01, 0.02][number % 2];
@@ -30,8 +28,7 @@ pub fn drops(database: &Path, times: usize) -> Result<Vec<f64>, String> {
             id,
             grip: Grip::Whole,
             held_secs: 0.0,
-            start_secs: start + by_secs,
-            stop_secs: stop + by_secs,
+            span: span.map(|secs| secs + by_secs),
             dropped: false,
         };
         window.command(Command::Timeline(TimelineCommand::Grab(drag)));

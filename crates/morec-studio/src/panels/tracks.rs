@@ -313,8 +313,7 @@ fn held_by(
             id: sample.id,
             grip: grip(origin.x),
             held_secs: scale.secs(origin.x) - sample.start_secs,
-            start_secs: sample.start_secs,
-            stop_secs: sample.stop_secs,
+            span: sample.span(),
             dropped: false,
         })));
     }

@@ -146,18 +146,17 @@ impl State {
         let Some(drag) = self.timeline.drag.take() else {
             return;
         };
-        let moved = self.shown_samples().iter().any(|s| {
-            s.id == drag.id
-                && ((s.start_secs - drag.start_secs).abs() > 1e-6
-                    || (s.stop_secs - drag.stop_secs).abs() > 1e-6)
-        });
+        let moved = self
+            .shown_samples()
+            .iter()
+            .any(|s| s.id == drag.id && !s.span().is_near(drag.span, 1e-6));
         if !moved {
             return;
         }
         self.edit(Edit::Move {
             id: drag.id,
-            start_secs: drag.start_secs,
-            stop_secs: drag.stop_secs,
+            start_secs: drag.span.start_secs,
+            stop_secs: drag.span.stop_secs,
         });
         self.timeline.drag = Some(Drag {
             dropped: true,
@@ -244,11 +243,7 @@ impl State {
         let Some(clip) = self.player.motion.as_ref().map(|m| m.id) else {
             return;
         };
-        let of = Stretch {
-            clip,
-            start_secs,
-            stop_secs,
-        };
+        let of = Stretch::new(clip, start_secs..stop_secs);
         if let Some(sample) = self.new_label(class, &of) {
             self.edit(Edit::Label(vec![sample]));
         }
@@ -268,8 +263,8 @@ impl State {
         let clip = self.store.as_ref()?.snapshot.clip(of.clip)?;
         let frame = |secs: f64| (secs * clip.rate_hz).round() / clip.rate_hz;
         let (start, stop) = (
-            of.start_secs.min(of.stop_secs),
-            of.start_secs.max(of.stop_secs),
+            of.span.start_secs.min(of.span.stop_secs),
+            of.span.start_secs.max(of.span.stop_secs),
         );
         let sample = NewSample {
             clip: of.clip,

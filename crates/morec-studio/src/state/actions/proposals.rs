@@ -1,5 +1,6 @@
 //! Proposals: accepted and rejected, the doubtful first.
 
+use morec::TimeSpan;
 use morec_db::labels::{DbSample, SampleId, SampleState as Judged};
 use morec_db::{Proposal, most_informative};
 
@@ -54,8 +55,7 @@ impl State {
             .map(|s| Proposal {
                 clip: s.clip,
                 class: s.class.clone(),
-                start_secs: s.start_secs,
-                stop_secs: s.stop_secs,
+                span: TimeSpan::new(s.start_secs, s.stop_secs),
                 whole_clip: s.whole_clip,
                 score: s.score.unwrap_or(0.0) as f32,
             })

@@ -9,6 +9,7 @@ use crate::jobs::JobOutcome;
 use crate::jobs::load::ClipMotion;
 use crate::jobs::thesis::{self, Thesis};
 use crate::state::{LibraryCommand, State};
+use crate::stretch::Stretch;
 
 const THESIS: &str = "Training the method of 2009";
 /// Name of the job that maps confidences.
@@ -99,11 +100,7 @@ impl State {
             .map(|clip| clip.id)
             .next();
         match clip {
-            Some(clip) => self.apply_library(LibraryCommand::GoTo {
-                clip,
-                start_secs: sample.start_secs,
-                stop_secs: sample.stop_secs,
-            }),
+            Some(clip) => self.apply_library(LibraryCommand::GoTo(Stretch::new(clip, sample.span))),
             None => self.say(format!("{} is not in the database any more", sample.clip)),
         }
     }
