@@ -32,9 +32,9 @@ fuzz_target!(|bytes: &[u8]| {
         for sample in labels.resolve(&lengths).samples {
             let secs = lengths[&sample.clip].duration_secs();
             assert!(
-                0.0 <= sample.start_secs
-                    && sample.start_secs < sample.stop_secs
-                    && sample.stop_secs <= secs + 1e-9
+                0.0 <= sample.span.start_secs
+                    && sample.span.is_stretch()
+                    && sample.span.stop_secs <= secs + 1e-9
             );
         }
     }
@@ -43,7 +43,7 @@ fuzz_target!(|bytes: &[u8]| {
         assert!(
             found
                 .iter()
-                .all(|f| f.start_secs < f.stop_secs && lengths.contains_key(&f.clip))
+                .all(|f| f.span.is_stretch() && lengths.contains_key(&f.clip))
         );
     }
 });

@@ -137,18 +137,9 @@ fn run_test(model: &Model, trial: &Trial<'_>, test: &TrialTest<'_>) -> Result<Te
     let truth = |sample: &morec::labels::Sample| GroundTruth {
         clip: name.clone(),
         class: sample.class.clone(),
-        start_secs: in_copy(sample.start_secs),
-        stop_secs: in_copy(sample.stop_secs),
+        span: sample.span.map(in_copy),
     };
-    let detection = |d: &Detection| ClipDetection {
-        clip: name.clone(),
-        class: model.class_name(d.class).to_owned(),
-        start_secs: d.start_secs,
-        stop_secs: d.stop_secs,
-        score: Some(d.score),
-        reported_secs: Some(d.reported_secs),
-        repetitions: d.repetitions.map(|r| r.count),
-    };
+    let detection = |d: &Detection| ClipDetection::new(&name, d.named(model));
     Ok(Tested {
         streams: vec![StreamInfo {
             clip: name.clone(),

@@ -32,6 +32,7 @@ pub mod progress;
 pub mod resample;
 pub mod rng;
 pub mod roles;
+mod time_span;
 
 #[cfg(feature = "files")]
 pub mod files;
@@ -61,3 +62,4 @@ pub use import::{ImportOptions, Take};
 pub use parse_error::shortened;
 pub use parse_error::{ParseError, Place, Warning};
 pub use pose::{BoneSet, KeyPose};
+pub use time_span::TimeSpan;

@@ -44,7 +44,7 @@ pub fn write_misses(out: &mut impl Write, misses: &[Miss]) -> io::Result<()> {
         writeln!(
             out,
             "  {} {} {:.2}-{:.2} s: {}{at}",
-            miss.clip, miss.class, miss.start_secs, miss.stop_secs, miss.reason
+            miss.clip, miss.class, miss.span.start_secs, miss.span.stop_secs, miss.reason
         )?;
     }
     Ok(())

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
+use morec::TimeSpan;
 use morec::formats::{Place, Warning};
 use morec::labels::{Extent, Label, Labels};
 use morec_db::exchange::{self, Annotation, ClipLengths, LabelFormat};
@@ -82,7 +83,7 @@ fn one(path: &Path) -> Result<Labels> {
         clip: annotation.clip,
         class: annotation.class,
         extent: match annotation.extent {
-            Some((start, stop)) => Extent::Secs(start, stop),
+            Some((start, stop)) => Extent::Secs(TimeSpan::new(start, stop)),
             None => Extent::WholeClip,
         },
         person: annotation.person,

@@ -475,7 +475,7 @@ fn database_labels(db: &MotionDb) -> Result<Labels> {
         extent: if s.whole_clip {
             Extent::WholeClip
         } else {
-            Extent::Secs(s.start_secs, s.stop_secs)
+            Extent::Secs(s.span())
         },
         clip: s.clip_name,
         class: s.class,

@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use anyhow::Result;
 use morec::eval::Timeline;
 use morec::import::Take;
-use morec::player::{Mark, PlayedClip, Reel};
+use morec::labels::Mark;
+use morec::player::{PlayedClip, Reel};
 use morec_db::{ClipFilter, MotionDb};
 
 use crate::files::{ReadArgs, expand};
@@ -80,22 +81,17 @@ impl<'a> ReportMotion<'a> {
             self.left_out += 1;
             return;
         }
-        let mark = |name: &str, start_secs, stop_secs| Mark {
-            name: name.to_owned(),
-            start_secs,
-            stop_secs,
-        };
         let truths = timeline.truths.iter();
         let founds = timeline.founds.iter();
         let played = PlayedClip {
             clip: &take.clip,
             roles: &take.roles,
-            secs: None,
+            span: None,
             labels: truths
-                .map(|(truth, _)| mark(&truth.class, truth.start_secs, truth.stop_secs))
+                .map(|(truth, _)| Mark::new(truth.class.as_str(), truth.span))
                 .collect(),
             detections: founds
-                .map(|(found, _)| mark(&found.class, found.start_secs, found.stop_secs))
+                .map(|(found, _)| Mark::new(found.class.as_str(), found.span))
                 .collect(),
         };
         self.reel.add(&played, FRAMES);

@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 
 use frame::FigureScale;
 pub use frame::TerminalStyle;
-pub use shown::{KnownSpan, ReportedDetection, ShownClip, event_line};
+pub use shown::{ShownClip, event_line};
 
 /// Pictures a second.
 const PICTURES_HZ: f64 = 25.0;
@@ -91,21 +91,23 @@ fn over(picture: &str, before: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use morec::TimeSpan;
+    use morec::live::Detection;
 
     #[test]
     fn an_event_says_what_when_and_how_late() {
-        let mut said = ReportedDetection {
+        let mut said = Detection {
             class: "wave".to_owned(),
-            start_secs: 10.0,
-            stop_secs: 12.28,
+            span: TimeSpan::new(10.0, 12.28),
             score: 0.934,
             reported_secs: 12.40,
+            repetitions: None,
         };
         assert_eq!(
             event_line(&said),
             " 12.40 s  wave  0.93  (said 0.12 s after its end)"
         );
-        said.stop_secs = 12.5;
+        said.span.stop_secs = 12.5;
         assert!(event_line(&said).ends_with("(said 0.10 s before its end)"));
         said.class = "a\x1b[2Jb\n".to_owned();
         assert!(event_line(&said).contains("  a?[2Jb?  "));

@@ -192,7 +192,7 @@ impl User<'_> {
     /// The judgement of this user on a proposal.
     fn answer(&self, p: &Proposal) -> NewSample {
         let mut answer = NewSample::from(p.clone());
-        match self.under(p.clip, p.start_secs, p.stop_secs) {
+        match self.under(p.clip, p.span.start_secs, p.span.stop_secs) {
             Some(t) => {
                 (answer.state, answer.class) = (SampleState::Accepted, self.truth[t].class.clone())
             }
@@ -252,7 +252,7 @@ fn play(
         for p in proposals.iter().filter(|p| p.is_sure()) {
             sure += 1;
             surest[0] += usize::from(p.score >= 0.9);
-            match user.under(p.clip, p.start_secs, p.stop_secs) {
+            match user.under(p.clip, p.span.start_secs, p.span.stop_secs) {
                 Some(t) if user.truth[t].class == p.class && right.insert(t) => {}
                 _ => {
                     wrong += 1;

@@ -109,7 +109,7 @@ fn means(
     let by_id: BTreeMap<ClipId, &Shown> = clips.iter().filter(asked).map(|c| (c.id, c)).collect();
     let (mut all, mut other) = (Vec::new(), Vec::new());
     for clip in by_id.values() {
-        let Some(example) = index.example(clip.id, 0.0, clip.secs) else {
+        let Some(example) = index.example(clip.id, 0.0..clip.secs) else {
             continue;
         };
         let hits = index.search_by(&example, options, metric.map(|(metric, _)| metric));

@@ -2,8 +2,10 @@
 
 use std::collections::BTreeSet;
 
+use rusqlite::Connection;
+
 use crate::labels::{SampleFilter, SampleState};
-use crate::{ClipFilter, ClipInfo, DbError, MotionDb};
+use crate::{ClipFilter, ClipInfo, DbError, MotionDb, clips, labels};
 
 /// The tag of clips that are background: training learns from them what is none of the classes.
 pub const BACKGROUND: &str = "background";
@@ -32,25 +34,35 @@ impl MotionDb {
     /// # Errors
     /// The database cannot be read.
     pub fn background(&self, classes: &[String]) -> Result<BackgroundClips, DbError> {
-        let tagged = self.clips(&ClipFilter {
+        find(&self.conn, classes)
+    }
+}
+
+pub(crate) fn find(conn: &Connection, classes: &[String]) -> Result<BackgroundClips, DbError> {
+    let tagged = clips::list(
+        conn,
+        &ClipFilter {
             tag: Some(BACKGROUND.to_owned()),
             ..ClipFilter::default()
-        })?;
-        if tagged.is_empty() {
-            return Ok(BackgroundClips::default());
-        }
-        let accepted = self.samples(&SampleFilter {
+        },
+    )?;
+    if tagged.is_empty() {
+        return Ok(BackgroundClips::default());
+    }
+    let accepted = labels::list(
+        conn,
+        &SampleFilter {
             state: Some(SampleState::Accepted),
             ..SampleFilter::default()
-        })?;
-        let with_samples: BTreeSet<_> = accepted
-            .iter()
-            .filter(|s| classes.is_empty() || classes.contains(&s.class))
-            .map(|s| s.clip)
-            .collect();
-        let (labelled, clips) = tagged
-            .into_iter()
-            .partition(|clip| with_samples.contains(&clip.id));
-        Ok(BackgroundClips { clips, labelled })
-    }
+        },
+    )?;
+    let with_samples: BTreeSet<_> = accepted
+        .iter()
+        .filter(|s| classes.is_empty() || classes.contains(&s.class))
+        .map(|s| s.clip)
+        .collect();
+    let (labelled, clips) = tagged
+        .into_iter()
+        .partition(|clip| with_samples.contains(&clip.id));
+    Ok(BackgroundClips { clips, labelled })
 }

@@ -117,6 +117,31 @@ fn info(row: &Row<'_>) -> rusqlite::Result<ClipInfo> {
     })
 }
 
+pub(crate) fn list(conn: &Connection, filter: &ClipFilter) -> Result<Vec<ClipInfo>, DbError> {
+    let sql = format!(
+        "SELECT {COLUMNS} WHERE (?1 IS NULL OR c.name GLOB ?1) AND (?2 IS NULL OR c.subject = ?2) \
+         AND (?3 IS NULL OR EXISTS (SELECT 1 FROM tags t WHERE t.clip = c.id AND t.tag = ?3)) \
+         AND (?4 IS NULL OR EXISTS (SELECT 1 FROM samples s JOIN classes n ON n.id = s.class \
+              WHERE s.clip = c.id AND s.state = 'accepted' AND n.name = ?4)) ORDER BY c.name"
+    );
+    let mut statement = conn.prepare(&sql)?;
+    let given = params![filter.name, filter.subject, filter.tag, filter.class];
+    let clips = statement
+        .query_map(given, info)?
+        .collect::<Result<_, _>>()?;
+    Ok(clips)
+}
+
+fn find(conn: &Connection, name: &str) -> Result<ClipInfo, DbError> {
+    let sql = format!("SELECT {COLUMNS} WHERE c.name = ?1");
+    let find = |name: &str| conn.query_row(&sql, params![name], info).optional();
+    if let Some(found) = find(name)? {
+        return Ok(found);
+    }
+    let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
+    find(stem)?.ok_or_else(|| names::unknown(conn, "clip", name))
+}
+
 impl MotionDb {
     /// The clips of a filter, by name, where a filter that names what is not there is an error.
     ///
@@ -149,29 +174,12 @@ impl MotionDb {
 
     /// The clips of a filter, by name.
     pub fn clips(&self, filter: &ClipFilter) -> Result<Vec<ClipInfo>, DbError> {
-        let sql = format!(
-            "SELECT {COLUMNS} WHERE (?1 IS NULL OR c.name GLOB ?1) AND (?2 IS NULL OR c.subject = ?2) \
-             AND (?3 IS NULL OR EXISTS (SELECT 1 FROM tags t WHERE t.clip = c.id AND t.tag = ?3)) \
-             AND (?4 IS NULL OR EXISTS (SELECT 1 FROM samples s JOIN classes n ON n.id = s.class \
-                  WHERE s.clip = c.id AND s.state = 'accepted' AND n.name = ?4)) ORDER BY c.name"
-        );
-        let mut statement = self.conn.prepare(&sql)?;
-        let given = params![filter.name, filter.subject, filter.tag, filter.class];
-        let clips = statement
-            .query_map(given, info)?
-            .collect::<Result<_, _>>()?;
-        Ok(clips)
+        list(&self.conn, filter)
     }
 
     /// The clip of a name; its file ending may stand behind it.
     pub fn find_clip(&self, name: &str) -> Result<ClipInfo, DbError> {
-        let sql = format!("SELECT {COLUMNS} WHERE c.name = ?1");
-        let find = |name: &str| self.conn.query_row(&sql, params![name], info).optional();
-        if let Some(found) = find(name)? {
-            return Ok(found);
-        }
-        let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
-        find(stem)?.ok_or_else(|| names::unknown(&self.conn, "clip", name))
+        find(&self.conn, name)
     }
 
     /// Gives a clip another name; its labels, cuts and tags stay with it.
@@ -186,8 +194,8 @@ impl MotionDb {
                 "expected {expected}, found {to:?}"
             )));
         }
-        let clip = self.find_clip(from)?;
-        self.edit(&format!("rename clip {} to {to}", clip.name), |conn| {
+        self.edit(&format!("rename clip {from} to {to}"), |conn| {
+            let clip = find(conn, from)?;
             let sql = "SELECT 1 FROM clips WHERE name = ?1 AND id <> ?2";
             if conn.prepare(sql)?.exists(params![to, clip.id.0])? {
                 return Err(DbError::Invalid(format!("there is a clip {to} already")));

@@ -3,6 +3,7 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
+use morec::TimeSpan;
 use morec::features::FeatureParams;
 use morec::pivots::{PivotMap, PivotSet, PoseParams, pose_rows_of_clip};
 use morec::progress::Progress;
@@ -45,8 +46,8 @@ pub struct ClipCuts {
 #[allow(missing_docs)] // The names say it.
 pub struct Still {
     pub kind: SegmentKind,
-    pub start_secs: f64,
-    pub stop_secs: f64,
+    #[serde(flatten)]
+    pub span: TimeSpan,
 }
 
 /// Result of [`MotionDb::cut`].
@@ -222,8 +223,7 @@ fn stretches(clip: &ClipInfo, rows: &ClipRows, cuts: Vec<f64>) -> Done {
     let stretch = |kind, start_secs, stop_secs| Segment {
         clip: clip.id,
         kind,
-        start_secs,
-        stop_secs,
+        span: TimeSpan::new(start_secs, stop_secs),
     };
     let (tick, end) = (1.0 / features.tick_hz(), clip.duration_secs());
     let mut segments = Vec::new();
@@ -241,12 +241,11 @@ fn stretches(clip: &ClipInfo, rows: &ClipRows, cuts: Vec<f64>) -> Done {
     }
     let told = |s: &Segment| Still {
         kind: s.kind,
-        start_secs: s.start_secs,
-        stop_secs: s.stop_secs,
+        span: s.span,
     };
     let still = segments.iter().map(told).collect();
     segments.extend(motions(clip, &cuts));
-    segments.retain(|s| s.stop_secs > s.start_secs);
+    segments.retain(|s| s.span.is_stretch());
     let cuts = ClipCuts {
         cuts_secs: cuts,
         still,
@@ -265,8 +264,7 @@ fn motions(clip: &ClipInfo, cuts: &[f64]) -> Vec<Segment> {
             motions.push(Segment {
                 clip: clip.id,
                 kind: SegmentKind::Motion,
-                start_secs,
-                stop_secs,
+                span: TimeSpan::new(start_secs, stop_secs),
             });
         }
         start_secs = stop_secs;
@@ -288,7 +286,7 @@ mod tests {
         let starts = |db: &MotionDb, clip: &ClipInfo| -> Vec<f64> {
             let segments = db.segments_of(clip.id).unwrap().into_iter();
             let motions = segments.filter(|s| s.kind == SegmentKind::Motion);
-            motions.map(|s| s.start_secs).collect()
+            motions.map(|s| s.span.start_secs).collect()
         };
         assert_eq!(starts(&db, &clips[0]), [0.0, 1.0, 2.0]);
         assert_eq!(db.cut_methods().unwrap()[&clips[0].id], BY_HAND);

@@ -177,6 +177,21 @@ impl MotionDb {
             .transaction_with_behavior(TransactionBehavior::Immediate)?)
     }
 
+    /// Reads the database as it is at one moment, whatever others write meanwhile.
+    pub fn at_one_moment<T>(
+        &self,
+        read: impl FnOnce() -> Result<T, DbError>,
+    ) -> Result<T, DbError> {
+        let _moment = self.conn.unchecked_transaction()?;
+        read()
+    }
+
+    /// A number that is another after other connections have changed the file, and the same after changes of this one.
+    pub fn changes_of_others(&self) -> Result<i64, DbError> {
+        let number = |row: &rusqlite::Row<'_>| row.get(0);
+        Ok(self.conn.pragma_query_value(None, "data_version", number)?)
+    }
+
     /// Contents in numbers.
     pub fn summary(&self) -> Result<DbSummary, DbError> {
         let count = |sql: &str| -> Result<u64, DbError> {

@@ -145,6 +145,18 @@ fn step(row: &Row<'_>) -> rusqlite::Result<HistoryStep> {
     })
 }
 
+/// Number of rows that a step touched, by table.
+fn touched(conn: &Connection, step: i64) -> Result<BTreeMap<String, usize>, DbError> {
+    let sql = "SELECT tab, count(*) AS rows FROM (SELECT DISTINCT tab, c0, \
+         CASE WHEN tab IN ('tags', 'file_copies') THEN c1 END FROM was WHERE edit = ?1) GROUP BY tab";
+    let mut statement = conn.prepare_cached(sql)?;
+    let rows = statement.query_map(params![step], |row| {
+        let count: i64 = row.get("rows")?;
+        Ok((row.get("tab")?, count.max(0) as usize))
+    })?;
+    Ok(rows.collect::<Result<_, _>>()?)
+}
+
 impl MotionDb {
     /// Runs `change` as one step called `what`: all of it or nothing.
     pub(crate) fn edit<T>(
@@ -172,23 +184,22 @@ impl MotionDb {
 
     /// All steps that are remembered, the last one first.
     pub fn history(&self) -> Result<Vec<HistoryStep>, DbError> {
+        self.history_since(&[])
+    }
+
+    /// The history where it was `before`, the last step first, before this connection went on: only what was done, taken back
+    /// or done again since then is counted anew.
+    pub fn history_since(&self, before: &[HistoryStep]) -> Result<Vec<HistoryStep>, DbError> {
         let sql = "SELECT id, what, set_secs, undone, made_by FROM edits ORDER BY id DESC";
-        let mut statement = self.conn.prepare(sql)?;
-        let mut steps: Vec<HistoryStep> = statement
-            .query_map([], step)?
-            .collect::<Result<_, rusqlite::Error>>()?;
-        let mut counts: BTreeMap<i64, BTreeMap<String, usize>> = BTreeMap::new();
-        let sql = "SELECT edit, tab, count(*) AS rows FROM (SELECT DISTINCT edit, tab, c0, \
-             CASE WHEN tab IN ('tags', 'file_copies') THEN c1 END FROM was) GROUP BY edit, tab";
-        let mut statement = self.conn.prepare(sql)?;
-        let mut rows = statement.query([])?;
-        while let Some(row) = rows.next()? {
-            let count: i64 = row.get("rows")?;
-            let of = counts.entry(row.get("edit")?).or_default();
-            of.insert(row.get("tab")?, count.max(0) as usize);
-        }
+        let mut statement = self.conn.prepare_cached(sql)?;
+        let steps = statement.query_map([], step)?;
+        let mut steps: Vec<HistoryStep> = steps.collect::<Result<_, _>>()?;
         for step in &mut steps {
-            step.rows = counts.remove(&step.id).unwrap_or_default();
+            let known = before.binary_search_by(|old| step.id.cmp(&old.id)).ok();
+            step.rows = match known.map(|at| &before[at]) {
+                Some(old) if old.undone == step.undone => old.rows.clone(),
+                _ => touched(&self.conn, step.id)?,
+            };
         }
         Ok(steps)
     }

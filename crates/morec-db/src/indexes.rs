@@ -2,9 +2,12 @@
 
 use rusqlite::{Connection, OptionalExtension, params};
 
+use serde_json::json;
+
 use crate::history::{digest, record};
+use crate::labels::{self, DbSample, SampleFilter, SampleState};
 use crate::time::now_secs;
-use crate::{DbError, MotionDb, names};
+use crate::{ClipInfo, DbError, MotionDb, background, names};
 
 /// An index without its bytes.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -19,6 +22,9 @@ pub struct IndexInfo {
     pub samples: usize,
     /// True if accepted samples or the clips that are background have changed since.
     pub stale: bool,
+    /// What taught it: [`training_data`] of then.
+    #[serde(skip)]
+    pub taught: String,
 }
 
 /// Keeps an index with what taught it.
@@ -32,37 +38,45 @@ fn put(conn: &Connection, name: &str, taught: &str, bytes: &[u8]) -> Result<(), 
     Ok(())
 }
 
-impl MotionDb {
-    /// Training data of an index made now: clip, class, start and stop of every accepted sample, then the name alone of every
-    /// clip that is background.
-    fn taught(&self) -> Result<String, DbError> {
-        let filter = crate::labels::SampleFilter {
-            state: Some(crate::labels::SampleState::Accepted),
-            ..Default::default()
-        };
-        let samples = self.samples(&filter)?.into_iter();
-        let rows =
-            samples.map(|s| serde_json::json!((s.clip_name, s.class, s.start_secs, s.stop_secs)));
-        let background = self.background(&[])?.clips.into_iter();
-        let rows = rows.chain(background.map(|clip| serde_json::json!([clip.name])));
-        Ok(serde_json::Value::Array(rows.collect()).to_string())
-    }
+/// Training data of an index, as it is kept with the index: clip, class, start and stop of every accepted sample, by clip and
+/// time, then the name alone of every clip that is background and has none, by name.
+pub fn training_data<'a>(
+    accepted: impl IntoIterator<Item = &'a DbSample>,
+    background: impl IntoIterator<Item = &'a ClipInfo>,
+) -> String {
+    let row = |s: &DbSample| json!((&s.clip_name, &s.class, s.start_secs, s.stop_secs));
+    let rows = accepted.into_iter().map(row);
+    let rows = rows.chain(background.into_iter().map(|clip| json!([clip.name])));
+    serde_json::Value::Array(rows.collect()).to_string()
+}
 
+/// Training data of an index made now.
+fn taught(conn: &Connection) -> Result<String, DbError> {
+    let filter = SampleFilter {
+        state: Some(SampleState::Accepted),
+        ..SampleFilter::default()
+    };
+    let accepted = labels::list(conn, &filter)?;
+    Ok(training_data(
+        &accepted,
+        &background::find(conn, &[])?.clips,
+    ))
+}
+
+impl MotionDb {
     /// Keeps an index that the accepted samples of now have taught, in place of one of the same name.
     pub fn store_index(&mut self, name: &str, bytes: &[u8]) -> Result<(), DbError> {
-        let taught = self.taught()?;
         self.edit(&format!("keep the index {name}"), |conn| {
-            put(conn, name, &taught, bytes)
+            put(conn, name, &taught(conn)?, bytes)
         })
     }
 
     /// Keeps the index that was trained last under a name, in place of the one before. It is no step of the history: taking back a
     /// label after training takes back the label.
     pub fn store_last_index(&mut self, name: &str, bytes: &[u8]) -> Result<(), DbError> {
-        let taught = self.taught()?;
         let tx = self.write()?;
         let recording = record(&tx, "", None, "")?;
-        put(&tx, name, &taught, bytes)?;
+        put(&tx, name, &taught(&tx)?, bytes)?;
         digest::follow(&tx, recording.step, recording.after)?;
         tx.execute("DELETE FROM edits WHERE id = ?1", params![recording.step])?;
         tx.commit()?;
@@ -95,17 +109,19 @@ impl MotionDb {
 
     /// All indexes, by name.
     pub fn indexes(&self) -> Result<Vec<IndexInfo>, DbError> {
-        let taught = self.taught()?;
+        let taught = taught(&self.conn)?;
         let sql = "SELECT name, trained_secs, length(bytes) AS bytes, samples, (SELECT count(*) FROM json_each(samples) \
                    WHERE json_array_length(value) > 1) AS count FROM indexes ORDER BY name";
         let mut statement = self.conn.prepare(sql)?;
         let indexes = statement.query_map([], |row| {
+            let by: String = row.get("samples")?;
             Ok(IndexInfo {
                 name: row.get("name")?,
                 trained_secs: row.get("trained_secs")?,
                 bytes: row.get::<_, i64>("bytes")? as usize,
                 samples: row.get::<_, i64>("count")? as usize,
-                stale: row.get::<_, String>("samples")? != taught,
+                stale: by != taught,
+                taught: by,
             })
         })?;
         Ok(indexes.collect::<Result<_, _>>()?)

@@ -6,6 +6,7 @@
 
 mod classes;
 mod plan;
+mod read;
 mod sample;
 mod samples;
 mod whole;
@@ -13,6 +14,7 @@ mod write;
 
 pub use classes::ClassCount;
 pub use plan::{ChangedLabel, LabelChange, LabelOptions, Labelled};
+pub(crate) use read::list;
 pub use sample::{Added, DbSample, GROUPED_BY, NewSample, SampleFilter, SampleId, SampleState};
 pub use whole::WholeClip;
 

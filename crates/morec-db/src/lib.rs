@@ -55,7 +55,7 @@ pub use error::DbError;
 pub use health::Health;
 pub use history::{Effect, HistoryStep, ReplayedStep, STEPS_KEPT};
 pub use import::{ImportCounts, ImportLog, ImportOutcome, Refused};
-pub use indexes::IndexInfo;
+pub use indexes::{IndexInfo, training_data};
 pub use kept::{KeptClip, KeptFile, NotKept, clip_rows, packed_rows, rows_recipe, stored_clip};
 pub use motion::StoredClip;
 pub use names::hint;

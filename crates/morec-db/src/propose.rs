@@ -12,6 +12,7 @@
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use morec::TimeSpan;
 use morec::features::FeatureParams;
 use morec::progress::Progress;
 use morec::train::overlap_share;
@@ -46,10 +47,9 @@ pub struct Proposal {
     pub clip: ClipId,
     /// Its proposed class.
     pub class: String,
-    /// Start, seconds.
-    pub start_secs: f64,
-    /// Stop, seconds.
-    pub stop_secs: f64,
+    /// Its time.
+    #[serde(flatten)]
+    pub span: TimeSpan,
     /// True if the clip as a whole is meant: so where all samples of the class are whole clips.
     pub whole_clip: bool,
     /// Probability that it is right, 0 to 1, estimated from the answers so far.
@@ -68,8 +68,8 @@ impl From<Proposal> for NewSample {
         NewSample {
             clip: p.clip,
             class: p.class,
-            start_secs: p.start_secs,
-            stop_secs: p.stop_secs,
+            start_secs: p.span.start_secs,
+            stop_secs: p.span.stop_secs,
             whole_clip: p.whole_clip,
             state: SampleState::Proposed,
             score: Some(f64::from(p.score)),
@@ -233,22 +233,24 @@ fn in_clip(
             kept.push(candidate);
         }
     }
-    let proposal = |(score, c): (f64, ProposalCandidate)| Proposal {
-        clip: of.id,
-        class: material.classes[c.class].clone(),
-        start_secs: c.ticks.start as f64 / tick_hz,
-        stop_secs: if material.whole[c.class] {
-            of.end_secs
-        } else {
-            (c.ticks.end as f64 / tick_hz).min(of.end_secs)
-        },
-        whole_clip: material.whole[c.class],
-        score: score as f32,
+    let proposal = |(score, c): (f64, ProposalCandidate)| {
+        let whole_clip = material.whole[c.class];
+        let mut span = TimeSpan::of_frames(c.ticks, tick_hz);
+        if whole_clip || span.stop_secs > of.end_secs {
+            span.stop_secs = of.end_secs;
+        }
+        Proposal {
+            clip: of.id,
+            class: material.classes[c.class].clone(),
+            span,
+            whole_clip,
+            score: score as f32,
+        }
     };
     joined(kept, |class| material.activity[class])
         .into_iter()
         .map(proposal)
-        .filter(|p| p.stop_secs > p.start_secs)
+        .filter(|p| p.span.is_stretch())
         .collect()
 }
 

@@ -7,7 +7,7 @@ use rusqlite::{Connection, params};
 
 use crate::import::{PreparedFile, insert_file, make, skeleton_of};
 use crate::kept::KeptClip;
-use crate::labels::{DbSample, SampleFilter};
+use crate::labels::{self, DbSample, SampleFilter};
 use crate::{ClipId, ClipUpdate, DbError, MotionDb, rows};
 
 /// Result of replacing the file of a clip.
@@ -71,12 +71,11 @@ impl MotionDb {
         };
         // Half a frame is no difference.
         let end = after_secs + 0.5 / clip.rate_hz;
-        let (kept, removed): (Vec<DbSample>, Vec<DbSample>) = self
-            .samples(&filter)?
-            .into_iter()
-            .partition(|sample| sample.whole_clip || sample.stop_secs <= end);
         let what = format!("replace the file of clip {}", old.name);
-        let cuts = self.edit(&what, |conn| {
+        let (kept, removed, cuts) = self.edit(&what, |conn| {
+            let samples = labels::list(conn, &filter)?.into_iter();
+            let (kept, removed): (Vec<DbSample>, Vec<DbSample>) =
+                samples.partition(|sample| sample.whole_clip || sample.stop_secs <= end);
             put(conn, old.id, path, &clip)?;
             for sample in &removed {
                 let sql = "DELETE FROM samples WHERE id = ?1";
@@ -86,7 +85,8 @@ impl MotionDb {
                 WHERE clip = ?1 AND stop_secs <> ?2 AND (whole_clip OR stop_secs > ?2)";
             conn.execute(sql, params![old.id.0, after_secs])?;
             let sql = "DELETE FROM segments WHERE clip = ?1";
-            Ok(conn.execute(sql, params![old.id.0])?)
+            let cuts = conn.execute(sql, params![old.id.0])?;
+            Ok((kept, removed, cuts))
         })?;
         Ok(Replaced {
             clip: old.name.clone(),

@@ -30,6 +30,7 @@ pub use learned::LearnedMetric;
 pub use plan::SearchPlan;
 pub use rank::{Hit, SearchOptions, windows_wanted};
 
+use morec::TimeSpan;
 use morec::features::FeatureParams;
 use morec::progress::Progress;
 use rayon::prelude::*;
@@ -119,11 +120,10 @@ impl SearchIndex {
     }
 
     /// A stretch of one of the clips as an example; `None` if the clip is not there or the stretch holds no three rows.
-    pub fn example(&self, clip: ClipId, start_secs: f64, stop_secs: f64) -> Option<Example> {
+    pub fn example(&self, clip: ClipId, span: impl Into<TimeSpan>) -> Option<Example> {
         let found = self.clips.iter().find(|c| c.clip == clip)?;
         let rows = &found.laid.rows;
-        let tick = |secs: f64| ((secs * self.tick_hz).round().max(0.0) as usize).min(rows.len());
-        let span = tick(start_secs)..tick(stop_secs);
+        let span = span.into().frames_among(rows.len(), self.tick_hz);
         if span.len() < 3 {
             return None;
         }

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use morec::TimeSpan;
 use rusqlite::params;
 
 use crate::{ClipId, DbError, MotionDb};
@@ -36,10 +37,9 @@ pub struct Segment {
     pub clip: ClipId,
     /// Its kind.
     pub kind: SegmentKind,
-    /// Start, seconds.
-    pub start_secs: f64,
-    /// Stop, seconds.
-    pub stop_secs: f64,
+    /// Its time.
+    #[serde(flatten)]
+    pub span: TimeSpan,
 }
 
 impl MotionDb {
@@ -64,8 +64,8 @@ impl MotionDb {
                     s.clip.0,
                     method,
                     s.kind.name(),
-                    s.start_secs,
-                    s.stop_secs
+                    s.span.start_secs,
+                    s.span.stop_secs
                 ])?;
             }
             Ok(())
@@ -110,7 +110,6 @@ fn segment(row: &rusqlite::Row<'_>) -> rusqlite::Result<Segment> {
             "rest" => SegmentKind::Rest,
             _ => SegmentKind::Motion,
         },
-        start_secs: row.get("start_secs")?,
-        stop_secs: row.get("stop_secs")?,
+        span: TimeSpan::new(row.get("start_secs")?, row.get("stop_secs")?),
     })
 }

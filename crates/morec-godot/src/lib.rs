@@ -105,7 +105,7 @@ impl RecognizerNode {
         match event.phase {
             Phase::Start => signals.motion_started().emit(&name, event.score),
             Phase::End => {
-                let (start, stop) = (event.start_secs, event.stop_secs);
+                let (start, stop) = (event.span.start_secs, event.span.stop_secs);
                 let mut ended = signals.motion_ended();
                 ended.emit(&name, event.score, start, stop, repetitions);
             }

@@ -143,7 +143,7 @@ mod tests {
         let [mut of_roles, mut of_joints] = [Vec::new(), Vec::new()];
         let ends = |stream: &PerformerStream| -> Vec<(String, f64)> {
             let ends = stream.events().filter(|(_, e)| e.phase == Phase::End);
-            ends.map(|(name, event)| (name, event.stop_secs)).collect()
+            ends.map(|(name, event)| (name, event.span.stop_secs)).collect()
         };
         for_each_pose(&take.clip, &roles, &(0..0), |secs, pose| {
             by_roles.push_places(secs, pose);

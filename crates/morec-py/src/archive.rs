@@ -262,7 +262,13 @@ pub(crate) fn stored_motion(
 pub(crate) fn events(index: &MotionIndex, found: Vec<Detection>) -> Vec<EventTuple> {
     let event = |d: Detection| {
         let class = index.model.class_name(d.class).to_owned();
-        (class, d.start_secs, d.stop_secs, d.score, d.reported_secs)
+        (
+            class,
+            d.span.start_secs,
+            d.span.stop_secs,
+            d.score,
+            d.reported_secs,
+        )
     };
     found.into_iter().map(event).collect()
 }

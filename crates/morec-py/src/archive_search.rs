@@ -74,7 +74,7 @@ impl SearchPart {
 
     /// A stretch of one of the clips as an example, which is then no hit itself.
     fn example(&self, clip: i64, start: f64, stop: f64) -> PyResult<SearchExample> {
-        let example = self.index.example(ClipId(clip), start, stop);
+        let example = self.index.example(ClipId(clip), start..stop);
         let short = || value_error("the example must hold at least 0.1 s of motion");
         Ok(SearchExample {
             example: example.ok_or_else(short)?,
@@ -121,8 +121,8 @@ impl SearchPart {
         let hit = |h: morec_db::search::Hit| {
             (
                 h.clip.0,
-                h.start_secs,
-                h.stop_secs,
+                h.span.start_secs,
+                h.span.stop_secs,
                 h.score,
                 h.warp_distance,
                 h.mirrored,

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use morec::TimeSpan;
 use morec::crossval::{CrossvalData, CrossvalOptions, FoldBy, Tested, crossval as run_crossval};
 use morec::eval::{
     ClipDetection, Evaluation, GroundTruth, MEASURED_OVERLAP, StreamInfo, timelines,
@@ -229,15 +230,13 @@ pub fn evaluate<'py>(
     let label = |(clip, class, start_secs, stop_secs): SpanTuple| GroundTruth {
         clip,
         class,
-        start_secs,
-        stop_secs,
+        span: TimeSpan::new(start_secs, stop_secs),
     };
     let hit =
         |(clip, class, start_secs, stop_secs, score, reported_secs): HitTuple| ClipDetection {
             clip,
             class,
-            start_secs,
-            stop_secs,
+            span: TimeSpan::new(start_secs, stop_secs),
             score,
             reported_secs,
             repetitions: None,

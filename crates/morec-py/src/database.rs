@@ -320,8 +320,8 @@ impl PyDatabase {
                 Some(NewSample {
                     clip: *ids.get(&s.clip)?,
                     class: s.class,
-                    start_secs: s.start_secs,
-                    stop_secs: s.stop_secs,
+                    start_secs: s.span.start_secs,
+                    stop_secs: s.span.stop_secs,
                     whole_clip: s.whole_clip,
                     state,
                     score: None,
@@ -370,7 +370,7 @@ impl PyDatabase {
             let example = match (&name, &data) {
                 (Some(name), _) => {
                     let info = db.find_clip(name)?;
-                    index.example(info.id, start, stop.unwrap_or(info.duration_secs()))
+                    index.example(info.id, start..stop.unwrap_or(info.duration_secs()))
                 }
                 (None, Some(data)) => example_of(data, start, stop),
                 (None, None) => None,
@@ -384,8 +384,8 @@ impl PyDatabase {
         for hit in hits {
             let row = PyDict::new(py);
             row.set_item("clip", names.get(&hit.clip))?;
-            row.set_item("start_secs", hit.start_secs)?;
-            row.set_item("stop_secs", hit.stop_secs)?;
+            row.set_item("start_secs", hit.span.start_secs)?;
+            row.set_item("stop_secs", hit.span.stop_secs)?;
             row.set_item("score", hit.score)?;
             row.set_item("warp_distance", hit.warp_distance)?;
             row.set_item("mirrored", hit.mirrored)?;
@@ -492,8 +492,8 @@ impl PyDatabase {
             let row = PyDict::new(py);
             row.set_item("clip", names.get(&p.clip))?;
             row.set_item("class", &p.class)?;
-            row.set_item("start_secs", p.start_secs)?;
-            row.set_item("stop_secs", p.stop_secs)?;
+            row.set_item("start_secs", p.span.start_secs)?;
+            row.set_item("stop_secs", p.span.stop_secs)?;
             row.set_item("score", p.score)?;
             rows.push(row);
         }

@@ -138,8 +138,8 @@ impl LiveSession {
         let row = PyDict::new(py);
         row.set_item("phase", event.phase.name())?;
         row.set_item("class", self.model.class_name(event.class))?;
-        row.set_item("start_secs", event.start_secs)?;
-        row.set_item("stop_secs", event.stop_secs)?;
+        row.set_item("start_secs", event.span.start_secs)?;
+        row.set_item("stop_secs", event.span.stop_secs)?;
         row.set_item("score", event.score)?;
         row.set_item("progress", event.progress)?;
         row.set_item("reported_secs", event.reported_secs)?;

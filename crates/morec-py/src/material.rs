@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use morec::TimeSpan;
 use morec::labels::{ClipLength, Extent, Label, Labels, People, read_people};
 use morec::reproduce::Setting;
 use morec::train::thesis::SvrdmOptions;
@@ -40,7 +41,7 @@ pub fn labels(given: &Bound<'_, PyAny>) -> PyResult<Labels> {
         clip,
         class,
         extent: match (frames, secs) {
-            (_, Some((start, stop))) => Extent::Secs(start, stop),
+            (_, Some((start, stop))) => Extent::Secs(TimeSpan::new(start, stop)),
             (Some((start, stop)), None) => Extent::Frames(start..stop),
             (None, None) => Extent::WholeClip,
         },
@@ -251,7 +252,7 @@ pub fn rows_of_table(bytes: &Bound<'_, PyBytes>) -> PyResult<Vec<LabelRow>> {
     let row = |label: Label| {
         let (frames, secs) = match label.extent {
             Extent::Frames(span) => (Some((span.start, span.end)), None),
-            Extent::Secs(start, stop) => (None, Some((start, stop))),
+            Extent::Secs(span) => (None, Some((span.start_secs, span.stop_secs))),
             Extent::WholeClip => (None, None),
         };
         (label.clip, label.class, frames, secs, label.person)
@@ -274,6 +275,6 @@ pub fn resolve_labels(
     let resolved = self::labels(labels)?.resolve(&lengths);
     let samples = resolved.samples.into_iter();
     Ok(samples
-        .map(|s| (s.class, s.start_secs, s.stop_secs))
+        .map(|s| (s.class, s.span.start_secs, s.span.stop_secs))
         .collect())
 }

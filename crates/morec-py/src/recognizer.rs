@@ -130,8 +130,8 @@ impl PyRecognizer {
             if let Some(class) = self.classes.get(d.class.index()) {
                 row.set_item(intern!(py, "class"), class)?;
             }
-            row.set_item(intern!(py, "start_secs"), d.start_secs)?;
-            row.set_item(intern!(py, "stop_secs"), d.stop_secs)?;
+            row.set_item(intern!(py, "start_secs"), d.span.start_secs)?;
+            row.set_item(intern!(py, "stop_secs"), d.span.stop_secs)?;
             row.set_item(intern!(py, "score"), d.score)?;
             row.set_item(intern!(py, "reported_secs"), d.reported_secs)?;
             set_repetitions(&row, d.repetitions)?;

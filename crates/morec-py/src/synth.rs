@@ -59,7 +59,7 @@ pub fn synth_database(
         let labels = take
             .labels
             .iter()
-            .map(|l| (l.class, l.start_secs, l.stop_secs));
+            .map(|l| (l.class, l.span.start_secs, l.span.stop_secs));
         Ok((ready(take.clip)?, labels.collect(), take.person))
     };
     takes.into_iter().map(told).collect()

@@ -58,8 +58,8 @@ pub fn detection<'py>(
     let row = PyDict::new(py);
     row.set_item("clip", clip)?;
     row.set_item("class", class)?;
-    row.set_item("start_secs", found.start_secs)?;
-    row.set_item("stop_secs", found.stop_secs)?;
+    row.set_item("start_secs", found.span.start_secs)?;
+    row.set_item("stop_secs", found.span.stop_secs)?;
     row.set_item("score", found.score)?;
     row.set_item("reported_secs", found.reported_secs)?;
     set_repetitions(&row, found.repetitions)?;

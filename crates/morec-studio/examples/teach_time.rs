@@ -63,11 +63,11 @@ fn made(folder: &Path, path: &Path) -> Result<(), Box<dyn Error>> {
         };
         db.import(&[file], &FileReader::default(), &about, &())?;
         let clip = db.find_clip(&take.clip.name)?.id;
-        let sample = |label: &morec::synth::SyntheticLabel| NewSample {
+        let sample = |label: &morec::labels::Mark<&'static str>| NewSample {
             clip,
             class: label.class.to_owned(),
-            start_secs: label.start_secs,
-            stop_secs: label.stop_secs,
+            start_secs: label.span.start_secs,
+            stop_secs: label.span.stop_secs,
             whole_clip: false,
             state: SampleState::Accepted,
             score: None,

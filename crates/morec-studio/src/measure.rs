@@ -1,8 +1,11 @@
 //! Measures of speed: processor time of a frame (example `frame_time`), time to the first frame (example `start_time`),
-//! time from a mark on the live stream to the index trained with it (example `teach_time`).
+//! time from a mark on the live stream to the index trained with it (example `teach_time`), and from the drop of a label to
+//! the frame that shows it from the disk (example `edit_time`).
 
+mod editing;
 mod teaching;
 
+pub use editing::drops;
 pub use teaching::{TeachingTimes, teaching};
 
 use std::sync::Arc;
@@ -194,7 +197,5 @@ fn snapshot(load: &Load, motion: &ClipMotion) -> Snapshot {
         (0..load.clips).map(clip).collect(),
         (0..CLASSES).map(class).collect(),
         (0..load.labels).map(sample).collect(),
-        Vec::new(),
-        Vec::new(),
     )
 }

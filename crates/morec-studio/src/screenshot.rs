@@ -307,11 +307,7 @@ fn search(window: &mut Headless, panel: Panel, class: &str) -> Result<(), String
         add: false,
     }));
     if panel == Panel::Label {
-        let of = Stretch {
-            clip: label.clip,
-            start_secs: label.start_secs,
-            stop_secs: label.stop_secs,
-        };
+        let of = Stretch::from(&*label);
         let class = class.to_owned();
         window.command(Command::Compare(CompareCommand::NearestOf { of, class }));
     } else {

@@ -49,7 +49,10 @@ fn synthetic(folder: &Path) -> Outcome<Case> {
         fs::write(&path, bytes)?;
         for l in &person.labels {
             let (name, class) = (&person.clip.name, l.class);
-            labels += &format!("{name}\t{class}\t{}\t{}\n", l.start_secs, l.stop_secs);
+            labels += &format!(
+                "{name}\t{class}\t{}\t{}\n",
+                l.span.start_secs, l.span.stop_secs
+            );
         }
         files.push(path);
     }

@@ -1,6 +1,7 @@
 //! What training takes from JavaScript: rows of labels, and options.
 
 use morec::Labels;
+use morec::TimeSpan;
 use morec::labels::{Extent, Label};
 use morec::train::{Everyday, Mirror, TrainOptions};
 use serde::Deserialize;
@@ -24,7 +25,7 @@ pub fn labels(rows: Vec<SampleRow>) -> Result<Labels, String> {
     let mut labels = Labels::default();
     for (row, line) in rows.into_iter().zip(1..) {
         let extent = match (row.start_secs, row.stop_secs) {
-            (Some(start), Some(stop)) => Extent::Secs(start, stop),
+            (Some(start), Some(stop)) => Extent::Secs(TimeSpan::new(start, stop)),
             (None, None) => Extent::WholeClip,
             _ => {
                 return Err(format!(

@@ -1,5 +1,6 @@
 //! What is reported, as the objects that JavaScript gets. Their fields are those of the command's JSON lines.
 
+use morec::TimeSpan;
 use morec::decode::Repetitions;
 use morec::live::{Detection, Event, Model};
 use serde::Serialize;
@@ -8,8 +9,8 @@ use serde::Serialize;
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DetectionRow<'a> {
     class: &'a str,
-    start_secs: f64,
-    stop_secs: f64,
+    #[serde(flatten)]
+    span: TimeSpan,
     score: f64,
     reported_secs: f64,
     #[serde(flatten)]
@@ -20,8 +21,7 @@ impl<'a> From<&Detection<&'a str>> for DetectionRow<'a> {
     fn from(d: &Detection<&'a str>) -> Self {
         Self {
             class: d.class,
-            start_secs: d.start_secs,
-            stop_secs: d.stop_secs,
+            span: d.span,
             score: d.score,
             reported_secs: d.reported_secs,
             repetitions: d.repetitions,
@@ -37,8 +37,8 @@ pub struct EventRow<'a> {
     class: &'a str,
     score: f64,
     progress: f64,
-    start_secs: f64,
-    stop_secs: f64,
+    #[serde(flatten)]
+    span: TimeSpan,
     reported_secs: f64,
     #[serde(flatten)]
     repetitions: Option<Repetitions>,
@@ -53,8 +53,7 @@ impl<'a> EventRow<'a> {
             class: model.class_name(event.class),
             score: event.score,
             progress: event.progress,
-            start_secs: event.start_secs,
-            stop_secs: event.stop_secs,
+            span: event.span,
             reported_secs: event.reported_secs,
             repetitions: event.repetitions,
         }

@@ -5,6 +5,7 @@
 
 use std::sync::Arc;
 
+use morec::TimeSpan;
 use morec::live::{Event, EventOptions, Frame, Performer, PerformerId, Phase, Rig};
 use morec::plot::{Bar, LaneChart};
 
@@ -32,16 +33,18 @@ fn main() {
     }
     performer.finish(&mut |e| events.push(e));
     let bar = |kind: usize| {
-        move |(from_secs, to_secs): (f64, f64)| Bar {
-            from_secs,
-            to_secs: to_secs - GAP_SECS,
+        move |span: TimeSpan| Bar {
+            span: TimeSpan {
+                stop_secs: span.stop_secs - GAP_SECS,
+                ..span
+            },
             kind,
         }
     };
-    let performed = take.labels.iter().map(|l| (l.start_secs, l.stop_secs));
+    let performed = take.labels.iter().map(|l| l.span);
     let of = |phase: Phase| events.iter().filter(move |e| e.phase == phase);
-    let bounds = |e: &Event| (e.start_secs, e.stop_secs);
-    let moment = |e: &Event| (e.reported_secs, e.reported_secs + 0.06 + GAP_SECS);
+    let bounds = |e: &Event| e.span;
+    let moment = |e: &Event| TimeSpan::new(e.reported_secs, e.reported_secs + 0.06 + GAP_SECS);
     let count = of(Phase::End).find_map(|e| e.repetitions).unwrap().count;
     let kinds = [
         "waves without a pause, as performed".to_owned(),

@@ -164,12 +164,12 @@ impl Counts {
             return;
         }
         for sample in &samples {
-            let middle_secs = 0.5 * (sample.start_secs + sample.stop_secs);
+            let middle_secs = sample.span.middle_secs();
             let at = early.iter().rev().find(|(t, _)| *t <= middle_secs);
             // One that began well before the sample is another motion's, perhaps of the same class.
-            let slack_secs = 0.25 * (sample.stop_secs - sample.start_secs);
+            let slack_secs = 0.25 * sample.span.duration_secs();
             let known = at.and_then(|(_, told)| *told).is_some_and(|told| {
-                is(&told, sample) && told.start_secs > sample.start_secs - slack_secs
+                is(&told, sample) && told.start_secs > sample.span.start_secs - slack_secs
             });
             self.known += usize::from(known);
         }
@@ -177,8 +177,8 @@ impl Counts {
         let right = half.iter().filter(|told| {
             samples.iter().any(|sample| {
                 is(told, sample)
-                    && sample.start_secs < told.seen_secs
-                    && told.start_secs < sample.stop_secs
+                    && sample.span.start_secs < told.seen_secs
+                    && told.start_secs < sample.span.stop_secs
             })
         });
         self.right += right.count();

@@ -9,6 +9,7 @@
 
 use std::path::Path;
 
+use morec::TimeSpan;
 use morec::features::{BoneSet, FeatureParams};
 use morec::files::open_all;
 use morec::labels::{ClipLength, Labels, Sample};
@@ -38,12 +39,12 @@ struct Stretch {
 }
 
 impl Stretch {
-    /// Repetitions between two times, with parts.
-    fn repetitions(&self, start_secs: f64, stop_secs: f64) -> f64 {
-        let stop_secs = stop_secs.min(self.sample.stop_secs);
+    /// Repetitions in a span of time, with parts.
+    fn repetitions(&self, mut within: TimeSpan) -> f64 {
+        within.stop_secs = within.stop_secs.min(self.sample.span.stop_secs);
         let parts = self.bounds_secs.windows(2).map(|bounds| {
-            let inside = bounds[1].min(stop_secs) - bounds[0].max(start_secs);
-            inside.max(0.0) / (bounds[1] - bounds[0])
+            let repetition = TimeSpan::new(bounds[0], bounds[1]);
+            repetition.overlap_secs(within) / repetition.duration_secs()
         });
         parts.sum()
     }
@@ -73,12 +74,10 @@ fn count(clips: &Path, labels: &Path, is_repetition: bool) {
         }
         for (found, class) in recognized(clip, &clips, &others) {
             let touches = |s: &&&Stretch| {
-                let (start, stop) = (s.sample.start_secs, s.sample.stop_secs);
-                s.sample.class == class
-                    && found.stop_secs.min(stop) - found.start_secs.max(start) > 1.0
+                s.sample.class == class && found.span.overlap_secs(s.sample.span) > 1.0
             };
             let truth: f64 = (of_clip.iter().filter(touches))
-                .map(|s| s.repetitions(found.start_secs, found.stop_secs))
+                .map(|s| s.repetitions(found.span))
                 .sum();
             if truth < 1.5 {
                 continue;
@@ -98,14 +97,17 @@ fn count(clips: &Path, labels: &Path, is_repetition: bool) {
 }
 
 fn named(found: &Detection, class: &str) -> String {
-    format!("{class} {:.1}-{:.1} s", found.start_secs, found.stop_secs)
+    format!(
+        "{class} {:.1}-{:.1} s",
+        found.span.start_secs, found.span.stop_secs
+    )
 }
 
 /// Runs of labels of one class.
 fn joined(mut samples: Vec<Sample>) -> Vec<Stretch> {
     samples.sort_by(|a, b| {
-        (&a.clip, a.start_secs)
-            .partial_cmp(&(&b.clip, b.start_secs))
+        (&a.clip, a.span.start_secs)
+            .partial_cmp(&(&b.clip, b.span.start_secs))
             .unwrap()
     });
     let mut stretches: Vec<Stretch> = Vec::new();
@@ -113,15 +115,15 @@ fn joined(mut samples: Vec<Sample>) -> Vec<Stretch> {
         let follows = |last: &&mut Stretch| {
             let last = &last.sample;
             (&last.clip, &last.class) == (&sample.clip, &sample.class)
-                && sample.start_secs - last.stop_secs < GAP_SECS
+                && sample.span.start_secs - last.span.stop_secs < GAP_SECS
         };
         match stretches.last_mut().filter(follows) {
             Some(last) => {
-                last.sample.stop_secs = sample.stop_secs;
-                last.bounds_secs.push(sample.stop_secs);
+                last.sample.span.stop_secs = sample.span.stop_secs;
+                last.bounds_secs.push(sample.span.stop_secs);
             }
             None => stretches.push(Stretch {
-                bounds_secs: vec![sample.start_secs, sample.stop_secs],
+                bounds_secs: vec![sample.span.start_secs, sample.span.stop_secs],
                 sample,
             }),
         }
@@ -144,12 +146,12 @@ fn divided(samples: &[Sample], clips: &[TrainClip]) -> Vec<Stretch> {
         let tick = |secs: f64| ((secs * params.tick_hz()) as usize).min(stream.rows.len());
         let rows = stream
             .rows
-            .slice(tick(sample.start_secs)..tick(sample.stop_secs));
+            .slice(tick(sample.span.start_secs)..tick(sample.span.stop_secs));
         let cycles = cycles(&rows, params.tick_hz(), &CycleParams::default())?;
-        let bounds = (0..).map(|n| sample.start_secs + f64::from(n) * cycles.period_secs);
+        let bounds = (0..).map(|n| sample.span.start_secs + f64::from(n) * cycles.period_secs);
         Some(Stretch {
             bounds_secs: bounds
-                .take_while(|b| *b < sample.stop_secs + cycles.period_secs)
+                .take_while(|b| *b < sample.span.stop_secs + cycles.period_secs)
                 .collect(),
             sample: sample.clone(),
         })

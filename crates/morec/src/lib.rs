@@ -46,7 +46,7 @@
 //! let mut labels = Labels::default();
 //! for person in &people {
 //!     for label in &person.labels {
-//!         labels.add(&person.clip.name, label.class, label.start_secs..label.stop_secs);
+//!         labels.add(&person.clip.name, label.class, label.span);
 //!     }
 //! }
 //! let takes = people.into_iter().map(|person| Take::new(person.clip)).collect::<Result<Vec<_>, _>>()?;
@@ -195,8 +195,8 @@ pub use live::{Detection, Event, Recognizer, Session};
 #[cfg(feature = "files")]
 pub use mocap::files;
 pub use mocap::{
-    BoneSet, Clip, KeyPose, ParseError, Place, Skeleton, Warning, clip, humanoid, kinematics, math,
-    pose, progress, resample, rng, roles,
+    BoneSet, Clip, KeyPose, ParseError, Place, Skeleton, TimeSpan, Warning, clip, humanoid,
+    kinematics, math, pose, progress, resample, rng, roles,
 };
 #[cfg(feature = "formats")]
 pub use mocap::{ImportOptions, Take, fitting, formats, import, smooth};

@@ -1,5 +1,6 @@
 //! One teacher's rows again, with other samples to teach: how much depends on which two were recorded.
 
+use morec::TimeSpan;
 use morec::labels::Sample;
 use morec::rng::Rng;
 use morec::train::TrainClip;
@@ -73,8 +74,7 @@ fn whole_clips(set: &MotionSet) -> Vec<Sample> {
             .find(|s| kind(&s.clip) == kind(&clip.name))?;
         Some(Sample {
             clip: clip.name.clone(),
-            start_secs: 0.0,
-            stop_secs: clip.clip.duration_secs(),
+            span: TimeSpan::new(0.0, clip.clip.duration_secs()),
             ..alike.clone()
         })
     };

@@ -129,7 +129,7 @@ impl Laps {
         if event.phase != Phase::End {
             return;
         }
-        let lap = (event.start_secs / self.lap_secs).floor().max(0.0) as u64;
+        let lap = (event.span.start_secs / self.lap_secs).floor().max(0.0) as u64;
         while lap > self.number {
             self.close();
         }
@@ -137,8 +137,8 @@ impl Laps {
         let step = |value: f64| (value * 1000.0).round() as i64;
         let found = (
             event.class.0,
-            step(event.start_secs - from),
-            step(event.stop_secs - from),
+            step(event.span.start_secs - from),
+            step(event.span.stop_secs - from),
             step(event.score),
         );
         self.now.push(found);

@@ -87,7 +87,7 @@ pub fn run(model: &Model, clips: &Arc<Vec<PlayableClip>>, args: &Args) -> Result
         })?;
         let left_wall_secs = wall_now_secs();
         if event.phase == Phase::End {
-            let ended_wall_secs = event.wall_at_secs(event.stop_secs);
+            let ended_wall_secs = event.wall_at_secs(event.span.stop_secs);
             told.push(ReceivedEvent {
                 class: class.to_owned(),
                 ended_wall_secs,
@@ -110,7 +110,7 @@ pub fn run(model: &Model, clips: &Arc<Vec<PlayableClip>>, args: &Args) -> Result
         let wanted = samples.len();
         let delays = samples.iter().filter_map(|sample| {
             let at = clips.iter().position(|c| c.clip.name == sample.clip)?;
-            let end_secs = begins.get(at)? + sample.stop_secs;
+            let end_secs = begins.get(at)? + sample.span.stop_secs;
             let near = |t: &&ReceivedEvent| {
                 t.class == sample.class && (t.ended_wall_secs - end_secs).abs() < NEAR_SECS
             };

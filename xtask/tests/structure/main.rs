@@ -6,4 +6,5 @@ mod figures;
 mod markdown;
 mod names;
 mod sources;
+mod spans;
 mod words;

@@ -3,6 +3,7 @@
 use super::bezier::{ChannelKind, ChannelValue, CurveSegment};
 use super::lattice::{Code, Lattice, Piece, Tangents};
 use super::playhead::PlayedChannel;
+use crate::time_span::TimeSpan;
 
 /// A channel as a run of cubic Bézier curves, end to end; a channel that stands still is a single key.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,10 +18,9 @@ pub struct Curve {
 /// A Bézier curve of a channel, as a picture or a table needs it.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Bezier {
-    /// When it begins, seconds from the clip's start.
-    pub start_secs: f64,
-    /// When it ends; the parameter runs evenly in between.
-    pub stop_secs: f64,
+    /// Its time from the clip's start; the parameter runs evenly over it.
+    #[serde(flatten)]
+    pub span: TimeSpan,
     /// Degree it was fitted with: 1, 2 or 3.
     pub degree: u8,
     /// Control points, lower degrees in their cubic form: `[x, y, z, w]` of a quaternion, to be brought to length 1
@@ -94,8 +94,10 @@ impl Curve {
             .iter()
             .zip(&self.segments)
             .map(move |(piece, segment)| Bezier {
-                start_secs: f64::from(segment.start) / rate_hz,
-                stop_secs: f64::from(segment.start + segment.frames) / rate_hz,
+                span: TimeSpan::new(
+                    f64::from(segment.start) / rate_hz,
+                    f64::from(segment.start + segment.frames) / rate_hz,
+                ),
                 degree: piece.degree(),
                 points: segment.points.map(Into::into),
             })

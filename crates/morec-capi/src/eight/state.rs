@@ -250,11 +250,11 @@ fn segment(number: u64, event: &Event, name: &str, rate_hz: f64) -> MotionSeg {
     MotionSeg {
         number,
         class_id: u32::from(event.class.0),
-        start_frame: frame(event.start_secs),
-        stop_frame: frame(event.stop_secs),
+        start_frame: frame(event.span.start_secs),
+        stop_frame: frame(event.span.stop_secs),
         class_name_bytes: fits as u32,
-        start_secs: event.start_secs,
-        stop_secs: event.stop_secs,
+        start_secs: event.span.start_secs,
+        stop_secs: event.span.stop_secs,
         confidence: event.score,
         class_name,
     }

@@ -20,7 +20,7 @@ fn lines(found: &[Detection]) -> String {
         writeln!(
             text,
             "{class} {:.4} {:.4} {:.4}",
-            d.start_secs, d.stop_secs, d.score
+            d.span.start_secs, d.span.stop_secs, d.score
         )
         .unwrap();
         text

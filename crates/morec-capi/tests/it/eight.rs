@@ -104,7 +104,7 @@ fn the_solution_is_what_the_recogniser_finds() {
     for ((segment, expected), number) in solution.iter().zip(&expected).zip(1..) {
         assert_eq!(
             (segment.start_secs, segment.stop_secs),
-            (expected.start_secs, expected.stop_secs)
+            (expected.span.start_secs, expected.span.stop_secs)
         );
         assert_eq!(
             (segment.confidence, segment.number),
@@ -112,7 +112,7 @@ fn the_solution_is_what_the_recogniser_finds() {
         );
         assert_eq!(
             segment.stop_frame,
-            (expected.stop_secs * 60.0).round() as u32
+            (expected.span.stop_secs * 60.0).round() as u32
         );
         let name = unsafe { CStr::from_ptr(segment.class_name.as_ptr()) }
             .to_str()

@@ -201,7 +201,8 @@ fn every_way_to_tell_a_skeleton_gives_the_motions_of_the_clip() {
 fn assert_same(found: &[Detection], expected: &[Detection], about: &str) {
     let near = |a: f64, b: f64| (a - b).abs() < 1e-6;
     let same = |(a, b): (&Detection, &Detection)| {
-        let times = near(a.start_secs, b.start_secs) && near(a.stop_secs, b.stop_secs);
+        let times =
+            near(a.span.start_secs, b.span.start_secs) && near(a.span.stop_secs, b.span.stop_secs);
         a.class == b.class
             && times
             && near(a.reported_secs, b.reported_secs)

@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use std::ptr::{null, null_mut};
 use std::sync::OnceLock;
 
+use morec::TimeSpan;
 use morec::features::KeyPose;
 use morec::index::{MotionIndex, Provenance};
 use morec::live::Detection;
@@ -185,8 +186,7 @@ impl Recognizer {
 pub fn detection(event: &MorecEvent) -> Detection {
     Detection {
         class: morec::classes::ClassId(event.class_id as u16),
-        start_secs: event.start_secs,
-        stop_secs: event.stop_secs,
+        span: TimeSpan::new(event.start_secs, event.stop_secs),
         score: event.score,
         reported_secs: event.reported_secs,
         repetitions: (event.repetitions > 0).then_some(morec::decode::Repetitions {

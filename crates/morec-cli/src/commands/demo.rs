@@ -12,11 +12,13 @@ use std::time::Instant;
 use anyhow::{Context, Result, bail};
 use clap::Parser;
 use morec::import::ImportOptions;
+use morec::labels::Mark;
 use morec::labels::{ClipLength, Labels, read_detections};
+use morec::live::Detection;
 
 use super::{evaluate, recognize, train};
 use crate::files::{ReadArgs, takes};
-use crate::show::{self, KnownSpan, ReportedDetection, ShownClip};
+use crate::show::{self, ShownClip};
 use cast::Cast;
 use folder::DemoFolder;
 
@@ -125,16 +127,8 @@ fn show(folder: &DemoFolder, cast: &Cast, args: &Args) -> Result<()> {
     let lengths = BTreeMap::from([(cast.name.clone(), length)]);
     let said = said(&folder.found(), &lengths)?;
     let table = Labels::from_path(folder.path("truth.tsv"))?;
-    let truth = table
-        .resolve(&lengths)
-        .samples
-        .into_iter()
-        .map(|l| KnownSpan {
-            class: l.class,
-            start_secs: l.start_secs,
-            stop_secs: l.stop_secs,
-        });
-    let truth: Vec<KnownSpan> = truth.collect();
+    let truth = table.resolve(&lengths).samples.into_iter();
+    let truth: Vec<Mark> = truth.map(|l| Mark::new(l.class, l.span)).collect();
     let title = format!("{}, {} times as fast", cast.whose, args.speed);
     let scene = ShownClip {
         title: &title,
@@ -155,18 +149,18 @@ fn show(folder: &DemoFolder, cast: &Cast, args: &Args) -> Result<()> {
 }
 
 /// The detections in the table `path`, in the order they were reported.
-fn said(path: &Path, lengths: &BTreeMap<String, ClipLength>) -> Result<Vec<ReportedDetection>> {
+fn said(path: &Path, lengths: &BTreeMap<String, ClipLength>) -> Result<Vec<Detection<String>>> {
     let shown = || path.display().to_string();
     let table = read_detections(&std::fs::read(path).with_context(shown)?).with_context(shown)?;
     let (found, _) = table.resolve(lengths);
-    let mut said: Vec<ReportedDetection> = found
+    let mut said: Vec<Detection<String>> = found
         .into_iter()
-        .map(|f| ReportedDetection {
+        .map(|f| Detection {
             class: f.class,
-            start_secs: f.start_secs,
-            stop_secs: f.stop_secs,
+            span: f.span,
             score: f.score.unwrap_or(1.0),
-            reported_secs: f.reported_secs.unwrap_or(f.stop_secs),
+            reported_secs: f.reported_secs.unwrap_or(f.span.stop_secs),
+            repetitions: None,
         })
         .collect();
     said.sort_by(|a, b| a.reported_secs.total_cmp(&b.reported_secs));

@@ -11,9 +11,10 @@ use morec::eval::{
     ClipDetection, DetectionVerdict, Evaluation, GroundTruth, StreamInfo, Timeline, event_pairs,
     timelines,
 };
-use morec::explain::{Miss, Performance, Sought, deviation, explain};
+use morec::explain::{Miss, Performance, deviation, explain};
 use morec::formats::Warning;
 use morec::import::ImportOptions;
+use morec::labels::Mark;
 use morec::labels::{ClipLength, Resolved, read_detections};
 use morec::live::{Detection, Model};
 use morec::report::Report;
@@ -176,13 +177,7 @@ impl Args {
                 .collect();
             let pairs = event_pairs(&labelled, &here);
             let missed = labelled.iter().zip(pairs).filter(|(_, p)| p.is_none());
-            let sought: Vec<Sought<'_>> = missed
-                .map(|(truth, _)| Sought {
-                    class: &truth.class,
-                    start_secs: truth.start_secs,
-                    stop_secs: truth.stop_secs,
-                })
-                .collect();
+            let sought: Vec<Mark<&str>> = missed.map(|(truth, _)| (*truth).into()).collect();
             let detected: Vec<Detection> =
                 here.iter().filter_map(|f| detection(&model, f)).collect();
             let played = (&clip.clip, &clip.roles, &clip.rest);
@@ -215,8 +210,7 @@ fn performances(model: &Model, loaded: &LoadedClip, timeline: &Timeline) -> Vec<
         Some(Performance {
             clip: found.clip.clone(),
             class: found.class.clone(),
-            start_secs: found.start_secs,
-            stop_secs: found.stop_secs,
+            span: found.span,
             deviation: deviation?,
         })
     };
@@ -229,10 +223,9 @@ fn detection(model: &Model, found: &ClipDetection) -> Option<Detection> {
     let class = model.classes().iter().position(|c| c.name == found.class)?;
     Some(Detection {
         class: ClassId(class as u16),
-        start_secs: found.start_secs,
-        stop_secs: found.stop_secs,
+        span: found.span,
         score: found.score.unwrap_or_default(),
-        reported_secs: found.reported_secs.unwrap_or(found.stop_secs),
+        reported_secs: found.reported_secs.unwrap_or(found.span.stop_secs),
         repetitions: None,
     })
 }

@@ -9,14 +9,16 @@ use anyhow::{Context, Result, bail};
 use morec::import::{ImportOptions, Take};
 use morec::index::MotionIndex;
 use morec::labels::ClipLength;
+use morec::labels::Mark;
+use morec::live::Detection;
 use morec::live::recognize_clip;
-use morec::player::{Mark, PlayedClip, page};
+use morec::player::{PlayedClip, page};
 
 use super::recognize::open_index;
 use crate::files::{self, ReadArgs};
 use crate::labels;
 use crate::output;
-use crate::show::{self, KnownSpan, ReportedDetection, ShownClip};
+use crate::show::{self, ShownClip};
 
 /// Play clips in the terminal, or write a page that plays them
 ///
@@ -94,7 +96,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 }
 
 /// The labels of each clip by its name.
-fn labels(path: Option<&Path>, takes: &[Take]) -> Result<BTreeMap<String, Vec<KnownSpan>>> {
+fn labels(path: Option<&Path>, takes: &[Take]) -> Result<BTreeMap<String, Vec<Mark>>> {
     let Some(path) = path else {
         return Ok(BTreeMap::new());
     };
@@ -113,13 +115,10 @@ fn labels(path: Option<&Path>, takes: &[Take]) -> Result<BTreeMap<String, Vec<Kn
     for warning in &resolved.warnings {
         eprintln!("morec: {}: {warning}", path.display());
     }
-    let mut of_clip: BTreeMap<String, Vec<KnownSpan>> = BTreeMap::new();
+    let mut of_clip: BTreeMap<String, Vec<Mark>> = BTreeMap::new();
     for sample in resolved.samples {
-        of_clip.entry(sample.clip).or_default().push(KnownSpan {
-            class: sample.class,
-            start_secs: sample.start_secs,
-            stop_secs: sample.stop_secs,
-        });
+        let label = Mark::new(sample.class, sample.span);
+        of_clip.entry(sample.clip).or_default().push(label);
     }
     if of_clip.is_empty() {
         eprintln!("morec: {}: no label is of these clips", path.display());
@@ -128,29 +127,21 @@ fn labels(path: Option<&Path>, takes: &[Take]) -> Result<BTreeMap<String, Vec<Kn
 }
 
 /// Detections of the index, in the order of their report.
-fn said(take: &mut Take, index: &MotionIndex, complete: bool) -> Result<Vec<ReportedDetection>> {
+fn said(take: &mut Take, index: &MotionIndex, complete: bool) -> Result<Vec<Detection<String>>> {
     if complete {
         index.complete_roles(&mut take.roles, &take.clip.skeleton);
     }
     let found = recognize_clip(&index.model, &take.clip, &take.roles, take.rest())
         .with_context(|| take.name().to_owned())?;
-    let mut said: Vec<ReportedDetection> = found
-        .into_iter()
-        .map(|found| ReportedDetection {
-            class: index.model.class_name(found.class).to_owned(),
-            start_secs: found.start_secs,
-            stop_secs: found.stop_secs,
-            score: found.score,
-            reported_secs: found.reported_secs,
-        })
-        .collect();
+    let named = |found: Detection| found.with_class(index.model.class_name(found.class).to_owned());
+    let mut said: Vec<Detection<String>> = found.into_iter().map(named).collect();
     said.sort_by(|a, b| a.reported_secs.total_cmp(&b.reported_secs));
     Ok(said)
 }
 
 fn in_terminal(
     takes: &[Take],
-    played: &[(Vec<KnownSpan>, Vec<ReportedDetection>)],
+    played: &[(Vec<Mark>, Vec<Detection<String>>)],
     speed: f64,
 ) -> Result<()> {
     let watched = std::io::stdout().is_terminal();
@@ -173,27 +164,19 @@ fn in_terminal(
 fn write_page(
     path: &Path,
     takes: &[Take],
-    played: Vec<(Vec<KnownSpan>, Vec<ReportedDetection>)>,
+    played: Vec<(Vec<Mark>, Vec<Detection<String>>)>,
 ) -> Result<()> {
-    let mark = |name: String, start_secs, stop_secs| Mark {
-        name,
-        start_secs,
-        stop_secs,
-    };
     let clips: Vec<PlayedClip> = takes
         .iter()
         .zip(played)
         .map(|(take, (truth, said))| PlayedClip {
             clip: &take.clip,
             roles: &take.roles,
-            secs: None,
-            labels: truth
-                .into_iter()
-                .map(|t| mark(t.class, t.start_secs, t.stop_secs))
-                .collect(),
+            span: None,
+            labels: truth,
             detections: said
                 .into_iter()
-                .map(|s| mark(s.class, s.start_secs, s.stop_secs))
+                .map(|s| Mark::new(s.class, s.span))
                 .collect(),
         })
         .collect();

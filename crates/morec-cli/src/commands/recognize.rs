@@ -366,14 +366,9 @@ fn write_found(
         detection: found,
         deviation,
     } = in_clip;
-    let class = index.model.class_name(found.class);
     let line = FoundLine {
         clip,
-        class,
-        start_secs: found.start_secs,
-        stop_secs: found.stop_secs,
-        score: found.score,
-        reported_secs: found.reported_secs,
+        found: found.named(&index.model),
         rate_hz: *rate_hz,
     };
     match args.form {
@@ -397,9 +392,9 @@ fn write_found(
         OutputFormat::Jsonl => {
             let frame = |secs: f64| (secs * rate_hz).round() as u64;
             let mut object = serde_json::json!({
-                "clip": clip, "start": frame(found.start_secs), "stop": frame(found.stop_secs), "class": class,
+                "clip": clip, "start": frame(found.span.start_secs), "stop": frame(found.span.stop_secs), "class": line.found.class,
                 "score": found.score, "reported_at": frame(found.reported_secs),
-                "start_secs": found.start_secs, "stop_secs": found.stop_secs, "reported_secs": found.reported_secs,
+                "start_secs": found.span.start_secs, "stop_secs": found.span.stop_secs, "reported_secs": found.reported_secs,
             });
             if let Some(repeated) = found.repetitions {
                 object["repetitions"] = repeated.count.into();

@@ -50,11 +50,11 @@ impl Sink for Terminal {
         writeln!(
             out,
             "{:9.2} to {:7.2} s  {:20} {:.2}  reported {:.2} s after its end{repeated}{performer}",
-            e.start_secs,
-            e.stop_secs,
+            e.span.start_secs,
+            e.span.stop_secs,
             event.class,
             e.score,
-            e.reported_secs - e.stop_secs,
+            e.reported_secs - e.span.stop_secs,
         )?;
         out.flush()
     }

@@ -62,8 +62,8 @@ pub fn recognise_over_vmc(
     // From the receiver's clock to the clip's.
     let shift_secs = (played.first as f64 - before as f64) / rate_hz;
     for d in &mut found {
-        d.start_secs = (d.start_secs + shift_secs).max(0.0);
-        d.stop_secs += shift_secs;
+        d.span = d.span.map(|secs| secs + shift_secs);
+        d.span.start_secs = d.span.start_secs.max(0.0);
         d.reported_secs += shift_secs;
     }
     (found, receiver.counts())

@@ -1,11 +1,13 @@
 //! One picture of the show: the person from the front, the last events, truth and detections over time.
 
+use morec::TimeSpan;
 use morec::clip::Clip;
 use morec::kinematics::WorldPose;
+use morec::live::Detection;
 use morec::math::Vec3;
 
 use super::picture::{CharGrid, DIM, Dots, PLAIN, Style, class_style};
-use super::shown::{ReportedDetection, ShownClip, event_line, printable};
+use super::shown::{ShownClip, event_line, printable};
 
 /// Seconds that the bottom lines look back.
 const BACK_SECS: f64 = 20.0;
@@ -116,7 +118,7 @@ fn figure(
     picture: &mut CharGrid,
     scene: &ShownClip,
     stage: &FigureScale,
-    (now_secs, said): (f64, &[ReportedDetection]),
+    (now_secs, said): (f64, &[Detection<String>]),
     (width, height): (usize, usize),
     unicode: bool,
 ) {
@@ -163,7 +165,7 @@ fn figure(
 fn events(
     picture: &mut CharGrid,
     scene: &ShownClip,
-    (now_secs, said): (f64, &[ReportedDetection]),
+    (now_secs, said): (f64, &[Detection<String>]),
     x: usize,
     (columns, rows): (usize, usize),
 ) {
@@ -186,7 +188,7 @@ fn events(
     }
 }
 
-fn is_fresh(said: &ReportedDetection, now_secs: f64) -> bool {
+fn is_fresh(said: &Detection<String>, now_secs: f64) -> bool {
     now_secs - said.reported_secs < FRESH_SECS
 }
 
@@ -194,7 +196,7 @@ fn is_fresh(said: &ReportedDetection, now_secs: f64) -> bool {
 fn timelines(
     picture: &mut CharGrid,
     scene: &ShownClip,
-    said: &[ReportedDetection],
+    said: &[Detection<String>],
     now_secs: f64,
     (columns, y): (usize, usize),
     look: &TerminalStyle,
@@ -207,13 +209,13 @@ fn timelines(
     };
     picture.text(0, y + 1, from, "truth", DIM);
     picture.text(0, y + 2, from, "said", DIM);
-    for truth in scene.truth.iter().filter(|t| t.start_secs <= now_secs) {
+    for truth in scene.truth.iter().filter(|t| t.span.start_secs <= now_secs) {
         bar(
             picture,
             &ruler,
             y + 1,
             &truth.class,
-            (truth.start_secs, truth.stop_secs),
+            truth.span,
             style_of(scene, &truth.class),
             look,
         );
@@ -224,7 +226,7 @@ fn timelines(
             &ruler,
             y + 2,
             &event.class,
-            (event.start_secs, event.stop_secs),
+            event.span,
             style_of(scene, &event.class),
             look,
         );
@@ -258,13 +260,13 @@ fn bar(
     ruler: &Ruler,
     y: usize,
     class: &str,
-    (start_secs, stop_secs): (f64, f64),
+    span: TimeSpan,
     style: Style,
     look: &TerminalStyle,
 ) {
     let (start, stop) = (
-        ruler.column(start_secs),
-        ruler.column(stop_secs.min(ruler.now_secs)),
+        ruler.column(span.start_secs),
+        ruler.column(span.stop_secs.min(ruler.now_secs)),
     );
     if stop <= start {
         return;
@@ -279,7 +281,7 @@ fn bar(
     if start > ruler.from {
         picture.text(start, y, stop, open, style);
     }
-    if stop_secs <= ruler.now_secs && stop > start + 1 {
+    if span.stop_secs <= ruler.now_secs && stop > start + 1 {
         picture.text(stop - 1, y, stop, close, style);
     }
     picture.text(start + 1, y, stop.saturating_sub(1), class, style);
@@ -299,8 +301,8 @@ fn style_of(scene: &ShownClip, class: &str) -> Style {
 
 #[cfg(test)]
 pub(super) mod tests {
-    use super::super::KnownSpan;
     use super::*;
+    use morec::labels::Mark;
     use morec::synth::{Person, Script, SyntheticTake};
 
     pub fn take() -> SyntheticTake {
@@ -313,23 +315,19 @@ pub(super) mod tests {
     }
 
     /// Every label, found with an end 0.1 s early and said 0.2 s later.
-    pub fn said(take: &SyntheticTake) -> Vec<ReportedDetection> {
-        let said = |l: &morec::synth::SyntheticLabel| ReportedDetection {
+    pub fn said(take: &SyntheticTake) -> Vec<Detection<String>> {
+        let said = |l: &Mark<&str>| Detection {
             class: l.class.to_owned(),
-            start_secs: l.start_secs,
-            stop_secs: l.stop_secs - 0.1,
+            span: TimeSpan::new(l.span.start_secs, l.span.stop_secs - 0.1),
             score: 0.8,
-            reported_secs: l.stop_secs + 0.1,
+            reported_secs: l.span.stop_secs + 0.1,
+            repetitions: None,
         };
         take.labels.iter().map(said).collect()
     }
 
-    fn truth(take: &SyntheticTake) -> Vec<KnownSpan> {
-        let truth = |l: &morec::synth::SyntheticLabel| KnownSpan {
-            class: l.class.to_owned(),
-            start_secs: l.start_secs,
-            stop_secs: l.stop_secs,
-        };
+    fn truth(take: &SyntheticTake) -> Vec<Mark> {
+        let truth = |l: &Mark<&str>| Mark::new(l.class, l.span);
         take.labels.iter().map(truth).collect()
     }
 
@@ -404,7 +402,7 @@ pub(super) mod tests {
     #[test]
     fn the_figure_raises_its_hands() {
         let take = take();
-        let middle = (take.labels[0].start_secs + take.labels[0].stop_secs) / 2.0;
+        let middle = take.labels[0].span.middle_secs();
         let ink = |now_secs: f64| {
             let picture = shown(now_secs, LOOK);
             picture

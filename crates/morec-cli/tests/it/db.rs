@@ -30,7 +30,7 @@ pub fn studio(people: usize) -> (Folder, Vec<SyntheticTake>) {
         bvh::write(&take.clip, &mut bytes).unwrap();
         std::fs::write(folder.path().join(format!("clips/{name}.bvh")), bytes).unwrap();
         for label in &take.labels {
-            let span = label.span(take.clip.rate_hz);
+            let span = label.span.frames(take.clip.rate_hz);
             labels.push_str(&format!(
                 "{name}\t{}\t{}\t{}\n",
                 span.start, span.end, label.class
@@ -131,7 +131,10 @@ fn from_clips_to_labels_and_back() {
     };
     let name = &takes[0].clip.name;
     let label = &takes[0].labels[0];
-    let (start, stop) = (label.start_secs.to_string(), label.stop_secs.to_string());
+    let (start, stop) = (
+        label.span.start_secs.to_string(),
+        label.span.stop_secs.to_string(),
+    );
     let hits = db(&[
         "search",
         name,

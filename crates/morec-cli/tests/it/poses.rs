@@ -23,7 +23,7 @@ fn folder() -> Folder {
         for label in &take.labels {
             labels += &format!(
                 "{name}\t{}\t{}\t{}\n",
-                label.start_secs, label.stop_secs, label.class
+                label.span.start_secs, label.span.stop_secs, label.class
             );
         }
         let mut text = Vec::new();

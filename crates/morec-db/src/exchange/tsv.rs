@@ -18,9 +18,12 @@ pub fn read(bytes: &[u8], lengths: &ClipLengths) -> Result<ReadLabels, ParseErro
             &row.extent,
             super::annotation::length_of(&row.clip, lengths),
         ) {
-            (Extent::Secs(start, stop), _) => Some((*start, *stop)),
+            (Extent::Secs(span), _) => Some((span.start_secs, span.stop_secs)),
             (Extent::WholeClip, _) => None,
-            (Extent::Frames(_), Some(length)) => Some(length.secs(&row.extent)),
+            (Extent::Frames(_), Some(length)) => {
+                let span = length.span(&row.extent);
+                Some((span.start_secs, span.stop_secs))
+            }
             (Extent::Frames(_), None) => {
                 *read.absent.entry(row.clip).or_default() += 1;
                 continue;

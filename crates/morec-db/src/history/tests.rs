@@ -1,5 +1,6 @@
 //! Steps of every kind, back and forth.
 
+use morec::TimeSpan;
 use rusqlite::Connection;
 
 use crate::labels::{NewSample, SampleFilter, SampleState};
@@ -58,8 +59,7 @@ fn changes() -> Vec<fn(&mut MotionDb)> {
         let segment = |start_secs| Segment {
             clip: ClipId(1),
             kind: SegmentKind::Motion,
-            start_secs,
-            stop_secs: start_secs + 1.0,
+            span: TimeSpan::new(start_secs, start_secs + 1.0),
         };
         let segments = [segment(0.0), segment(1.0)];
         db.set_segments("kernel", &[ClipId(1)], &segments).unwrap();

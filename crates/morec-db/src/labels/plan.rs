@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use rusqlite::{Connection, params};
 
+use super::read::list;
 use super::sample::{Added, DbSample, NewSample, SampleFilter, SampleState};
 use super::write::{Change, add, alter};
 use crate::history::counted;
@@ -104,15 +105,15 @@ impl MotionDb {
         labels: &[NewSample],
         options: &LabelOptions,
     ) -> Result<Labelled, DbError> {
-        let there = match options.replace {
-            true => self.accepted_in(labels)?,
-            false => Vec::new(),
-        };
         let what = match options.replace {
             true => format!("replace labels by {}", labels.len()),
             false => added(labels),
         };
         let change = |conn: &Connection| {
+            let there = match options.replace {
+                true => accepted_in(conn, labels)?,
+                false => Vec::new(),
+            };
             let mut done = Labelled::default();
             let mut left = unsaid(there, labels);
             for label in labels {
@@ -138,17 +139,21 @@ impl MotionDb {
             false => self.edit(&what, change),
         }
     }
+}
 
-    /// The accepted samples of the clips that labels name.
-    fn accepted_in(&self, labels: &[NewSample]) -> Result<Vec<DbSample>, DbError> {
-        let clips: BTreeSet<_> = labels.iter().map(|label| label.clip).collect();
-        let mut samples = self.samples(&SampleFilter {
+/// The accepted samples of the clips that labels name.
+fn accepted_in(conn: &Connection, labels: &[NewSample]) -> Result<Vec<DbSample>, DbError> {
+    let clips: BTreeSet<_> = labels.iter().map(|label| label.clip).collect();
+    let mut samples = Vec::new();
+    for clip in clips {
+        let filter = SampleFilter {
+            clip: Some(clip),
             state: Some(SampleState::Accepted),
             ..SampleFilter::default()
-        })?;
-        samples.retain(|sample| clips.contains(&sample.clip));
-        Ok(samples)
+        };
+        samples.extend(list(conn, &filter)?);
     }
+    Ok(samples)
 }
 
 fn says(label: &NewSample, sample: &DbSample) -> bool {

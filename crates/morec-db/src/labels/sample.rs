@@ -1,6 +1,7 @@
 //! Samples as values.
 
 use crate::ClipId;
+use morec::TimeSpan;
 
 /// A sample's number in its database.
 #[derive(
@@ -42,6 +43,11 @@ pub struct DbSample {
 }
 
 impl DbSample {
+    /// Its time, seconds from the clip's beginning.
+    pub fn span(&self) -> TimeSpan {
+        TimeSpan::new(self.start_secs, self.stop_secs)
+    }
+
     /// Its frames in the clip's file, rounded to whole ones.
     pub fn frames(&self) -> std::ops::Range<usize> {
         let frame = |secs: f64| (secs * self.rate_hz).round().max(0.0) as usize;

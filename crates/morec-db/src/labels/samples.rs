@@ -1,43 +1,26 @@
 //! Samples: added, judged, listed.
 
-use rusqlite::{Connection, OptionalExtension, Row, params};
+use rusqlite::{Connection, OptionalExtension, params};
 
 use super::plan::LabelOptions;
+use super::read::{find, list};
 use super::sample::{Added, DbSample, NewSample, SampleFilter, SampleId, SampleState};
 use super::write::{add, alter};
 use crate::history::counted;
 use crate::time::now_secs;
-use crate::{ClipId, DbError, MotionDb};
+use crate::{DbError, MotionDb};
 
-fn sample(row: &Row<'_>) -> rusqlite::Result<DbSample> {
-    let state: String = row.get("state")?;
-    Ok(DbSample {
-        id: SampleId(row.get("id")?),
-        clip: ClipId(row.get("clip")?),
-        clip_name: row.get("clip_name")?,
-        subject: row.get("subject")?,
-        class: row.get("class")?,
-        start_secs: row.get("start_secs")?,
-        stop_secs: row.get("stop_secs")?,
-        whole_clip: row.get("whole_clip")?,
-        // The table allows no other.
-        state: SampleState::from_name(&state).unwrap_or(SampleState::Proposed),
-        score: row.get("score")?,
-        set_by: row.get("set_by")?,
-        set_secs: row.get("set_secs")?,
-        rate_hz: row.get("rate_hz")?,
-    })
-}
-
-/// Everything of samples; a condition follows.
-const SELECT: &str = "SELECT s.id, s.clip, c.name AS clip_name, c.subject, n.name AS class, s.start_secs, s.stop_secs, s.whole_clip, \
-     s.state, s.score, s.set_by, s.set_secs, c.rate_hz FROM samples s JOIN clips c ON c.id = s.clip JOIN classes n ON n.id = s.class";
-
-fn find(conn: &Connection, id: SampleId) -> Result<DbSample, DbError> {
-    let sql = format!("{SELECT} WHERE s.id = ?1");
-    let found = conn.prepare_cached(&sql)?.query_row([id.0], sample);
-    let found = found.optional()?;
-    found.ok_or_else(|| DbError::unknown("sample", &format!("#{}", id.0)))
+/// Refuses samples that are not as somebody saw them who now takes them away: what another program made of them would be lost.
+fn need_unchanged(conn: &Connection, seen: &[DbSample]) -> Result<(), DbError> {
+    for old in seen {
+        if NewSample::from(&find(conn, old.id)?) != NewSample::from(old) {
+            return Err(DbError::Invalid(format!(
+                "another program changed sample {} meanwhile: nothing was done",
+                old.id.0
+            )));
+        }
+    }
+    Ok(())
 }
 
 impl MotionDb {
@@ -51,19 +34,15 @@ impl MotionDb {
 
     /// The samples of a filter, by clip and time.
     pub fn samples(&self, filter: &SampleFilter) -> Result<Vec<DbSample>, DbError> {
-        let mut statement = self.conn.prepare_cached(&format!(
-            "{SELECT} WHERE (?1 IS NULL OR s.clip = ?1) AND (?2 IS NULL OR n.name = ?2) AND (?3 IS NULL OR s.state = ?3) \
-             ORDER BY c.name, s.start_secs, s.stop_secs, n.name",
-        ))?;
-        let given = params![
-            filter.clip.map(|c| c.0),
-            filter.class,
-            filter.state.map(SampleState::name)
-        ];
-        let samples = statement
-            .query_map(given, sample)?
-            .collect::<Result<_, _>>()?;
-        Ok(samples)
+        list(&self.conn, filter)
+    }
+
+    /// Numbers of the samples that a step touched, there or gone.
+    pub fn samples_of_step(&self, step: i64) -> Result<Vec<SampleId>, DbError> {
+        let sql = "SELECT DISTINCT c0 FROM was WHERE edit = ?1 AND tab = 'samples'";
+        let mut statement = self.conn.prepare_cached(sql)?;
+        let samples = statement.query_map(params![step], |row| Ok(SampleId(row.get(0)?)))?;
+        Ok(samples.collect::<Result<_, _>>()?)
     }
 
     /// Adds samples, all or none, as one step: [`MotionDb::label`] without replacing.
@@ -105,20 +84,19 @@ impl MotionDb {
     /// samples are as in [`MotionDb::label`].
     ///
     /// # Errors
-    /// As [`MotionDb::label`]; an old sample that is not there.
+    /// As [`MotionDb::label`]; an old sample that is not there, or of another clip, class, extent or state than was seen.
     pub fn change_samples(
         &mut self,
         what: &str,
-        old: &[SampleId],
+        old: &[DbSample],
         new: &[NewSample],
         by: &str,
     ) -> Result<(), DbError> {
         self.edit(what, |conn| {
-            for id in old {
-                let sql = "DELETE FROM samples WHERE id = ?1";
-                if conn.prepare_cached(sql)?.execute(params![id.0])? == 0 {
-                    return Err(DbError::unknown("sample", &format!("#{}", id.0)));
-                }
+            need_unchanged(conn, old)?;
+            for sample in old {
+                conn.prepare_cached("DELETE FROM samples WHERE id = ?1")?
+                    .execute(params![sample.id.0])?;
             }
             new.iter()
                 .try_for_each(|sample| add(conn, sample, by).map(drop))

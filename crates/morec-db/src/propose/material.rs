@@ -86,12 +86,10 @@ impl ProposalData {
         }
         let ticks = |s: &DbSample| {
             let clip = *places.get(&s.clip)?;
-            let tick =
-                |secs: f64| ((secs * tick_hz).round() as usize).min(clips[clip].laid.rows.len());
             let ticks = if s.whole_clip {
                 moving[clip].clone()
             } else {
-                tick(s.start_secs)..tick(s.stop_secs)
+                s.span().frames_among(clips[clip].laid.rows.len(), tick_hz)
             };
             (ticks.len() >= LEAST_TICKS).then_some((clip, ticks))
         };

@@ -30,13 +30,13 @@ pub fn most_informative(proposals: &[Proposal], most: usize) -> Vec<usize> {
 mod tests {
     use super::*;
     use crate::ClipId;
+    use morec::TimeSpan;
 
     fn proposals(scores: &[(&str, f32)]) -> Vec<Proposal> {
         let proposal = |(class, score): &(&str, f32)| Proposal {
             clip: ClipId(1),
             class: (*class).to_owned(),
-            start_secs: 0.0,
-            stop_secs: 1.0,
+            span: TimeSpan::new(0.0, 1.0),
             whole_clip: false,
             score: *score,
         };

@@ -16,12 +16,12 @@ fn ids(db: &MotionDb, takes: &[SyntheticTake]) -> Vec<ClipId> {
         .collect()
 }
 
-fn sample(clip: ClipId, class: &str, start_secs: f64, stop_secs: f64) -> NewSample {
+fn sample(clip: ClipId, class: &str, span: TimeSpan) -> NewSample {
     NewSample {
         clip,
         class: class.to_owned(),
-        start_secs,
-        stop_secs,
+        start_secs: span.start_secs,
+        stop_secs: span.stop_secs,
         whole_clip: false,
         state: SampleState::Accepted,
         score: None,
@@ -31,14 +31,8 @@ fn sample(clip: ClipId, class: &str, start_secs: f64, stop_secs: f64) -> NewSamp
 /// The label at half overlap with a proposal, as its take and place there.
 fn under(takes: &[SyntheticTake], ids: &[ClipId], p: &Proposal) -> Option<(usize, usize)> {
     let take = ids.iter().position(|id| *id == p.clip)?;
-    let share = |start: f64, stop: f64| {
-        let shared = (stop.min(p.stop_secs) - start.max(p.start_secs)).max(0.0);
-        shared / (stop.max(p.stop_secs) - start.min(p.start_secs))
-    };
-    let label = takes[take]
-        .labels
-        .iter()
-        .position(|l| share(l.start_secs, l.stop_secs) >= 0.5)?;
+    let mut labels = takes[take].labels.iter();
+    let label = labels.position(|l| l.span.iou(p.span) >= 0.5)?;
     Some((take, label))
 }
 
@@ -47,7 +41,7 @@ fn first_labels(takes: &[SyntheticTake], ids: &[ClipId]) -> Vec<NewSample> {
     takes[0]
         .labels
         .iter()
-        .map(|l| sample(ids[0], l.class, l.start_secs, l.stop_secs))
+        .map(|l| sample(ids[0], l.class, l.span))
         .collect()
 }
 
@@ -110,11 +104,7 @@ fn what_was_judged_is_not_proposed_again() {
     let again = db.propose(&ProposeOptions::default(), &()).unwrap();
     for known in db.samples(&SampleFilter::default()).unwrap() {
         let same = |p: &&Proposal| {
-            let shared = known.stop_secs.min(p.stop_secs) - known.start_secs.max(p.start_secs);
-            p.clip == known.clip
-                && p.class == known.class
-                && shared
-                    > 0.6 * (known.stop_secs.max(p.stop_secs) - known.start_secs.min(p.start_secs))
+            (p.clip == known.clip && p.class == known.class) && known.span().iou(p.span) > 0.6
         };
         assert!(again.iter().find(same).is_none(), "{known:?} again");
     }
@@ -134,11 +124,8 @@ fn answers_lead_to_every_sample() {
             .position(|l| l.class == class)
             .unwrap();
         let label = &takes[0].labels[at];
-        db.add_samples(
-            &[sample(ids[0], class, label.start_secs, label.stop_secs)],
-            "test",
-        )
-        .unwrap();
+        db.add_samples(&[sample(ids[0], class, label.span)], "test")
+            .unwrap();
         found.insert((0, at));
     }
     let all: usize = takes.iter().map(|t| t.labels.len()).sum();
@@ -186,7 +173,7 @@ fn classes_of_whole_clips_propose_whole_clips() {
     let secs = |at: usize| takes[at].clip.duration_secs();
     let whole = |at: usize| NewSample {
         whole_clip: true,
-        ..sample(ids[at], "take", 0.0, secs(at))
+        ..sample(ids[at], "take", TimeSpan::new(0.0, secs(at)))
     };
     db.add_samples(&[whole(0)], "test").unwrap();
     let proposals = db.propose(&ProposeOptions::default(), &()).unwrap();
@@ -200,7 +187,7 @@ fn classes_of_whole_clips_propose_whole_clips() {
     for p in &proposals {
         let at = ids.iter().position(|id| *id == p.clip).unwrap();
         assert!(
-            p.whole_clip && p.start_secs == 0.0 && (p.stop_secs - secs(at)).abs() < 1e-9,
+            p.whole_clip && p.span.start_secs == 0.0 && (p.span.stop_secs - secs(at)).abs() < 1e-9,
             "{p:?}"
         );
     }
@@ -260,31 +247,30 @@ fn an_activity_is_proposed_as_the_whole_stretch_that_is_repeated() {
     let ids = ids(&db, &takes);
     let waved = |take: &SyntheticTake| {
         let waves = take.labels.iter().filter(|l| l.class == "wave");
-        let bounds = waves.map(|l| (l.start_secs, l.stop_secs));
-        bounds.reduce(|all, next| (all.0, next.1)).unwrap()
+        let spans = waves.map(|l| l.span);
+        let whole = |all: TimeSpan, next: TimeSpan| TimeSpan::new(all.start_secs, next.stop_secs);
+        spans.reduce(whole).unwrap()
     };
-    let (start, stop) = waved(&takes[0]);
+    let taught = waved(&takes[0]);
     let bow = &takes[0].labels[0];
     let first = [
-        sample(ids[0], "wave", start, stop),
-        sample(ids[0], "bow", bow.start_secs, bow.stop_secs),
+        sample(ids[0], "wave", taught),
+        sample(ids[0], "bow", bow.span),
     ];
     db.add_samples(&first, "test").unwrap();
     let proposals = db.propose(&ProposeOptions::default(), &()).unwrap();
     for (take, id) in takes.iter().zip(&ids).skip(1) {
-        let (start, stop) = waved(take);
+        let performed = waved(take);
         let of_clip = proposals
             .iter()
             .filter(|p| p.clip == *id && p.class == "wave");
         let best = of_clip.max_by(|a, b| a.score.total_cmp(&b.score)).unwrap();
-        let shared = stop.min(best.stop_secs) - start.max(best.start_secs);
-        let share = shared / (stop.max(best.stop_secs) - start.min(best.start_secs));
-        assert!(share > 0.8, "{best:?} for {start} to {stop}");
+        assert!(best.span.iou(performed) > 0.8, "{best:?} for {performed}");
     }
     // What is labelled is not proposed once more.
     let again = proposals.iter().any(|p| {
-        let shared = stop.min(p.stop_secs) - start.max(p.start_secs);
-        p.clip == ids[0] && p.class == "wave" && shared > 0.5 * (p.stop_secs - p.start_secs)
+        let shared = taught.overlap_secs(p.span);
+        p.clip == ids[0] && p.class == "wave" && shared > 0.5 * p.span.duration_secs()
     });
     assert!(!again, "{proposals:?}");
 }

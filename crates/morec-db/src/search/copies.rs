@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use morec::TimeSpan;
 use morec::features::Rows;
 use rayon::prelude::*;
 
@@ -17,10 +18,9 @@ pub struct NearCopy {
     pub of: ClipId,
     /// The shorter one; the whole of it lies in the other.
     pub copy: ClipId,
-    /// Start in the longer one, seconds.
-    pub start_secs: f64,
-    /// Until where.
-    pub stop_secs: f64,
+    /// Where in the longer one.
+    #[serde(flatten)]
+    pub span: TimeSpan,
     /// Mean squared distance of their directions.
     pub distance: f32,
     /// True if one is the other's mirror image.
@@ -106,8 +106,7 @@ fn pair(
     (distance < SAME).then(|| NearCopy {
         of: longer.clip,
         copy: shorter.clip,
-        start_secs: at as f64 / index.tick_hz,
-        stop_secs: (at + rows(short)) as f64 / index.tick_hz,
+        span: TimeSpan::of_frames(at..at + rows(short), index.tick_hz),
         distance,
         mirrored: mirror,
     })

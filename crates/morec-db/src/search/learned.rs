@@ -105,9 +105,7 @@ impl SearchIndex {
 
     fn seen(&self, class: usize, sample: &DbSample, clip: usize) -> Option<LabelledStretch> {
         let clip = &self.clips[clip];
-        let tick =
-            |secs: f64| ((secs * self.tick_hz).round().max(0.0) as usize).min(clip.laid.rows.len());
-        let span = tick(sample.start_secs)..tick(sample.stop_secs);
+        let span = (sample.span()).frames_among(clip.laid.rows.len(), self.tick_hz);
         let bones = clip.laid.bones;
         (span.len() >= 3).then(|| LabelledStretch {
             class,

@@ -210,7 +210,7 @@ proptest! {
         let index = SearchIndex::new(&clips, 30.0);
         let of = clips.iter().find(|c| c.rows.len() > 60).unwrap();
         for example in [
-            index.example(of.clip, 0.3, 1.8).unwrap(),
+            index.example(of.clip, 0.3..1.8).unwrap(),
             SearchIndex::example_of(&of.rows, of.bones).unwrap(),
         ] {
             for options in all_options(limit) {
@@ -240,7 +240,7 @@ fn of_motion_few_clips_are_read() {
         }
     }
     let index = SearchIndex::new(&clips, 30.0);
-    let example = index.example(ClipId(3), 0.5, 2.5).unwrap();
+    let example = index.example(ClipId(3), 0.5..2.5).unwrap();
     check_bounds(&example, &clips);
     for options in all_options(3) {
         let (hits, _) = pruned(&example, &options, &clips);
@@ -280,7 +280,7 @@ fn of_real_clips_most_are_not_read() {
     let index = SearchIndex::new(&clips, 30.0);
     let mut shares = Vec::new();
     for number in (0..clips.len() as i64).step_by(clips.len() / 8) {
-        let example = index.example(ClipId(number), 0.2, 1.4).unwrap();
+        let example = index.example(ClipId(number), 0.2..1.4).unwrap();
         check_bounds(&example, &clips[..300.min(clips.len())]);
         for options in all_options(5) {
             let (hits, read) = pruned(&example, &options, &clips);

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
+use morec::TimeSpan;
 use morec::features::BoneSet;
 use morec::templates::TemplateBank;
 use rayon::prelude::*;
@@ -46,10 +47,9 @@ pub struct Hit {
     /// Its clip.
     #[serde(rename = "clip_id")]
     pub clip: ClipId,
-    /// Start, seconds from the beginning of the clip.
-    pub start_secs: f64,
-    /// Stop, seconds.
-    pub stop_secs: f64,
+    /// From where to where in the clip.
+    #[serde(flatten)]
+    pub span: TimeSpan,
     /// 1 for the same motion, towards 0 for another.
     pub score: f32,
     /// Mean squared distance along the warping path.
@@ -103,8 +103,9 @@ impl SearchIndex {
         hits.sort_by(|a, b| b.score.total_cmp(&a.score).then(a.clip.cmp(&b.clip)));
         let mut kept: Vec<Hit> = Vec::new();
         for hit in hits {
-            let same =
-                |k: &Hit| k.clip == hit.clip && (options.one_a_clip || overlap(k, &hit) > 0.3);
+            let same = |k: &Hit| {
+                k.clip == hit.clip && (options.one_a_clip || k.span.overlap_share(hit.span) > 0.3)
+            };
             if kept.len() < options.limit && !kept.iter().any(same) {
                 kept.push(hit);
             }
@@ -265,8 +266,7 @@ impl SearchIndex {
         let cost = (1.0 - share) * cost + share * warp.max(0.0).sqrt();
         Hit {
             clip: clip.clip,
-            start_secs: span.start as f64 / self.tick_hz,
-            stop_secs: span.end as f64 / self.tick_hz,
+            span: TimeSpan::of_frames(span, self.tick_hz),
             score: (-cost / UNLIKE).exp(),
             warp_distance: warp,
             mirrored: candidate.mirrored,
@@ -333,14 +333,6 @@ struct GraphNode {
     bones: BoneSet,
     /// Of its whole clip.
     rows: usize,
-}
-
-fn overlap(a: &Hit, b: &Hit) -> f64 {
-    let shared = (a.stop_secs.min(b.stop_secs) - a.start_secs.max(b.start_secs)).max(0.0);
-    shared
-        / (a.stop_secs - a.start_secs)
-            .min(b.stop_secs - b.start_secs)
-            .max(1e-9)
 }
 
 /// The best path of `example` through rows `within` of a clip, by these columns: mean squared distance, and where it lies.

@@ -30,9 +30,7 @@ fn a_stretch_finds_its_like_in_other_clips() {
     let index = SearchIndex::of_db(&mut db, &()).unwrap();
     let label = takes[0].labels.iter().find(|l| l.class == "wave").unwrap();
     let clip = db.find_clip(&takes[0].clip.name).unwrap().id;
-    let example = index
-        .example(clip, label.start_secs, label.stop_secs)
-        .unwrap();
+    let example = index.example(clip, label.span).unwrap();
     let hits = index.search(
         &example,
         &SearchOptions {
@@ -50,8 +48,8 @@ fn a_stretch_finds_its_like_in_other_clips() {
             .unwrap();
         let take = takes.iter().find(|t| t.clip.name == info.name).unwrap();
         take.labels.iter().any(|l| {
-            let shared = l.stop_secs.min(hit.stop_secs) - l.start_secs.max(hit.start_secs);
-            l.class == "wave" && shared > 0.5 * (l.stop_secs - l.start_secs)
+            let shared = l.span.overlap_secs(hit.span);
+            l.class == "wave" && shared > 0.5 * l.span.duration_secs()
         })
     });
     assert!(right.count() >= 3, "{hits:?}");
@@ -82,7 +80,7 @@ fn an_exact_copy_comes_first() {
         (2.0, 3.5, false),
         (1.0, 4.0, true),
     ] {
-        let example = index.example(rows[2].clip, start, stop).unwrap();
+        let example = index.example(rows[2].clip, start..stop).unwrap();
         let options = SearchOptions {
             one_a_clip,
             mirror: true,
@@ -98,7 +96,7 @@ fn an_exact_copy_comes_first() {
             hits[0].score > 0.97 && hits[0].warp_distance < 0.02,
             "{hits:?}"
         );
-        assert!((hits[0].start_secs - start).abs() < 0.05, "{hits:?}");
+        assert!((hits[0].span.start_secs - start).abs() < 0.05, "{hits:?}");
         let image = hits.iter().find(|hit| hit.mirrored).unwrap();
         assert_eq!(image.clip, ClipId(1001), "{hits:?}");
     }
@@ -118,8 +116,8 @@ fn label(db: &mut crate::MotionDb, takes: &[morec::synth::SyntheticTake]) {
         samples.extend(take.labels.iter().map(|l| NewSample {
             clip,
             class: l.class.to_owned(),
-            start_secs: l.start_secs,
-            stop_secs: l.stop_secs,
+            start_secs: l.span.start_secs,
+            stop_secs: l.span.stop_secs,
             whole_clip: false,
             state: SampleState::Accepted,
             score: None,
@@ -179,9 +177,7 @@ fn a_learned_metric_tells_classes_of_others_apart() {
 
     let label = takes[3].labels.iter().find(|l| l.class == "wave").unwrap();
     let clip = db.find_clip(&takes[3].clip.name).unwrap().id;
-    let example = index
-        .example(clip, label.start_secs, label.stop_secs)
-        .unwrap();
+    let example = index.example(clip, label.span).unwrap();
     let hits = index.search_by(
         &example,
         &SearchOptions {
@@ -193,8 +189,8 @@ fn a_learned_metric_tells_classes_of_others_apart() {
     let right = hits.iter().filter(|hit| {
         let all = samples(&db);
         all.iter().any(|s| {
-            let shared = s.stop_secs.min(hit.stop_secs) - s.start_secs.max(hit.start_secs);
-            s.clip == hit.clip && s.class == "wave" && shared > 0.5 * (s.stop_secs - s.start_secs)
+            let shared = s.span().overlap_secs(hit.span);
+            s.clip == hit.clip && s.class == "wave" && shared > 0.5 * s.span().duration_secs()
         })
     });
     assert!(right.count() >= 5, "{hits:?}");
@@ -214,7 +210,7 @@ fn whole_clips_are_compared_with_whole_clips() {
     };
     let first = |n: usize| takes[take(n)].labels[0];
     let cut = |n: usize, id: i64, stop: f64| {
-        let span = tick(first(n).start_secs)..tick(stop).min(rows[n].rows.len());
+        let span = tick(first(n).span.start_secs)..tick(stop).min(rows[n].rows.len());
         ClipRows {
             clip: ClipId(id),
             bones: rows[n].bones,
@@ -222,16 +218,16 @@ fn whole_clips_are_compared_with_whole_clips() {
         }
     };
     let clips = [
-        cut(0, 1, first(0).stop_secs),
+        cut(0, 1, first(0).span.stop_secs),
         cut(0, 2, 1e9),
-        cut(1, 3, first(1).stop_secs),
+        cut(1, 3, first(1).span.stop_secs),
     ];
     let index = SearchIndex::new(&clips, 30.0);
     let options = SearchOptions {
         one_a_clip: true,
         ..Default::default()
     };
-    let example = index.example(ClipId(1), 0.0, 1e9).unwrap();
+    let example = index.example(ClipId(1), 0.0..1e9).unwrap();
     let of = |hits: &[Hit]| hits.iter().map(|h| h.clip.0).collect::<Vec<_>>();
     // As a stretch the beginning of the second clip is the very same.
     assert_eq!(
@@ -251,16 +247,11 @@ fn the_example_itself_is_no_hit() {
     let index = SearchIndex::of_db(&mut db, &()).unwrap();
     let clip = db.clips(&ClipFilter::default()).unwrap().remove(0);
     for start in 0..((clip.duration_secs() - 1.5) * 4.0) as usize {
-        let (start, stop) = (start as f64 / 4.0, start as f64 / 4.0 + 1.5);
-        let example = index.example(clip.id, start, stop).unwrap();
+        let span = TimeSpan::new(start as f64 / 4.0, start as f64 / 4.0 + 1.5);
+        let example = index.example(clip.id, span).unwrap();
         for hit in index.search(&example, &SearchOptions::default()) {
-            let shared = (hit.stop_secs.min(stop) - hit.start_secs.max(start)).max(0.0);
-            let own = if hit.clip == clip.id {
-                shared / (hit.stop_secs - hit.start_secs).min(1.5)
-            } else {
-                0.0
-            };
-            assert!(own < 0.5, "{start} to {stop} s: {hit:?}");
+            let is_own = hit.clip == clip.id && hit.span.overlap_share(span) >= 0.5;
+            assert!(!is_own, "{span}: {hit:?}");
         }
     }
 }

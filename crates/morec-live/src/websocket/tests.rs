@@ -1,5 +1,6 @@
 use std::io::{Read, Write};
 
+use morec::TimeSpan;
 use morec::classes::ClassId;
 use morec::live::{Event, PerformerId, Phase};
 use tungstenite::client::IntoClientRequest;
@@ -15,8 +16,7 @@ fn event(sequence: u64) -> Event {
         class: ClassId(0),
         score: 0.5,
         progress: 1.0,
-        start_secs: 1.0,
-        stop_secs: 2.0,
+        span: TimeSpan::new(1.0, 2.0),
         reported_secs: 2.1,
         repetitions: None,
         wall_secs: 1.0e9,

@@ -15,8 +15,8 @@ pub fn aside(motion: &ClipMotion, secs: f64) -> Vec3 {
 /// The companion's pose when the performer of `motion` is at `secs`: turned as the performer is turned and standing on the same
 /// place where both stretches begin, moved `aside` by this many metres.
 pub fn pose(aligned: &Aligned, motion: &ClipMotion, secs: f64, apart: f64) -> WorldPose {
-    let (other, of) = (&aligned.motion, aligned.of.start_secs);
-    let begin = other.pose(aligned.with.start_secs);
+    let (other, of) = (&aligned.motion, aligned.of.span.start_secs);
+    let begin = other.pose(aligned.with.span.start_secs);
     let mut pose = other.pose(aligned.at(secs));
     let here = motion.pose(of);
     let (Some(from), Some(to)) = (other.body.centre(&begin), motion.body.centre(&here)) else {

@@ -1,6 +1,7 @@
 //! A strip of small figures: what a stretch of motion looks like at a glance.
 
 use egui::{Pos2, Rect, Shape, Stroke, Vec2};
+use morec::TimeSpan;
 use morec::features::Profile;
 use morec::math::{Axis, Vec3};
 
@@ -9,13 +10,7 @@ use super::mesh::BodyColours;
 use crate::jobs::load::ClipMotion;
 
 /// Figures evenly over a stretch, each seen from its own three-quarter front.
-pub fn strip(
-    motion: &ClipMotion,
-    start_secs: f64,
-    stop_secs: f64,
-    rect: Rect,
-    palette: &BodyColours,
-) -> Vec<Shape> {
+pub fn strip(motion: &ClipMotion, span: TimeSpan, rect: Rect, palette: &BodyColours) -> Vec<Shape> {
     let count = ((rect.width() / (rect.height() * 0.62)).round() as usize).clamp(2, 12);
     let width = rect.width() / count as f32;
     // Raised arms reach a quarter above the head.
@@ -23,7 +18,7 @@ pub fn strip(
     let mut shapes = Vec::new();
     for number in 0..count {
         let share = number as f64 / (count - 1) as f64;
-        let secs = start_secs + (stop_secs - start_secs) * share;
+        let secs = span.start_secs + span.duration_secs() * share;
         let foot = Pos2::new(
             rect.left() + width * (number as f32 + 0.5),
             rect.bottom() - 0.05 * rect.height(),

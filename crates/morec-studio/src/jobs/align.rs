@@ -1,9 +1,9 @@
 //! One performance beside another: which moment of the second belongs to a moment of the first.
 
-use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 
+use morec::TimeSpan;
 use morec::explain::{MotionDeviation, deviation_from};
 use morec::features::{FeatureParams, RowLayout, Rows, bones_of_clip, mirrored_rows, rows_of_clip};
 use morec::train::align as warp;
@@ -36,14 +36,15 @@ pub struct Aligned {
 impl Aligned {
     /// The moment of the second stretch that belongs to a moment of the first; before and after it, at the same pace.
     pub fn at(&self, secs: f64) -> f64 {
-        let (first, last) = (self.with.start_secs, self.with.stop_secs);
-        if secs <= self.of.start_secs {
-            return (first + secs - self.of.start_secs).max(0.0);
+        let (first, last) = (self.with.span.start_secs, self.with.span.stop_secs);
+        let of = self.of.span;
+        if secs <= of.start_secs {
+            return (first + secs - of.start_secs).max(0.0);
         }
-        if secs >= self.of.stop_secs {
-            return last + secs - self.of.stop_secs;
+        if secs >= of.stop_secs {
+            return last + secs - of.stop_secs;
         }
-        let place = (secs - self.of.start_secs) * self.tick_hz;
+        let place = (secs - of.start_secs) * self.tick_hz;
         let (tick, rest) = (place.floor() as usize, place.fract());
         let here = self.path.get(tick).copied().unwrap_or(last);
         let next = self.path.get(tick + 1).copied().unwrap_or(last);
@@ -98,11 +99,7 @@ fn aligned(
             let Some(hit) = hits.into_iter().flatten().next() else {
                 return Ok(None);
             };
-            let stretch = Stretch {
-                clip: hit.clip,
-                start_secs: hit.start_secs,
-                stop_secs: hit.stop_secs,
-            };
+            let stretch = Stretch::from(&hit);
             (stretch, hit.mirrored)
         }
     };
@@ -128,23 +125,23 @@ fn path_of(
     mirrored: bool,
     params: &FeatureParams,
 ) -> (Vec<f64>, Option<MotionDeviation>) {
+    let (of, with) = (of.span, with.span);
     let hz = params.tick_hz();
     let bones = |m: &ClipMotion| bones_of_clip(&m.clip, &m.roles, &m.rest);
     let common = bones(first).and(bones(second));
     // Velocities say how fast, and alignment is to forgive just that.
     let directions: Vec<usize> = RowLayout::of(common).directions().collect();
-    let cut = |motion: &ClipMotion, span: Range<f64>| -> Rows {
+    let cut = |motion: &ClipMotion, span: TimeSpan| -> Rows {
         let rows = rows_of_clip(&motion.clip, &motion.roles, &motion.rest, common, params);
-        let tick = |secs: f64| ((secs * hz).round().max(0.0) as usize).min(rows.len());
-        rows.slice(tick(span.start)..tick(span.end))
+        rows.slice(span.frames_among(rows.len(), hz))
     };
-    let a = cut(first, of.start_secs..of.stop_secs);
-    let mut b = cut(second, with.start_secs..with.stop_secs);
+    let a = cut(first, of);
+    let mut b = cut(second, with);
     if mirrored && let Some(image) = mirrored_rows(&b, common) {
         b = image;
     }
     if a.len() * b.len() > CELLS || directions.is_empty() || b.is_empty() {
-        let pace = (with.stop_secs - with.start_secs) / (of.stop_secs - of.start_secs).max(1e-9);
+        let pace = with.duration_secs() / of.duration_secs().max(1e-9);
         let ticks = a.len().max(2);
         let even = (0..ticks).map(|tick| with.start_secs + pace * tick as f64 / hz);
         return (even.collect(), None);

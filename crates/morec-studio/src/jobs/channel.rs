@@ -87,12 +87,12 @@ pub fn read(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use morec::TimeSpan;
 
     #[test]
     fn a_curve_begins_and_ends_at_its_keys() {
         let curve = Bezier {
-            start_secs: 1.0,
-            stop_secs: 2.0,
+            span: TimeSpan::new(1.0, 2.0),
             degree: 3,
             points: [
                 [0.0, 1.0, 0.0, 0.0],

@@ -86,8 +86,8 @@ fn describe(db: &mut MotionDb, takes: &[SyntheticTake]) -> Result<(), morec_db::
             labels.extend(take.labels.iter().map(|label| NewSample {
                 clip,
                 class: label.class.to_owned(),
-                start_secs: label.start_secs,
-                stop_secs: label.stop_secs,
+                start_secs: label.span.start_secs,
+                stop_secs: label.span.stop_secs,
                 whole_clip: false,
                 state: SampleState::Accepted,
                 score: None,

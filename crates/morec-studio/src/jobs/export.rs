@@ -4,7 +4,8 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 
 use morec::formats::bvh;
-use morec::player::{Mark, PlayedClip, page};
+use morec::labels::Mark;
+use morec::player::{PlayedClip, page};
 use morec_db::exchange::{self, Annotation, LabelFormat};
 use morec_db::labels::{SampleFilter, SampleState};
 use morec_db::{ClipFilter, ClipId, MotionDb};
@@ -90,16 +91,15 @@ fn played(db: &MotionDb, clip: ClipId, detections: Vec<Mark>) -> Result<String, 
         state: Some(SampleState::Accepted),
         ..SampleFilter::default()
     };
-    let labels = db.samples(&filter)?.into_iter().map(|s| Mark {
-        name: s.class,
-        start_secs: s.start_secs,
-        stop_secs: s.stop_secs,
+    let labels = db.samples(&filter)?.into_iter().map(|s| {
+        let span = s.span();
+        Mark::new(s.class, span)
     });
     let title = stored.clip.name.clone();
     let played = PlayedClip {
         clip: &stored.clip,
         roles: &stored.roles,
-        secs: None,
+        span: None,
         labels: labels.collect(),
         detections,
     };

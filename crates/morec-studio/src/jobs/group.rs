@@ -9,6 +9,7 @@ use morec_db::labels::{SampleFilter, SampleId, SampleState};
 use morec_db::{ClipId, MotionDb, SegmentKind};
 
 use super::progress::{JobError, JobProgress};
+use crate::stretch::Stretch;
 
 /// Rows that a sample of any length becomes.
 const POINTS: usize = 16;
@@ -18,9 +19,7 @@ pub const MOST: usize = 3000;
 /// A stretch that is grouped.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GroupItem {
-    pub clip: ClipId,
-    pub start_secs: f64,
-    pub stop_secs: f64,
+    pub of: Stretch,
     /// Its number, if it is a sample.
     pub sample: Option<SampleId>,
     pub class: Option<String>,
@@ -107,10 +106,10 @@ fn grouped(
         .map(|r| (r.clip, (&r.rows, r.bones)))
         .collect();
     let mut items = items(&db, cuts)?;
-    items.retain(|item| rows.contains_key(&item.clip));
+    items.retain(|item| rows.contains_key(&item.of.clip));
     let left_out = items.len().saturating_sub(MOST);
     items.truncate(MOST);
-    let of_item = |item: &GroupItem| rows.get(&item.clip);
+    let of_item = |item: &GroupItem| rows.get(&item.of.clip);
     let common = items
         .iter()
         .filter_map(of_item)
@@ -121,9 +120,7 @@ fn grouped(
         let Some((rows, bones)) = of_item(item) else {
             continue;
         };
-        let tick = |secs: f64| ((secs * params.tick_hz()).round() as usize).min(rows.len());
-        let span = tick(item.start_secs)..tick(item.stop_secs);
-        let rows = rows.slice(span.start..span.end.max(span.start));
+        let rows = rows.slice((item.of.span).frames_among(rows.len(), params.tick_hz()));
         shapes.push(resampled(&only(&rows, *bones, common), POINTS));
     }
     Ok(ClusteredItems::of(items, shapes, left_out))
@@ -135,9 +132,7 @@ fn items(db: &MotionDb, cuts: bool) -> Result<Vec<GroupItem>, morec_db::DbError>
         let moving = segments.filter(|s| s.kind == SegmentKind::Motion);
         return Ok(moving
             .map(|s| GroupItem {
-                clip: s.clip,
-                start_secs: s.start_secs,
-                stop_secs: s.stop_secs,
+                of: Stretch::new(s.clip, s.span),
                 sample: None,
                 class: None,
             })
@@ -150,9 +145,7 @@ fn items(db: &MotionDb, cuts: bool) -> Result<Vec<GroupItem>, morec_db::DbError>
     let samples = db.samples(&filter)?.into_iter();
     Ok(samples
         .map(|s| GroupItem {
-            clip: s.clip,
-            start_secs: s.start_secs,
-            stop_secs: s.stop_secs,
+            of: Stretch::from(&s),
             sample: Some(s.id),
             class: Some(s.class),
         })
@@ -174,9 +167,7 @@ mod tests {
     /// Items whose shapes differ from one another by these numbers.
     fn grouped(places: &[f32]) -> ClusteredItems {
         let item = |at: usize| GroupItem {
-            clip: ClipId(1),
-            start_secs: at as f64,
-            stop_secs: at as f64 + 1.0,
+            of: Stretch::new(ClipId(1), at as f64..at as f64 + 1.0),
             sample: None,
             class: None,
         };

@@ -174,16 +174,8 @@ fn copies(
         };
         Some(CopiedStretch {
             text: format!("{} is {how} {}", copy.name, of.name),
-            copy: Stretch {
-                clip: copy.id,
-                start_secs: 0.0,
-                stop_secs: copy.duration_secs(),
-            },
-            of: Stretch {
-                clip: of.id,
-                start_secs: pair.start_secs,
-                stop_secs: pair.stop_secs,
-            },
+            copy: Stretch::new(copy.id, 0.0..copy.duration_secs()),
+            of: Stretch::new(of.id, pair.span),
             mirrored: pair.mirrored,
         })
     });

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
+use morec::TimeSpan;
 use morec::crossval::{CrossvalData, CrossvalError, CrossvalOptions, FoldBy, Tested, crossval};
 use morec::eval::{
     ClipDetection, DetectionVerdict, Evaluation, GroundTruth, GroundTruthVerdict, Timeline,
@@ -91,8 +92,7 @@ impl From<LeftOut> for FoldBy {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Moment {
     pub clip: String,
-    pub start_secs: f64,
-    pub stop_secs: f64,
+    pub span: TimeSpan,
     /// Class of the label; `None` for a false detection.
     pub truth: Option<String>,
     /// Class that was recognised; `None` for a label that was missed.
@@ -142,17 +142,15 @@ impl CrossvalResult {
                 };
                 moments.push(Moment {
                     clip: clip.clone(),
-                    start_secs: truth.start_secs,
-                    stop_secs: truth.stop_secs,
+                    span: truth.span,
                     truth: Some(truth.class.clone()),
                     found,
-                    why: self.why(&timeline.stream.clip, &truth.class, truth.start_secs),
+                    why: self.why(&timeline.stream.clip, &truth.class, truth.span.start_secs),
                 });
             }
             moments.extend(false_detections(timeline).map(|found| Moment {
                 clip: clip.clone(),
-                start_secs: found.start_secs,
-                stop_secs: found.stop_secs,
+                span: found.span,
                 truth: None,
                 found: Some(found.class.clone()),
                 why: None,
@@ -163,7 +161,7 @@ impl CrossvalResult {
 
     fn why(&self, stream: &str, class: &str, start_secs: f64) -> Option<String> {
         let same = |m: &&Miss| {
-            m.clip == stream && m.class == class && (m.start_secs - start_secs).abs() < 1e-6
+            m.clip == stream && m.class == class && (m.span.start_secs - start_secs).abs() < 1e-6
         };
         let miss = self.misses.iter().find(same)?;
         Some(match miss.sensitivity {
@@ -182,7 +180,7 @@ fn false_detections(timeline: &Timeline) -> impl Iterator<Item = &ClipDetection>
     let mistaken = move |found: &ClipDetection| {
         timeline.truths.iter().any(|(truth, verdict)| {
             matches!(verdict, GroundTruthVerdict::Mistaken(class) if *class == found.class)
-                && is_match(truth, found)
+                && truth.span.matches(found.span)
         })
     };
     let founds = timeline.founds.iter();
@@ -192,13 +190,6 @@ fn false_detections(timeline: &Timeline) -> impl Iterator<Item = &ClipDetection>
             (!mistaken(found)).then_some(found)
         }
     })
-}
-
-/// True if a label and a detection share more than half of the shorter one, as in [`morec::eval::ThesisAccuracy`].
-fn is_match(truth: &GroundTruth, found: &ClipDetection) -> bool {
-    let shared = truth.stop_secs.min(found.stop_secs) - truth.start_secs.max(found.start_secs);
-    let shorter = (truth.stop_secs - truth.start_secs).min(found.stop_secs - found.start_secs);
-    shared > 0.5 * shorter + 1e-9
 }
 
 fn clip_of(stream: &str) -> String {
@@ -282,7 +273,7 @@ fn without(mut outcome: Tested, classes: &[String]) -> Tested {
     outcome.truths = kept;
     outcome.misses.retain(|miss| !classes.contains(&miss.class));
     let there = |truth: &GroundTruth, found: &ClipDetection| {
-        truth.clip == found.clip && is_match(truth, found)
+        truth.clip == found.clip && truth.span.matches(found.span)
     };
     let kept: &[GroundTruth] = &outcome.truths;
     outcome.founds.retain(|found| {
@@ -302,8 +293,7 @@ mod tests {
         GroundTruth {
             clip: "a".to_owned(),
             class: class.to_owned(),
-            start_secs,
-            stop_secs,
+            span: TimeSpan::new(start_secs, stop_secs),
         }
     }
 
@@ -311,8 +301,7 @@ mod tests {
         ClipDetection {
             clip: "a".to_owned(),
             class: class.to_owned(),
-            start_secs,
-            stop_secs,
+            span: TimeSpan::new(start_secs, stop_secs),
             score: None,
             reported_secs: None,
             repetitions: None,

@@ -31,11 +31,7 @@ pub fn label_of(
         state: Some(SampleState::Accepted),
         ..SampleFilter::default()
     })?;
-    let stretches = samples.iter().map(|s| Stretch {
-        clip: s.clip,
-        start_secs: s.start_secs,
-        stop_secs: s.stop_secs,
-    });
+    let stretches = samples.iter().map(Stretch::from);
     let others: Vec<Stretch> = stretches.filter(|s| !overlap(s, of)).collect();
     let clip_rows = db.rows(&params, progress)?;
     let rows: BTreeMap<ClipId, (&Rows, BoneSet)> = clip_rows
@@ -70,13 +66,11 @@ pub fn label_of(
 }
 
 fn overlap(a: &Stretch, b: &Stretch) -> bool {
-    a.clip == b.clip && a.start_secs < b.stop_secs && b.start_secs < a.stop_secs
+    a.clip == b.clip && a.span.overlaps(b.span)
 }
 
 fn cut(rows: &Rows, stretch: &Stretch, params: &FeatureParams) -> Rows {
-    let tick = |secs: f64| ((secs * params.tick_hz()).round().max(0.0) as usize).min(rows.len());
-    let (start, stop) = (tick(stretch.start_secs), tick(stretch.stop_secs));
-    rows.slice(start..stop.max(start))
+    rows.slice((stretch.span).frames_among(rows.len(), params.tick_hz()))
 }
 
 /// Mean squared distance a row and bone, both brought to one length.

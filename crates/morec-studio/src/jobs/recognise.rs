@@ -19,15 +19,8 @@ pub fn clip(
     let name = &motion.clip.name;
     let found = recognize_clip(&index.model, &motion.clip, &motion.roles, &motion.rest)
         .map_err(|error| JobError::Failed(format!("{name}: not recognised: {error}")))?;
-    let detections = found.iter().map(|d| ClipDetection {
-        clip: name.clone(),
-        class: index.model.class_name(d.class).to_owned(),
-        start_secs: d.start_secs,
-        stop_secs: d.stop_secs,
-        score: Some(d.score),
-        reported_secs: Some(d.reported_secs),
-        repetitions: d.repetitions.map(|r| r.count),
-    });
+    let named = found.iter().map(|d| d.named(&index.model));
+    let detections = named.map(|d| ClipDetection::new(name, d));
     Ok((motion.id, detections.collect()))
 }
 

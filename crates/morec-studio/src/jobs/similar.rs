@@ -61,6 +61,6 @@ pub fn hits(
         mirror,
         ..SearchOptions::default()
     };
-    let example = index.example(of.clip, of.start_secs, of.stop_secs);
+    let example = index.example(of.clip, of.span);
     Ok(example.map(|example| index.search(&example.cut_out(), &options)))
 }

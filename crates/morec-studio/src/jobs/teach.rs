@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use morec::TimeSpan;
 use morec::files::FileReader;
 use morec::formats::bvh;
 use morec::live::Recording;
@@ -52,7 +53,7 @@ pub struct Lesson {
     /// `None` for a take, of which nothing is said.
     pub meaning: Option<Meaning>,
     /// Start and stop of the marked stretch in the recording, seconds.
-    pub extent_secs: (f64, f64),
+    pub extent: TimeSpan,
     /// Beginning of the new clip's name.
     pub name: String,
 }
@@ -95,8 +96,8 @@ fn taught(path: &Path, folder: &Path, lesson: &Lesson) -> Result<Taught, String>
         let sample = NewSample {
             clip: id,
             class: class.clone(),
-            start_secs: lesson.extent_secs.0.max(0.0),
-            stop_secs: lesson.extent_secs.1.min(secs),
+            start_secs: lesson.extent.start_secs.max(0.0),
+            stop_secs: lesson.extent.stop_secs.min(secs),
             whole_clip: false,
             state: SampleState::Accepted,
             score: None,

@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use morec::eval::GroundTruth;
 use morec::pivots::{PivotMap, pose_rows_of_clip};
 use morec::svrdm::{Branch, Node, SampleClassifier, SvrdmEngine, SvrdmModel};
 use morec::train::thesis::{SvrdmOptions, SvrdmTrainParams, train_svrdm};
@@ -22,7 +23,7 @@ pub struct Thesis {
     pub model: Arc<SvrdmModel>,
     /// The figures that it was trained with.
     pub params: SvrdmTrainParams,
-    pub samples: Vec<TrainedSample>,
+    pub samples: Vec<GroundTruth>,
     pub nodes: Vec<TreeNodeView>,
 }
 
@@ -34,15 +35,6 @@ impl Thesis {
             TreeNodeView::Leaf(_) => None,
         }
     }
-}
-
-/// A sample that taught it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct TrainedSample {
-    pub clip: String,
-    pub class: String,
-    pub start_secs: f64,
-    pub stop_secs: f64,
 }
 
 /// A node of the tree.
@@ -114,16 +106,10 @@ fn trained(
         let rows = pose_rows_of_clip(&clip.clip, &model.pivots, &map, &clip.rest, &model.pose);
         let rows = model.pca.project(&rows);
         for sample in data.samples.iter().filter(|s| s.clip == clip.name) {
-            let frame = |secs: f64| ((secs * model.rate_hz()).round() as usize).min(rows.len());
-            let cut = rows.slice(frame(sample.start_secs)..frame(sample.stop_secs));
+            let cut = rows.slice((sample.span).frames_among(rows.len(), model.rate_hz()));
             if let Some(vector) = classifier.feature(&cut) {
                 vectors.push(vector);
-                samples.push(TrainedSample {
-                    clip: sample.clip.clone(),
-                    class: sample.class.clone(),
-                    start_secs: sample.start_secs,
-                    stop_secs: sample.stop_secs,
-                });
+                samples.push(GroundTruth::from(sample.clone()));
             }
         }
     }
@@ -146,7 +132,7 @@ fn trained(
 fn boundary(
     model: &SvrdmModel,
     branch: &Branch,
-    samples: &[TrainedSample],
+    samples: &[GroundTruth],
     vectors: &[Vec<f64>],
     least: f64,
 ) -> Boundary {

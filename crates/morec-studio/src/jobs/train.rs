@@ -40,10 +40,9 @@ pub fn material(path: &Path, classes: &[String]) -> Result<TrainingData, DbError
         .filter(|s| wanted(&s.class))
         .zip(1..)
         .map(|(s, line)| Sample {
+            span: s.span(),
             clip: s.clip_name,
             class: s.class,
-            start_secs: s.start_secs,
-            stop_secs: s.stop_secs,
             whole_clip: s.whole_clip,
             person: s.subject,
             line,

@@ -37,14 +37,7 @@ pub fn show(ui: &mut Ui, state: &State, sample: &DbSample, out: Out) {
         selected,
     );
     let picture = Rect::from_min_size(rect.min, Vec2::new(rect.width(), STRIP));
-    strips::draw(
-        ui,
-        state,
-        sample.clip,
-        sample.start_secs,
-        sample.stop_secs,
-        picture,
-    );
+    strips::draw(ui, state, sample.into(), picture);
     let caption = Rect::from_min_max(egui::pos2(rect.left() + 2.0, picture.bottom()), rect.max);
     let text = format!("{}  {}", sample.clip_name, format::secs(sample.start_secs));
     widgets::text_in(ui, caption, &text, 11.0, c.muted, false);
@@ -62,13 +55,7 @@ pub fn show(ui: &mut Ui, state: &State, sample: &DbSample, out: Out) {
         response.dnd_set_drag_payload(Carried::Sample(sample.id));
     }
     if response.clicked() || response.double_clicked() {
-        go(
-            sample.clip,
-            sample.start_secs,
-            sample.stop_secs,
-            Some(sample.id),
-            out,
-        );
+        go(sample.into(), Some(sample.id), out);
     }
     if response.double_clicked() {
         out.push(Command::Show(Panel::Label));

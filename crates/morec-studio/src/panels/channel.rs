@@ -74,10 +74,13 @@ fn draw(ui: &Ui, rect: Rect, scale: &Scale, channel: &ChannelCurve, c: &Colours)
     let seen = channel
         .curves
         .iter()
-        .filter(|k| k.stop_secs >= scale.from && k.start_secs <= scale.to);
+        .filter(|k| k.span.stop_secs >= scale.from && k.span.start_secs <= scale.to);
     let mut lines: [Vec<Pos2>; 4] = Default::default();
     for curve in seen {
-        let (left, right) = (scale.x(curve.start_secs), scale.x(curve.stop_secs));
+        let (left, right) = (
+            scale.x(curve.span.start_secs),
+            scale.x(curve.span.stop_secs),
+        );
         // A point of the curve for every two of the screen.
         let steps = ((right - left) / 2.0).ceil().clamp(1.0, 256.0) as usize;
         for step in 0..=steps {

@@ -134,7 +134,8 @@ fn columns(ui: &mut Ui, state: &State, out: Out) {
             for (place, class) in state.classes.placed() {
                 let all = &store.snapshot.samples;
                 let places = state.classes.columns.column(class).iter();
-                let samples: Vec<&DbSample> = places.filter_map(|&at| all.get(at)).collect();
+                let samples: Vec<&DbSample> =
+                    places.filter_map(|&at| Some(&**all.get(at)?)).collect();
                 column(ui, state, place, class, samples, height - 14.0, out);
             }
         });

@@ -43,7 +43,10 @@ pub fn others<'a>(state: &'a State, motion: &ClipMotion, c: &Colours) -> Vec<Oth
                     true => c.body().mixed(c.good, 0.75),
                     false => c.body().mixed(c.good, 0.25),
                 },
-                caption: format!("{name}, {}{image}", format::secs(aligned.with.start_secs)),
+                caption: format!(
+                    "{name}, {}{image}",
+                    format::secs(aligned.with.span.start_secs)
+                ),
             }
         })
         .collect()
@@ -52,7 +55,7 @@ pub fn others<'a>(state: &'a State, motion: &ClipMotion, c: &Colours) -> Vec<Oth
 /// Caption of the performer where there are companions.
 pub fn caption(state: &State, motion: &ClipMotion) -> Option<String> {
     let first = state.companions.all.first()?;
-    let start = format::secs(first.of.start_secs);
+    let start = format::secs(first.of.span.start_secs);
     Some(format!("{}, {start}", motion.clip.name))
 }
 

@@ -39,11 +39,11 @@ pub fn detections(ui: &mut Ui, state: &State, scale: &Scale, out: Out) {
     }
     let painter = ui.painter_at(rect);
     for (at, found) in found.iter().enumerate() {
-        if found.stop_secs < scale.from || found.start_secs > scale.to {
+        if found.span.stop_secs < scale.from || found.span.start_secs > scale.to {
             continue;
         }
         let bar = Rect::from_x_y_ranges(
-            scale.x(found.start_secs)..=scale.x(found.stop_secs),
+            scale.x(found.span.start_secs)..=scale.x(found.span.stop_secs),
             rect.top() + 4.0..=rect.bottom() - 4.0,
         );
         painter.rect_filled(bar, 2.0, c.class(state.classes.place(&found.class)));
@@ -63,7 +63,7 @@ pub fn detections(ui: &mut Ui, state: &State, scale: &Scale, out: Out) {
         widgets::named(
             &response,
             WidgetType::Button,
-            format!("recognised {} {:.2} s", found.class, found.start_secs),
+            format!("recognised {} {:.2} s", found.class, found.span.start_secs),
             false,
         );
         if response
@@ -75,8 +75,8 @@ pub fn detections(ui: &mut Ui, state: &State, scale: &Scale, out: Out) {
             .clicked()
         {
             out.push(Command::Play(PlayCommand::Stretch(
-                found.start_secs,
-                found.stop_secs,
+                found.span.start_secs,
+                found.span.stop_secs,
             )));
         }
     }
@@ -127,14 +127,13 @@ pub fn deviation(ui: &mut Ui, state: &State, scale: &Scale, out: Out) {
     };
     let c = Colours::now(ui);
     let rect = plain_track(ui, state, scale, "Degrees off", 46.0, out);
-    let (start, stop) = (aligned.of.start_secs, aligned.of.stop_secs);
-    let Some((worst_secs, worst)) = deviation.worst(start, stop) else {
+    let Some((worst_secs, worst)) = deviation.worst(aligned.of.span) else {
         return;
     };
     let full = worst.max(LEAST_DEGREES);
     let y = |degrees: f64| rect.bottom() - (degrees / full) as f32 * (rect.height() - 4.0);
     let painter = ui.painter_at(rect);
-    let curve = deviation.curve(start, stop);
+    let curve = deviation.curve(aligned.of.span);
     for part in parts(curve.map(|(secs, off)| (secs, y(off))), scale, 1.0) {
         painter.line(part, Stroke::new(1.6, c.accent));
     }

@@ -79,11 +79,10 @@ fn selected_here(ui: &Ui, state: &State, scale: &Scale) -> Option<Stretch> {
     let (start_secs, stop_secs) = state.timeline.range?;
     let pressed = scale.secs(ui.input(|i| i.pointer.press_origin())?.x);
     (start_secs..=stop_secs).contains(&pressed).then_some(())?;
-    Some(Stretch {
-        clip: state.player.motion.as_ref()?.id,
-        start_secs,
-        stop_secs,
-    })
+    Some(Stretch::new(
+        state.player.motion.as_ref()?.id,
+        start_secs..stop_secs,
+    ))
 }
 
 fn near(a: f64, b: f64) -> bool {

@@ -25,10 +25,7 @@ pub fn recognised(ui: &mut Ui, state: &State, out: Out) {
         text += &format!(", {count} times");
     }
     ui.label(text);
-    ui.colored_label(
-        c.muted,
-        format!("{:.2} s long", found.stop_secs - found.start_secs),
-    );
+    ui.colored_label(c.muted, format!("{:.2} s long", found.span.duration_secs()));
     let hint = "The nearest label of this class beside the performer, and how far off each bone is";
     if ui.button("How well?").on_hover_text(hint).clicked() {
         let class = found.class.clone();

@@ -10,7 +10,6 @@ use super::{Out, strips, widgets};
 use crate::format;
 use crate::jobs::group::GroupItem;
 use crate::state::{ClassCommand, Command, State};
-use crate::stretch::Stretch;
 use crate::theme::Colours;
 
 /// The groups at the depth that the slider says.
@@ -73,14 +72,7 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
                                 format!("Stretch {member} of group {}", number + 1),
                                 false,
                             );
-                            strips::draw(
-                                ui,
-                                state,
-                                item.clip,
-                                item.start_secs,
-                                item.stop_secs,
-                                rect,
-                            );
+                            strips::draw(ui, state, item.of, rect);
                             if let Some(class) = class_now(state, item) {
                                 let place = state.classes.place(class);
                                 let mark =
@@ -91,7 +83,7 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
                                 response.dnd_set_drag_payload(carried(item));
                             }
                             if response.clicked() {
-                                go(item.clip, item.start_secs, item.stop_secs, item.sample, out);
+                                go(item.of, item.sample, out);
                             }
                         }
                         if group.members.len() > 24 {
@@ -111,25 +103,20 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
 fn carried(item: &GroupItem) -> Carried {
     match item.sample {
         Some(id) => Carried::Sample(id),
-        None => Carried::Stretch(Stretch {
-            clip: item.clip,
-            start_secs: item.start_secs,
-            stop_secs: item.stop_secs,
-        }),
+        None => Carried::Stretch(item.of),
     }
 }
 
 /// The class that a stretch has now: since it was grouped it may have been given another.
 fn class_now<'a>(state: &'a State, item: &GroupItem) -> Option<&'a str> {
     let snapshot = &state.store.as_ref()?.snapshot;
-    let near = |a: f64, b: f64| (a - b).abs() < 0.02;
     let sample = match item.sample {
         Some(id) => snapshot.sample(id),
-        None => snapshot.samples_of(item.clip).iter().find(|s| {
-            s.state != SampleState::Rejected
-                && near(s.start_secs, item.start_secs)
-                && near(s.stop_secs, item.stop_secs)
-        }),
+        None => snapshot
+            .samples_of(item.of.clip)
+            .iter()
+            .find(|s| s.state != SampleState::Rejected && s.span().is_near(item.of.span, 0.02))
+            .map(|s| &**s),
     };
     Some(sample?.class.as_str())
 }

@@ -18,7 +18,7 @@ fn words(kind: ClassKind) -> (&'static str, &'static str) {
 pub fn choose(ui: &mut Ui, state: &State, class: &str, out: Out) {
     let chosen = state.train.kinds.get(class).copied();
     let snapshot = state.store.as_ref().map(|store| &store.snapshot);
-    let labels = snapshot.and_then(|snapshot| snapshot.labels.get(class));
+    let labels = snapshot.and_then(|snapshot| snapshot.labels().get(class));
     let labels = labels.copied().unwrap_or_default();
     let usual = TrainParams::default().kind(class, &labels);
     let (name, with_article) = words(chosen.unwrap_or(usual));

@@ -1,5 +1,6 @@
 //! The clips as a table, and the chosen one beside it.
 
+use crate::stretch::Stretch;
 use egui::{
     CentralPanel, Context, Key, Rect, Response, RichText, ScrollArea, Sense, SidePanel, TextEdit,
     Ui, Vec2, WidgetType,
@@ -226,7 +227,8 @@ fn strip(ui: &mut Ui, state: &State, clip: &ClipInfo, out: Out) {
     widgets::text_in(ui, line(1.0), person, 11.5, c.muted, false);
     widgets::text_in(ui, line(2.0), &length, 11.5, c.muted, false);
     let picture = rect.with_min_x(rect.left() + names).shrink(3.0);
-    strips::draw(ui, state, clip.id, 0.0, clip.duration_secs(), picture);
+    let whole = Stretch::new(clip.id, 0.0..clip.duration_secs());
+    strips::draw(ui, state, whole, picture);
     if response.clicked() {
         out.push(Command::Library(chosen(ui, clip)));
     }

@@ -190,15 +190,15 @@ fn draw_seen(ui: &Ui, state: &State, run: &Run, rect: Rect, scale: &Scale, out: 
         .iter()
         .rev()
         .filter(|s| Some(s.actor) == watched)
-        .take_while(|s| s.stop_secs > scale.from - 10.0)
-        .filter(|s| s.start_secs < scale.to && s.stop_secs > scale.from);
+        .take_while(|s| s.span.stop_secs > scale.from - 10.0)
+        .filter(|s| s.span.start_secs < scale.to && s.span.stop_secs > scale.from);
     for seen in shown {
         let colour = c.class(state.classes.place(&seen.class));
-        let extent = (seen.start_secs, seen.stop_secs);
+        let extent = (seen.span.start_secs, seen.span.stop_secs);
         let bar = bar(&painter, rect, scale, extent, &seen.class, colour, c);
         let id = ui.id().with(("seen", extent.0.to_bits(), &seen.class));
         let response = ui.interact(bar.intersect(rect), id, Sense::click());
-        let name = format!("{} at {:.1} s", seen.class, seen.start_secs);
+        let name = format!("{} at {:.1} s", seen.class, seen.span.start_secs);
         widgets::named(&response, WidgetType::Button, name, false);
         if response.on_hover_text(&seen.class).clicked() {
             out.push(Command::Live(LiveCommand::GoTo(extent.0, extent.1)));
@@ -207,11 +207,11 @@ fn draw_seen(ui: &Ui, state: &State, run: &Run, rect: Rect, scale: &Scale, out: 
     // What another sensitivity would have found, as outlines around it.
     let would = state.live.resensed.iter().flat_map(|r| &r.found);
     let index = state.live.index();
-    for found in would.filter(|d| d.stop_secs > scale.from) {
+    for found in would.filter(|d| d.span.stop_secs > scale.from) {
         let name = index.map_or("", |index| index.model.class_name(found.class));
         let colour = c.class(state.classes.place(name));
         let frame = Rect::from_x_y_ranges(
-            scale.x(found.start_secs)..=scale.x(found.stop_secs),
+            scale.x(found.span.start_secs)..=scale.x(found.span.stop_secs),
             rect.y_range(),
         );
         let stroke = egui::Stroke::new(1.5, colour);
@@ -222,12 +222,12 @@ fn draw_seen(ui: &Ui, state: &State, run: &Run, rect: Rect, scale: &Scale, out: 
 fn draw_marks(ui: &Ui, state: &State, rect: Rect, scale: &Scale, c: &Colours) {
     let painter = ui.painter_at(rect);
     let marks = state.live.marks.iter();
-    for mark in marks.filter(|m| m.stop_secs > scale.from) {
+    for mark in marks.filter(|m| m.span.stop_secs > scale.from) {
         let colour = match &mark.meaning {
             Meaning::Class(class) => c.class(state.classes.place(class)),
             Meaning::Background => c.muted,
         };
-        let extent = (mark.start_secs, mark.stop_secs);
+        let extent = (mark.span.start_secs, mark.span.stop_secs);
         bar(
             &painter,
             rect,

@@ -74,7 +74,7 @@ fn compare(ui: &mut Ui, state: &State, out: Out) {
 fn line(ui: &mut Ui, moment: &Moment, height: f32, on: bool) -> bool {
     let c = Colours::now(ui);
     let said = moment.said();
-    let start = format::secs(moment.start_secs);
+    let start = format::secs(moment.span.start_secs);
     let mut name = format!("{said}, {} {start}", moment.clip);
     if let Some(why) = &moment.why {
         name += &format!(": {why}");

@@ -25,8 +25,8 @@ pub fn tools(ui: &mut Ui, state: &State, similar: &Similar, out: Out) {
     let what = similar.class.as_deref().unwrap_or("this");
     let text = format!(
         "Like {what} in {name}, {} to {}",
-        format::secs(similar.of.start_secs),
-        format::secs(similar.of.stop_secs)
+        format::secs(similar.of.span.start_secs),
+        format::secs(similar.of.span.stop_secs)
     );
     ui.label(RichText::new(text).strong());
     let mut mirror = state.classes.mirror;
@@ -83,28 +83,24 @@ fn card(ui: &mut Ui, state: &State, similar: &Similar, at: usize, out: Out) {
     widgets::named(
         &response,
         WidgetType::Button,
-        format!("Like it: {name} at {:.2} s{image}", hit.start_secs),
+        format!("Like it: {name} at {:.2} s{image}", hit.span.start_secs),
         false,
     );
-    strips::draw(ui, state, hit.clip, hit.start_secs, hit.stop_secs, picture);
+    strips::draw(ui, state, hit.into(), picture);
     let caption = Rect::from_min_size(picture.left_bottom(), Vec2::new(WIDTH, 18.0));
-    let text = format!("{name}  {}{image}", format::secs(hit.start_secs));
+    let text = format!("{name}  {}{image}", format::secs(hit.span.start_secs));
     widgets::text_in(ui, caption, &text, 11.5, c.muted, false);
     let score = format!("{:.0} %", 100.0 * hit.score);
     widgets::text_in(ui, caption, &score, 11.5, c.text, true);
     if response.clicked() {
-        go(hit.clip, hit.start_secs, hit.stop_secs, None, out);
+        go(hit.into(), None, out);
     }
     let area = Rect::from_min_max(caption.left_bottom(), rect.max);
     let mut below = ui.new_child(egui::UiBuilder::new().max_rect(area));
     below.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         ui.style_mut().override_text_style = Some(egui::TextStyle::Small);
-        let stretch = Stretch {
-            clip: hit.clip,
-            start_secs: hit.start_secs,
-            stop_secs: hit.stop_secs,
-        };
+        let stretch = Stretch::from(hit);
         let compare = ui.button("Compare");
         widgets::named(
             &compare,

@@ -17,24 +17,24 @@ use crate::theme::Colours;
 pub const STRIP: f32 = 62.0;
 
 /// Draws the strip of a stretch of a clip, or says that it is coming.
-pub fn draw(ui: &Ui, state: &State, clip: ClipId, start_secs: f64, stop_secs: f64, rect: Rect) {
+pub fn draw(ui: &Ui, state: &State, of: Stretch, rect: Rect) {
     if !ui.is_rect_visible(rect) {
         return;
     }
     let c = Colours::now(ui);
     ui.painter().rect_filled(rect, 3.0, c.well);
-    let Some(motion) = state.motions.get(clip) else {
-        let text = state.motions.failure(clip).unwrap_or("…");
+    let Some(motion) = state.motions.get(of.clip) else {
+        let text = state.motions.failure(of.clip).unwrap_or("…");
         super::widgets::text_in(ui, rect.shrink(6.0), text, 11.0, c.muted, false);
-        want(ui.ctx(), clip);
+        want(ui.ctx(), of.clip);
         return;
     };
     let size = rect.size();
     let id = Id::new((
         "strip",
-        clip,
-        start_secs.to_bits(),
-        stop_secs.to_bits(),
+        of.clip,
+        of.span.start_secs.to_bits(),
+        of.span.stop_secs.to_bits(),
         size.x as i32,
         size.y as i32,
         c.dark,
@@ -42,7 +42,7 @@ pub fn draw(ui: &Ui, state: &State, clip: ClipId, start_secs: f64, stop_secs: f6
     let known = ui.data(|data| data.get_temp::<Arc<Mesh>>(id));
     let mesh = known.unwrap_or_else(|| {
         let at = Rect::from_min_size(pos2(0.0, 0.0), size);
-        let mesh = Arc::new(one(&strip(motion, start_secs, stop_secs, at, &c.body())));
+        let mesh = Arc::new(one(&strip(motion, of.span, at, &c.body())));
         ui.data_mut(|data| data.insert_temp(id, mesh.clone()));
         mesh
     });
@@ -52,20 +52,11 @@ pub fn draw(ui: &Ui, state: &State, clip: ClipId, start_secs: f64, stop_secs: f6
 }
 
 /// Shows the stretch of a strip, and selects it: the sample that it is, else the stretch itself.
-pub fn go(clip: ClipId, start_secs: f64, stop_secs: f64, sample: Option<SampleId>, out: Out) {
+pub fn go(of: Stretch, sample: Option<SampleId>, out: Out) {
     if sample.is_none() {
-        let of = Stretch {
-            clip,
-            start_secs,
-            stop_secs,
-        };
         return out.push(Command::Library(LibraryCommand::SelectStretch(of)));
     }
-    out.push(Command::Library(LibraryCommand::GoTo {
-        clip,
-        start_secs,
-        stop_secs,
-    }));
+    out.push(Command::Library(LibraryCommand::GoTo(of)));
     if let Some(id) = sample {
         out.push(Command::Timeline(TimelineCommand::Select {
             id: Some(id),

@@ -139,7 +139,7 @@ pub fn recognised(ui: &mut Ui, state: &State, out: Out) {
                         .clicked()
                     {
                         out.push(Command::Live(LiveCommand::Watch(seen.actor)));
-                        let extent = (seen.start_secs, seen.stop_secs);
+                        let extent = (seen.span.start_secs, seen.span.stop_secs);
                         out.push(Command::Live(LiveCommand::GoTo(extent.0, extent.1)));
                     }
                     let who = match run.performers.len() > 1 {
@@ -148,7 +148,7 @@ pub fn recognised(ui: &mut Ui, state: &State, out: Out) {
                     };
                     let text = format!(
                         "{who}{}  {:.0} %",
-                        format::clock(seen.start_secs, 1),
+                        format::clock(seen.span.start_secs, 1),
                         100.0 * seen.score
                     );
                     ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {

@@ -57,7 +57,7 @@ pub fn show(ui: &mut Ui, state: &State, thesis: &Thesis, branch: &Boundary, out:
         let response = ui.interact(area, ui.id().with(("point", number)), Sense::click());
         let said = format!(
             "{} in {} at {:.2} s",
-            taught.class, taught.clip, taught.start_secs
+            taught.class, taught.clip, taught.span.start_secs
         );
         let on = state.train.sample == Some(*sample);
         widgets::named(&response, WidgetType::Button, format!("Point: {said}"), on);

@@ -161,7 +161,7 @@ fn has_track(state: &State, place: usize, class: &str) -> bool {
     !are_many(state)
         || state.timeline.all_classes
         || held
-        || state.shown_samples().iter().any(shows)
+        || state.shown_samples().iter().any(|s| shows(s))
 }
 
 /// The narrow labels of a row, drawn as one mesh; those that touch as one.
@@ -313,8 +313,7 @@ fn held_by(
             id: sample.id,
             grip: grip(origin.x),
             held_secs: scale.secs(origin.x) - sample.start_secs,
-            start_secs: sample.start_secs,
-            stop_secs: sample.stop_secs,
+            span: sample.span(),
             dropped: false,
         })));
     }

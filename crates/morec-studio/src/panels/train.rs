@@ -193,7 +193,7 @@ fn indexes(ui: &mut Ui, state: &State, out: Out) {
     if store.snapshot.indexes.is_empty() {
         ui.colored_label(c.muted, "None is kept yet.");
     }
-    for index in &store.snapshot.indexes {
+    for index in store.snapshot.indexes.iter() {
         ui.horizontal(|ui| {
             let response = ui.small_button("Use");
             let name = format!("Use {}", index.name);
@@ -202,7 +202,7 @@ fn indexes(ui: &mut Ui, state: &State, out: Out) {
                 out.push(Command::Train(TrainCommand::UseIndex(index.name.clone())));
             }
             ui.label(&index.name);
-            let text = if index.stale {
+            let text = if store.snapshot.is_stale(index) {
                 "labels or background changed since"
             } else {
                 "up to date"

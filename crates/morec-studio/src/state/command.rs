@@ -157,11 +157,7 @@ pub enum LibraryCommand {
     /// Shows a clip.
     Open(ClipId),
     /// Shows a stretch of a clip of this name, in a loop.
-    GoTo {
-        clip: ClipId,
-        start_secs: f64,
-        stop_secs: f64,
-    },
+    GoTo(Stretch),
     /// Shows a stretch of a clip in a loop, and selects it.
     SelectStretch(Stretch),
     DismissReport,

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use morec::TimeSpan;
 use morec_db::labels::{DbSample, NewSample, SampleId};
 
 use super::cuts::HeldCut;
@@ -26,8 +27,7 @@ pub struct Drag {
     pub grip: Grip,
     /// Place at which it was held, seconds from its start.
     pub held_secs: f64,
-    pub start_secs: f64,
-    pub stop_secs: f64,
+    pub span: TimeSpan,
     /// Dropped, and on its way to the database: drawn here until it arrives there.
     pub dropped: bool,
 }
@@ -136,7 +136,7 @@ impl TimelineState {
     /// Start and stop at which a label is drawn: while it is dragged, those of the drag.
     pub fn extent(&self, sample: &DbSample) -> (f64, f64) {
         match &self.drag {
-            Some(drag) if drag.id == sample.id => (drag.start_secs, drag.stop_secs),
+            Some(drag) if drag.id == sample.id => (drag.span.start_secs, drag.span.stop_secs),
             _ => (sample.start_secs, sample.stop_secs),
         }
     }
@@ -149,12 +149,16 @@ impl TimelineState {
         let frame = 1.0 / rate_hz;
         let snap = |secs: f64| self.snapped(secs, marks.iter().copied(), rate_hz);
         match drag.grip {
-            Grip::Start => drag.start_secs = snap(secs).clamp(0.0, drag.stop_secs - frame),
-            Grip::Stop => drag.stop_secs = snap(secs).clamp(drag.start_secs + frame, clip_secs),
+            Grip::Start => {
+                drag.span.start_secs = snap(secs).clamp(0.0, drag.span.stop_secs - frame)
+            }
+            Grip::Stop => {
+                drag.span.stop_secs = snap(secs).clamp(drag.span.start_secs + frame, clip_secs)
+            }
             Grip::Whole => {
-                let length = drag.stop_secs - drag.start_secs;
+                let length = drag.span.duration_secs();
                 let start = snap(secs - drag.held_secs).clamp(0.0, (clip_secs - length).max(0.0));
-                (drag.start_secs, drag.stop_secs) = (start, start + length);
+                drag.span = TimeSpan::new(start, start + length);
             }
         }
         self.drag = Some(drag);
@@ -199,17 +203,16 @@ mod tests {
             id: SampleId(1),
             grip,
             held_secs: 0.5,
-            start_secs: 2.0,
-            stop_secs: 3.0,
+            span: TimeSpan::new(2.0, 3.0),
             dropped: false,
         };
         timeline.drag = Some(drag(Grip::Whole));
         timeline.drag_to(99.0, &[], 60.0, 10.0);
         let now = timeline.drag.clone().unwrap();
-        assert_eq!((now.start_secs, now.stop_secs), (9.0, 10.0));
+        assert_eq!(now.span, TimeSpan::new(9.0, 10.0));
         timeline.drag = Some(drag(Grip::Start));
         timeline.drag_to(99.0, &[], 60.0, 10.0);
         let now = timeline.drag.clone().unwrap();
-        assert!((now.stop_secs - now.start_secs - 1.0 / 60.0).abs() < 1e-9);
+        assert!((now.span.duration_secs() - 1.0 / 60.0).abs() < 1e-9);
     }
 }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use morec::roles::RoleMap;
-use morec_db::labels::{LabelOptions, NewSample, SampleId, SampleState, WholeClip};
+use morec_db::labels::{DbSample, LabelOptions, NewSample, SampleId, SampleState, WholeClip};
 use morec_db::{BACKGROUND, ClipId, ClipInfo, ClipUpdate, DbError, MotionDb};
 
 /// Author of the studio's labels in the database.
@@ -31,7 +31,7 @@ pub enum Edit {
     /// Labels in place of others: splitting and merging.
     Replace {
         what: String,
-        old: Vec<SampleId>,
+        old: Vec<DbSample>,
         new: Vec<NewSample>,
     },
     /// Samples of another class.

@@ -6,6 +6,8 @@
 mod edit;
 mod message;
 mod snapshot;
+#[cfg(test)]
+mod tests;
 mod worker;
 
 use std::collections::BTreeMap;
@@ -39,7 +41,7 @@ impl Store {
     /// Opens a database, or makes one where there is none.
     pub fn open(path: &Path, temporary: bool, wake: Wake) -> Result<Self, DbError> {
         let (db, snapshot) = worker::open(path)?;
-        let (requests, replies) = worker::start(db, wake)?;
+        let (requests, replies) = worker::start(db, snapshot.clone(), wake)?;
         Ok(Self {
             path: path.to_owned(),
             temporary,

@@ -42,12 +42,17 @@ pub fn open(path: &Path) -> Result<(MotionDb, Arc<Snapshot>), DbError> {
     Ok((db, snapshot))
 }
 
-pub fn start(db: MotionDb, wake: Wake) -> Result<(Sender<Request>, Receiver<Reply>), DbError> {
+pub fn start(
+    db: MotionDb,
+    last: Arc<Snapshot>,
+    wake: Wake,
+) -> Result<(Sender<Request>, Receiver<Reply>), DbError> {
     let (requests, incoming) = channel();
     let (outgoing, replies) = channel();
     let mut worker = StoreWorker {
         seen: mark(&db),
         db,
+        last,
         outgoing,
         wake,
     };
@@ -61,6 +66,8 @@ pub fn start(db: MotionDb, wake: Wake) -> Result<(Sender<Request>, Receiver<Repl
 
 struct StoreWorker {
     db: MotionDb,
+    /// The database after the last request; empty if it could not be read.
+    last: Arc<Snapshot>,
     /// The last step and how many were taken back, by which changes from elsewhere are noticed.
     seen: Option<(i64, i64)>,
     outgoing: Sender<Reply>,
@@ -87,6 +94,8 @@ impl StoreWorker {
                 Ok(Request::Places(places)) => (failure(self.db.place_classes(&places)), true),
                 Ok(Request::LastIndex(bytes)) => {
                     let kept = self.db.store_last_index(LAST_INDEX, &bytes);
+                    // No step of the history says what to read.
+                    self.last = Arc::default();
                     (failure(kept), true)
                 }
                 #[cfg(test)]
@@ -108,8 +117,10 @@ impl StoreWorker {
     /// Sends a new snapshot; says whether anybody still listens.
     fn reply(&mut self, mut said: Option<StoreMessage>, answers: bool) -> bool {
         self.seen = mark(&self.db);
-        let snapshot = match Snapshot::read(&self.db) {
-            Ok(snapshot) => Some(Arc::new(snapshot)),
+        let next = self.last.follow(&self.db).map(Arc::new);
+        self.last = next.as_ref().map(Arc::clone).unwrap_or_default();
+        let snapshot = match next {
+            Ok(snapshot) => Some(snapshot),
             Err(error) => {
                 said = Some(StoreMessage::Failed(sentence(&error.to_string())));
                 None

@@ -250,11 +250,14 @@ fn a_label_of_the_played_clip_is_not_marked_as_background() {
     let take = &takes()[0];
     let label = take.labels[0];
     let secs = take.clip.duration_secs();
-    live_until(&mut person, secs + 1.0 + label.stop_secs + 1.0);
+    live_until(&mut person, secs + 1.0 + label.span.stop_secs + 1.0);
     // In the second lap too.
     for lap in [0.0, secs + 1.0] {
         let at = |s: f64| s + lap;
-        select(&mut person, (at(label.start_secs), at(label.stop_secs)));
+        select(
+            &mut person,
+            (at(label.span.start_secs), at(label.span.stop_secs)),
+        );
         person.click("Mark as background");
         person.settle();
         assert!(marked(&person).is_empty());

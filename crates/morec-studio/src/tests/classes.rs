@@ -156,7 +156,10 @@ fn a_group_is_shown_from_its_outliers_to_what_is_usual() {
     person.click("Stretch 5 of group 1");
     person.settle();
     let looped = person.state().player.looped.unwrap();
-    assert_eq!(looped, (items[5].start_secs, items[5].stop_secs));
+    assert_eq!(
+        looped,
+        (items[5].of.span.start_secs, items[5].of.span.stop_secs)
+    );
 }
 
 #[test]

@@ -42,8 +42,8 @@ fn what_is_like_a_label_becomes_labels_and_back() {
             let clip = &snapshot.clip(hit.clip).unwrap().name;
             clip != "ada_1"
                 && of(clip).labels.iter().any(|l| {
-                    let shared = l.stop_secs.min(hit.stop_secs) - l.start_secs.max(hit.start_secs);
-                    l.class == "wave" && shared > 0.5 * (l.stop_secs - l.start_secs)
+                    let shared = l.span.overlap_secs(hit.span);
+                    l.class == "wave" && shared > 0.5 * l.span.duration_secs()
                 })
         })
         .unwrap();
@@ -51,7 +51,7 @@ fn what_is_like_a_label_becomes_labels_and_back() {
     assert!(person.offers(&format!(
         "Like it: {} at {:.2} s",
         snapshot.clip(hit.clip).unwrap().name,
-        hit.start_secs
+        hit.span.start_secs
     )));
     person.click(&format!("Hit {} is wave", at + 1));
     person.settle();
@@ -64,7 +64,7 @@ fn what_is_like_a_label_becomes_labels_and_back() {
     let line = person.state().command_line.clone();
     let example = format!(
         "ada_1 --start {:.3} --stop {:.3}",
-        of.start_secs, of.stop_secs
+        of.span.start_secs, of.span.stop_secs
     );
     assert!(
         line.starts_with("morec db search ") && line.contains(&example),
@@ -90,13 +90,13 @@ fn the_nearest_stands_beside_the_performer_and_on_top_along_the_warping_path() {
     assert!(person.sees_part(&format!("Seen: {name}")));
     // Time runs forwards in both, from one end to the other.
     let steps = (0..=20).map(|k| {
-        let secs = aligned.of.stop_secs - aligned.of.start_secs;
-        aligned.at(aligned.of.start_secs + secs * f64::from(k) / 20.0)
+        let secs = aligned.of.span.duration_secs();
+        aligned.at(aligned.of.span.start_secs + secs * f64::from(k) / 20.0)
     });
     let steps: Vec<f64> = steps.collect();
     assert!(steps.windows(2).all(|w| w[0] <= w[1] + 1e-9), "{steps:?}");
-    assert!((steps[0] - aligned.with.start_secs).abs() < 1e-6);
-    assert!((steps[20] - aligned.with.stop_secs).abs() < 1e-6);
+    assert!((steps[0] - aligned.with.span.start_secs).abs() < 1e-6);
+    assert!((steps[20] - aligned.with.span.stop_secs).abs() < 1e-6);
     let apart = person.state().apart();
     assert!(apart > 0.5);
     person.click("On top");
@@ -146,7 +146,7 @@ fn how_far_off_is_drawn_and_a_bone_goes_to_its_worst_moment() {
     let (aligned, deviation) = person.state().deviation().unwrap();
     let (of, deviation) = (aligned.of, deviation.clone());
     assert!(person.sees_part(&format!("{:.0}° on average", deviation.off_degrees)));
-    let (secs, degrees) = deviation.worst(of.start_secs, of.stop_secs).unwrap();
+    let (secs, degrees) = deviation.worst(of.span).unwrap();
     assert!(person.sees(&format!("Farthest off: {degrees:.0}° at {secs:.2} s")));
     let bone = &deviation.bones[0];
     person.click(&format!(
@@ -173,13 +173,15 @@ fn a_recognised_motion_is_held_beside_the_nearest_label_of_its_class() {
     let (_, found) = person.state().detections.clone().unwrap();
     let wave = found.iter().find(|d| d.class == "wave").unwrap();
     assert!(!person.offers("How well?"));
-    person.click(&format!("recognised wave {:.2} s", wave.start_secs));
+    person.click(&format!("recognised wave {:.2} s", wave.span.start_secs));
     person.click("How well?");
     person.settle();
     let (aligned, deviation) = person.state().deviation().unwrap();
-    assert_eq!(aligned.of.start_secs, wave.start_secs);
+    assert_eq!(aligned.of.span.start_secs, wave.span.start_secs);
     let store = person.state().store.as_ref().unwrap();
     let mut labels = store.snapshot.accepted().filter(|s| s.class == "wave");
-    assert!(labels.any(|s| s.clip == aligned.with.clip && s.start_secs == aligned.with.start_secs));
+    assert!(
+        labels.any(|s| s.clip == aligned.with.clip && s.start_secs == aligned.with.span.start_secs)
+    );
     assert!(deviation.off_degrees < 45.0 && deviation.bones.len() > 5);
 }

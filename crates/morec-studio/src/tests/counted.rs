@@ -25,7 +25,7 @@ fn three_gestures_of_a_played_clip_are_recognised_live_after_few_clicks_and_keys
     classes.dedup();
     assert_eq!(classes.len(), 3);
     let mut labels = take.labels.clone();
-    labels.sort_by(|a, b| a.start_secs.total_cmp(&b.start_secs));
+    labels.sort_by(|a, b| a.span.start_secs.total_cmp(&b.span.start_secs));
     // Keys count up with the classes as they appear.
     let mut order: Vec<&str> = Vec::new();
     for label in &labels {
@@ -33,10 +33,10 @@ fn three_gestures_of_a_played_clip_are_recognised_live_after_few_clicks_and_keys
             order.push(label.class);
         }
         let key = crate::keys::CLASS_KEYS[order.iter().position(|c| *c == label.class).unwrap()];
-        while person.state().player.at_secs < label.start_secs {
+        while person.state().player.at_secs < label.span.start_secs {
             person.frames(1);
         }
-        person.hold(key, label.stop_secs - label.start_secs);
+        person.hold(key, label.span.duration_secs());
     }
     person.key(Key::K);
     person.settle();

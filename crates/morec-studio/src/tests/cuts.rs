@@ -147,7 +147,8 @@ fn a_channel_is_shown_with_its_keyframes() {
     let keys = channel.curves.len() + 1;
     assert!(person.sees_part(&format!("Channel Hips, {keys} keyframes")));
     // Curves follow each other without a gap from the beginning to the end.
-    let meet = |pair: &[morec::smooth::Bezier]| (pair[0].stop_secs - pair[1].start_secs).abs();
+    let meet =
+        |pair: &[morec::smooth::Bezier]| (pair[0].span.stop_secs - pair[1].span.start_secs).abs();
     assert!(channel.curves.windows(2).all(|pair| meet(pair) < 1e-9));
     person.click("Channel: Hips");
     person.click("None");

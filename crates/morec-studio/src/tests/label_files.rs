@@ -14,7 +14,12 @@ fn table(folder: &Path) -> PathBuf {
     let mut text = "clip\tclass\tstart_secs\tstop_secs\n".to_owned();
     for take in takes() {
         for l in &take.labels {
-            let line = (&take.clip.name, l.class, l.start_secs, l.stop_secs);
+            let line = (
+                &take.clip.name,
+                l.class,
+                l.span.start_secs,
+                l.span.stop_secs,
+            );
             text += &format!("{}\t{}\t{}\t{}\n", line.0, line.1, line.2, line.3);
         }
     }
@@ -59,7 +64,7 @@ fn labels_in_place_of_others_say_what_moves_and_goes() {
     let folder = tempfile::tempdir().unwrap();
     let mut person = Person::before(&[made(folder.path(), 1)]);
     let label = &takes()[0].labels[0];
-    let (start, stop) = (label.start_secs + 0.1, label.stop_secs);
+    let (start, stop) = (label.span.start_secs + 0.1, label.span.stop_secs);
     let path = folder.path().join("corrected.csv");
     let line = format!("ada_1,{},{start},{stop}", label.class);
     let absent = "nobody,wave,1,2";

@@ -16,7 +16,7 @@ fn what_just_happened_is_marked_learned_and_recognised_and_undone() {
     let take = &takes()[0];
     let wave = take.labels.iter().find(|l| l.class == "wave").unwrap();
     let now = |person: &Person| person.state().live.run.as_ref().unwrap().now_secs;
-    while now(&person) < wave.stop_secs + 0.4 {
+    while now(&person) < wave.span.stop_secs + 0.4 {
         person.frames(1);
     }
     person.key(Key::Num1);
@@ -24,9 +24,9 @@ fn what_just_happened_is_marked_learned_and_recognised_and_undone() {
     let line = person.state().command_line.clone();
     assert!(line.ends_with("--name gesture_1"), "{line}");
     let mark = person.state().live.marks[0].clone();
-    let (start, stop) = (mark.start_secs, mark.stop_secs);
+    let (start, stop) = (mark.span.start_secs, mark.span.stop_secs);
     assert!(
-        (start - wave.start_secs).abs() < 0.8 && (stop - wave.stop_secs).abs() < 0.8,
+        (start - wave.span.start_secs).abs() < 0.8 && (stop - wave.span.stop_secs).abs() < 0.8,
         "{start} {stop} {wave:?}"
     );
     // The stream goes on meanwhile.
@@ -38,11 +38,11 @@ fn what_just_happened_is_marked_learned_and_recognised_and_undone() {
     assert_eq!(person.labels().len(), 1);
     assert_eq!(person.labels()[0].1, "gesture 1");
     let later = take.labels.iter().rfind(|l| l.class == "wave").unwrap();
-    while now(&person) < later.stop_secs + 1.5 && later.start_secs > wave.stop_secs {
+    while now(&person) < later.span.stop_secs + 1.5 && later.span.start_secs > wave.span.stop_secs {
         person.frames(1);
     }
     // If training outlasted the second wave, the clip comes round again.
-    let end = take.clip.duration_secs() + wave.stop_secs + 3.0;
+    let end = take.clip.duration_secs() + wave.span.stop_secs + 3.0;
     while person.state().live.counts.is_empty() && now(&person) < 2.0 * end {
         person.frames(1);
     }
@@ -210,7 +210,7 @@ fn the_last_minutes_are_looked_back_at_and_a_detection_is_selected_by_a_click() 
     let seen: Vec<_> = run
         .seen
         .iter()
-        .map(|s| (s.start_secs, s.stop_secs))
+        .map(|s| (s.span.start_secs, s.span.stop_secs))
         .collect();
     person.click("20 s");
     person.click("Look back");
@@ -220,8 +220,8 @@ fn the_last_minutes_are_looked_back_at_and_a_detection_is_selected_by_a_click() 
     let inside = |at: &(f64, f64)| held.0 < at.0 && at.1 < held.1;
     let at = seen.iter().find(|at| inside(at)).copied().unwrap();
     let run = person.state().live.run.as_ref().unwrap();
-    let found = run.seen.iter().find(|s| s.start_secs == at.0).unwrap();
-    let name = format!("{} at {:.1} s", found.class, found.start_secs);
+    let found = run.seen.iter().find(|s| s.span.start_secs == at.0).unwrap();
+    let name = format!("{} at {:.1} s", found.class, found.span.start_secs);
     person.click(&name);
     assert_eq!(person.state().live.range, Some(at));
     person.click("Now");
@@ -252,7 +252,7 @@ fn the_last_minutes_are_looked_back_at_and_a_detection_is_selected_by_a_click() 
     assert!(
         run.seen
             .iter()
-            .any(|s| (s.start_secs, s.stop_secs) == range && s.class == last.class)
+            .any(|s| (s.span.start_secs, s.span.stop_secs) == range && s.class == last.class)
     );
     person.click("Stop");
 }
@@ -321,7 +321,7 @@ fn a_class_beyond_the_ninth_is_marked_by_the_key_that_it_was_given() {
     person.key(Key::Enter);
     person.click("Start");
     person.settle();
-    let stop = takes()[0].labels[0].stop_secs;
+    let stop = takes()[0].labels[0].span.stop_secs;
     while person.state().live.run.as_ref().unwrap().now_secs < stop + 0.4 {
         person.frames(1);
     }

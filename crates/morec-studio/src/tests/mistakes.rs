@@ -86,7 +86,7 @@ fn a_line_jumps_to_its_moment_and_offers_the_comparison_with_the_nearest_label()
     let missed = judged
         .moments
         .iter()
-        .find(|m| m.found.is_none() && m.start_secs < 0.2);
+        .find(|m| m.found.is_none() && m.span.start_secs < 0.2);
     let missed = missed.unwrap().clone();
     let why = missed.why.clone().unwrap();
     assert!(why.len() > 10, "{why}");
@@ -100,11 +100,14 @@ fn a_line_jumps_to_its_moment_and_offers_the_comparison_with_the_nearest_label()
     assert!(shows_search(&person, line));
     person.settle();
     let aligned = person.state().companions.all[0].clone();
-    assert_eq!((aligned.of.start_secs, aligned.of.stop_secs), (0.1, 0.9));
+    assert_eq!(
+        (aligned.of.span.start_secs, aligned.of.span.stop_secs),
+        (0.1, 0.9)
+    );
     // What stands beside it is a label of the class, and another one.
     let store = person.state().store.as_ref().unwrap();
     let label = store.snapshot.accepted().find(|s| {
-        s.clip == aligned.with.clip && (s.start_secs - aligned.with.start_secs).abs() < 1e-6
+        s.clip == aligned.with.clip && (s.start_secs - aligned.with.span.start_secs).abs() < 1e-6
     });
     assert_eq!(label.unwrap().class, "wave");
     assert_ne!(aligned.of, aligned.with);
@@ -122,24 +125,24 @@ fn a_line_jumps_to_its_moment_and_offers_the_comparison_with_the_nearest_label()
     person.click(&format!(
         "{class} where none is labelled, {} {}",
         false_one.clip,
-        crate::format::secs(false_one.start_secs)
+        crate::format::secs(false_one.span.start_secs)
     ));
     person.settle();
     let shown = person.state().player.motion.as_ref().unwrap();
     assert_eq!(shown.clip.name, false_one.clip);
     // By the key, too.
     person.key(Key::C);
-    let (start, stop) = (false_one.start_secs, false_one.stop_secs);
+    let (start, stop) = (false_one.span.start_secs, false_one.span.stop_secs);
     let line = format!("{} --start {start:.3} --stop {stop:.3}", false_one.clip);
     assert!(shows_search(&person, &line));
     person.settle();
     let aligned = person.state().companions.all[0].clone();
-    assert!((aligned.of.start_secs - false_one.start_secs).abs() < 1e-9);
+    assert!((aligned.of.span.start_secs - false_one.span.start_secs).abs() < 1e-9);
     let store = person.state().store.as_ref().unwrap();
     let mut labels = store.snapshot.accepted();
     assert!(labels.any(|s| s.class == class
         && s.clip == aligned.with.clip
-        && (s.start_secs - aligned.with.start_secs).abs() < 1e-6));
+        && (s.start_secs - aligned.with.span.start_secs).abs() < 1e-6));
 }
 
 #[test]
@@ -147,11 +150,7 @@ fn a_class_without_another_label_is_said() {
     let folder = tempfile::tempdir().unwrap();
     let mut person = Person::before(&[made(folder.path(), 1)]);
     let clip = person.state().player.motion.as_ref().unwrap().id;
-    let of = crate::stretch::Stretch {
-        clip,
-        start_secs: 1.0,
-        stop_secs: 2.0,
-    };
+    let of = crate::stretch::Stretch::new(clip, 1.0..2.0);
     let class = "jump".to_owned();
     person.command(Command::Compare(crate::state::CompareCommand::NearestOf {
         of,
@@ -205,7 +204,7 @@ fn the_reason_of_a_miss_is_read_whole() {
         "{}, {} {}: {why}",
         moment.said(),
         moment.clip,
-        crate::format::secs(moment.start_secs)
+        crate::format::secs(moment.span.start_secs)
     );
     person.click(&line);
     person.settle();

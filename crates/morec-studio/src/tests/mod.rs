@@ -84,8 +84,8 @@ pub fn made(folder: &Path, labelled: usize) -> PathBuf {
             let labels = take.labels.iter().map(|l| NewSample {
                 clip,
                 class: l.class.to_owned(),
-                start_secs: l.start_secs,
-                stop_secs: l.stop_secs,
+                start_secs: l.span.start_secs,
+                stop_secs: l.span.stop_secs,
                 whole_clip: false,
                 state: Judged::Accepted,
                 score: None,

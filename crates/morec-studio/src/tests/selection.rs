@@ -174,11 +174,11 @@ fn classes_stand_beside_groups_and_take_what_is_dragged_there() {
     person.drag(from, to);
     person.settle();
     let found = |person: &Person| {
-        let (start, stop) = hundredths((item.start_secs, item.stop_secs));
+        let (start, stop) = hundredths((item.of.span.start_secs, item.of.span.stop_secs));
         let labels = person.labels();
-        let mut here = labels
-            .into_iter()
-            .filter(|l| l.0 == item.clip.0 && (l.2 - start).abs() <= 2 && (l.3 - stop).abs() <= 2);
+        let mut here = labels.into_iter().filter(|l| {
+            l.0 == item.of.clip.0 && (l.2 - start).abs() <= 2 && (l.3 - stop).abs() <= 2
+        });
         here.next().map(|l| l.1)
     };
     assert_eq!(found(&person).as_deref(), Some("bow"));
@@ -192,7 +192,7 @@ fn classes_stand_beside_groups_and_take_what_is_dragged_there() {
     assert!(person.state().player.playing);
     assert_eq!(
         person.state().timeline.range,
-        Some((item.start_secs, item.stop_secs))
+        Some((item.of.span.start_secs, item.of.span.stop_secs))
     );
     person.key(Key::Num1);
     person.settle();

@@ -58,7 +58,7 @@ fn an_index_is_trained_kept_and_its_mistakes_are_found() {
         "the cell plays its first instance"
     );
     let (start, stop) = player.looped.unwrap();
-    assert!(start <= first.start_secs && first.stop_secs <= stop + 1e-9);
+    assert!(start <= first.span.start_secs && first.span.stop_secs <= stop + 1e-9);
     assert!(player.playing);
 }
 
@@ -161,7 +161,7 @@ fn the_method_of_2009_shows_its_branches_and_its_map() {
     let sample = &thesis.samples[root.points[3].0];
     let name = format!(
         "Point: {} in {} at {:.2} s",
-        sample.class, sample.clip, sample.start_secs
+        sample.class, sample.clip, sample.span.start_secs
     );
     person.click(&name);
     person.settle();
@@ -171,7 +171,10 @@ fn the_method_of_2009_shows_its_branches_and_its_map() {
     let played = &thesis.samples[person.state().train.sample.unwrap()];
     let shown = player.motion.as_ref().unwrap();
     assert_eq!(shown.clip.name, played.clip);
-    assert_eq!(player.looped, Some((played.start_secs, played.stop_secs)));
+    assert_eq!(
+        player.looped,
+        Some((played.span.start_secs, played.span.stop_secs))
+    );
     person.goes_to(Panel::Label);
     person.settle();
     assert!(person.sees("Map of confidences"));

@@ -145,7 +145,7 @@ fn onion_skin_and_trail_are_of_the_right_moments_and_part_in_each_clip() {
         assert_eq!(motion.clip.name, clip);
         joints.insert(motion.roles.joint(Role::RightHand));
         // A moment at which the hand moves, and one at which it stood elsewhere.
-        let wave = takes()[0].labels[0].start_secs;
+        let wave = takes()[0].labels[0].span.start_secs;
         for at in [wave + 0.5, wave + 1.5] {
             person.command(Command::Play(PlayCommand::Seek(at)));
             person.frames(2);

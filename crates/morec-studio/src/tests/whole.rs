@@ -15,7 +15,7 @@ fn one_gesture_clips(folder: &Path) -> Vec<PathBuf> {
         for (number, label) in take.labels.iter().enumerate() {
             let clip = &take.clip;
             let frame = |secs: f64| (secs * clip.rate_hz) as usize;
-            let frames = frame(label.start_secs)..frame(label.stop_secs).min(clip.frames);
+            let frames = frame(label.span.start_secs)..frame(label.span.stop_secs).min(clip.frames);
             let joints = clip.skeleton.len();
             let mut cut = clip.clone();
             cut.frames = frames.len();

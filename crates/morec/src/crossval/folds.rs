@@ -174,8 +174,7 @@ mod tests {
         Sample {
             clip: clip.into(),
             class: class.into(),
-            start_secs: 0.0,
-            stop_secs: 1.0,
+            span: crate::TimeSpan::new(0.0, 1.0),
             whole_clip: false,
             person: Some(person.into()),
             line: 1,

@@ -7,8 +7,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use rayon::prelude::*;
 
 use crate::eval::{ClipDetection, GroundTruth, StreamInfo, event_pairs};
-use crate::explain::{Miss, Sought, explain};
+use crate::explain::{Miss, explain};
 use crate::features::for_each_pose;
+use crate::labels::Mark;
 use crate::labels::Sample;
 use crate::live::{Detection, Model, RecognizerCache, StartError};
 use crate::perturb::{Perturbation, Perturbed, perturb};
@@ -379,19 +380,11 @@ impl FoldTest<'_> {
             .map(|s| GroundTruth {
                 clip: test.name.clone(),
                 class: s.class.clone(),
-                start_secs: in_copy(s.start_secs),
-                stop_secs: in_copy(s.stop_secs),
+                span: s.span.map(in_copy),
             })
             .collect();
-        let named = |d: &Detection| ClipDetection {
-            clip: test.name.clone(),
-            class: self.recognizers.model().class_name(d.class).to_owned(),
-            start_secs: d.start_secs,
-            stop_secs: d.stop_secs,
-            score: Some(d.score),
-            reported_secs: Some(d.reported_secs),
-            repetitions: d.repetitions.map(|r| r.count),
-        };
+        let model = self.recognizers.model();
+        let named = |d: &Detection| ClipDetection::new(&test.name, d.named(model));
         let founds: Vec<ClipDetection> = found.iter().map(named).collect();
         let misses = if self.explains {
             let played = (&clip.clip, &clip.roles, &clip.rest);
@@ -418,20 +411,14 @@ impl FoldTest<'_> {
 }
 
 /// The samples without an event.
-fn missed<'t>(truths: &'t [GroundTruth], founds: &[ClipDetection]) -> Vec<Sought<'t>> {
+fn missed<'t>(truths: &'t [GroundTruth], founds: &[ClipDetection]) -> Vec<Mark<&'t str>> {
     let all: Vec<&GroundTruth> = truths.iter().collect();
     let pairs = event_pairs(&all, &founds.iter().collect::<Vec<_>>());
     let missed = all
         .into_iter()
         .zip(pairs)
         .filter(|(_, pair)| pair.is_none());
-    missed
-        .map(|(truth, _)| Sought {
-            class: &truth.class,
-            start_secs: truth.start_secs,
-            stop_secs: truth.stop_secs,
-        })
-        .collect()
+    missed.map(|(truth, _)| truth.into()).collect()
 }
 
 /// A copy of `clip`, reproducible: the seed comes of its name.

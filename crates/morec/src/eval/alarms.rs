@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::EvaluatedStream;
 use super::figures::share;
-use super::interval::{mostly_outside, union};
+use super::spans::{mostly_outside, union};
 
 /// Detections of which less than half lies in labelled samples, of whatever class, in known streams.
 ///
@@ -39,11 +39,11 @@ pub struct UnknownFigures {
 
 /// Marks the detections of a stream that are false alarms. O(samples × detections).
 pub(super) fn are_false_alarms(stream: &EvaluatedStream<'_>) -> Vec<bool> {
-    let labelled = union(stream.truths.iter().map(|t| t.interval()));
+    let labelled = union(stream.truths.iter().map(|t| t.span));
     stream
         .founds
         .iter()
-        .map(|f| mostly_outside(f.interval(), &labelled))
+        .map(|f| mostly_outside(f.span, &labelled))
         .collect()
 }
 

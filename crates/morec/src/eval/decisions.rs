@@ -3,8 +3,9 @@
 
 use serde::Serialize;
 
-use super::interval::{Interval, gaps, union};
+use super::spans::{gaps, union};
 use super::{ClipDetection, EvaluatedStream, UNLABELLED_MIN_SECS};
+use crate::TimeSpan;
 
 /// The thesis's accuracy of segmentation and recognition (§5.4, Eq. 5.2) and its four counts.
 ///
@@ -61,12 +62,12 @@ pub(super) struct Decision<'a> {
 /// The decisions of a stream: its samples in order, then its unlabelled stretches.
 /// O(samples × detections).
 pub(super) fn decisions<'a>(stream: &EvaluatedStream<'a>) -> Vec<Decision<'a>> {
-    let labelled = union(stream.truths.iter().map(|t| t.interval()));
+    let labelled = union(stream.truths.iter().map(|t| t.span));
     let unlabelled = gaps(&labelled, stream.info.duration_secs, UNLABELLED_MIN_SECS);
     let samples = stream
         .truths
         .iter()
-        .map(|t| (Some(t.class.as_str()), t.interval()));
+        .map(|t| (Some(t.class.as_str()), t.span));
     let rest = unlabelled.into_iter().map(|gap| (None, gap));
     samples
         .chain(rest)
@@ -77,20 +78,20 @@ pub(super) fn decisions<'a>(stream: &EvaluatedStream<'a>) -> Vec<Decision<'a>> {
         .collect()
 }
 
-fn best_match<'a>(at: Interval, stream: &EvaluatedStream<'a>) -> Option<&'a ClipDetection> {
+fn best_match<'a>(at: TimeSpan, stream: &EvaluatedStream<'a>) -> Option<&'a ClipDetection> {
     best_by(at, stream, |found| {
-        (at.overlap(found.interval()), at.iou(found.interval()))
+        (at.overlap_secs(found.span), at.iou(found.span))
     })
 }
 
 /// The matching detection of the highest key; the earliest of equals.
 fn best_by<'a>(
-    at: Interval,
+    at: TimeSpan,
     stream: &EvaluatedStream<'a>,
     key: impl Fn(&ClipDetection) -> (f64, f64),
 ) -> Option<&'a ClipDetection> {
     let mut best: Option<(&ClipDetection, (f64, f64))> = None;
-    for found in stream.founds.iter().filter(|f| at.matches(f.interval())) {
+    for found in stream.founds.iter().filter(|f| at.matches(f.span)) {
         let key = key(found);
         if best.is_none_or(|(_, (a, b))| key.0.total_cmp(&a).then(key.1.total_cmp(&b)).is_gt()) {
             best = Some((found, key));
@@ -132,10 +133,10 @@ impl Classification {
                 .iter()
                 .filter(|t| class.is_none_or(|c| c == t.class))
             {
-                let at = truth.interval();
+                let at = truth.span;
                 let score = |found: &ClipDetection| found.score.unwrap_or(f64::NEG_INFINITY);
                 let best = best_by(at, stream, |found| {
-                    (score(found), at.overlap(found.interval()))
+                    (score(found), at.overlap_secs(found.span))
                 });
                 *match best {
                     Some(found) if found.class == truth.class => &mut counts.right,

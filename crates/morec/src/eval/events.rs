@@ -1,5 +1,6 @@
 //! Detections as events: right if one happens about where the sample is.
 
+use crate::TimeSpan;
 use serde::Serialize;
 
 use super::figures::share;
@@ -66,8 +67,9 @@ pub(super) fn right_in(stream: &EvaluatedStream<'_>) -> Vec<bool> {
 /// is. O(samples × detections).
 pub fn event_pairs(truths: &[&GroundTruth], founds: &[&ClipDetection]) -> Vec<Option<usize>> {
     let mut in_order: Vec<usize> = (0..truths.len()).collect();
-    in_order.sort_by(|a, b| truths[*a].stop_secs.total_cmp(&truths[*b].stop_secs));
-    let middle = |f: usize| (founds[f].start_secs + founds[f].stop_secs) / 2.0;
+    let stop = |t: usize| truths[t].span.stop_secs;
+    in_order.sort_by(|a, b| stop(*a).total_cmp(&stop(*b)));
+    let middle = |f: usize| founds[f].span.middle_secs();
     let mut earliest: Vec<usize> = (0..founds.len()).collect();
     earliest.sort_by(|a, b| middle(*a).total_cmp(&middle(*b)));
     let mut taken = vec![false; founds.len()];
@@ -88,6 +90,10 @@ pub fn event_pairs(truths: &[&GroundTruth], founds: &[&ClipDetection]) -> Vec<Op
 /// True if a detection is of the sample's class and its middle lies within the sample, [`EVENT_TOLERANCE_SECS`] more on
 /// each side.
 fn is_event_of(truth: &GroundTruth, found: &ClipDetection) -> bool {
-    let near = truth.start_secs - EVENT_TOLERANCE_SECS..=truth.stop_secs + EVENT_TOLERANCE_SECS;
-    found.class == truth.class && near.contains(&((found.start_secs + found.stop_secs) / 2.0))
+    let TimeSpan {
+        start_secs,
+        stop_secs,
+    } = truth.span;
+    let near = start_secs - EVENT_TOLERANCE_SECS..=stop_secs + EVENT_TOLERANCE_SECS;
+    found.class == truth.class && near.contains(&found.span.middle_secs())
 }

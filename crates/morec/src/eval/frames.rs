@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{EvaluatedStream, Interval};
+use super::EvaluatedStream;
 
 /// Time and order of what was found in known streams.
 ///
@@ -51,18 +51,19 @@ impl FrameScore {
 
     fn add_time(&mut self, stream: &EvaluatedStream<'_>) {
         let duration_secs = stream.info.duration_secs;
-        let truths = stream.truths.iter().map(|t| t.interval());
-        let founds = stream.founds.iter().map(|f| f.interval());
-        let ends = truths.chain(founds).flat_map(|i| [i.start, i.stop]);
+        let truths = stream.truths.iter().map(|t| t.span);
+        let founds = stream.founds.iter().map(|f| f.span);
+        let ends = truths
+            .chain(founds)
+            .flat_map(|span| [span.start_secs, span.stop_secs]);
         let ends = ends.map(|secs| secs.clamp(0.0, duration_secs));
         let mut ends: Vec<f64> = ends.chain([0.0, duration_secs]).collect();
         ends.sort_by(f64::total_cmp);
         for pair in ends.windows(2) {
             let secs = pair[1] - pair[0];
             let middle = 0.5 * (pair[0] + pair[1]);
-            let covers = |i: Interval| i.start <= middle && middle < i.stop;
-            let labelled = stream.truths.iter().filter(|t| covers(t.interval()));
-            let mut founds = stream.founds.iter().filter(|f| covers(f.interval()));
+            let labelled = stream.truths.iter().filter(|t| t.span.contains(middle));
+            let mut founds = stream.founds.iter().filter(|f| f.span.contains(middle));
             let is_labelled = labelled.clone().next().is_some();
             let is_right = match is_labelled {
                 true => founds.any(|f| labelled.clone().any(|t| t.class == f.class)),

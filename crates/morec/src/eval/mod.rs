@@ -18,9 +18,9 @@ mod evaluation;
 mod events;
 mod figures;
 mod frames;
-mod interval;
 mod pairs;
 mod reliability;
+mod spans;
 mod timeline;
 mod timing;
 
@@ -29,7 +29,8 @@ mod tests;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use interval::Interval;
+use crate::TimeSpan;
+use crate::live::Detection;
 
 pub use alarms::{FalseAlarms, UnknownFigures};
 pub use confusion::{Confusion, Mistake};
@@ -60,10 +61,9 @@ pub struct GroundTruth {
     pub clip: String,
     /// Class of the motion.
     pub class: String,
-    /// Start, from the stream's beginning.
-    pub start_secs: f64,
-    /// Stop, from the stream's beginning.
-    pub stop_secs: f64,
+    /// When it happens, from the stream's beginning.
+    #[serde(flatten)]
+    pub span: TimeSpan,
 }
 
 /// A detection.
@@ -73,10 +73,9 @@ pub struct ClipDetection {
     pub clip: String,
     /// The detected class.
     pub class: String,
-    /// Start, from the stream's beginning.
-    pub start_secs: f64,
-    /// Stop, from the stream's beginning.
-    pub stop_secs: f64,
+    /// When it happens, from the stream's beginning.
+    #[serde(flatten)]
+    pub span: TimeSpan,
     /// Score, if the recogniser gives one; larger is surer.
     pub score: Option<f64>,
     /// When it was reported, in seconds of the stream, if known.
@@ -126,7 +125,8 @@ pub enum EvalError {
     },
     /// A sample or a detection that is no stretch of time.
     #[error(
-        "{what} of {class} in {clip} goes from {start_secs} s to {stop_secs} s; expected a stop after the start"
+        "{what} of {class} in {clip} goes from {} s to {} s; expected a stop after the start",
+        .span.start_secs, .span.stop_secs
     )]
     NoStretch {
         /// `"a sample"` or `"a detection"`.
@@ -135,10 +135,8 @@ pub enum EvalError {
         class: String,
         /// Its stream.
         clip: String,
-        /// Its start.
-        start_secs: f64,
-        /// Its stop.
-        stop_secs: f64,
+        /// Its start and stop.
+        span: TimeSpan,
     },
     /// A labelled sample in a stream that is said to hold none.
     #[error("{clip} is named as unknown motion but holds a sample of {class}")]
@@ -150,20 +148,16 @@ pub enum EvalError {
     },
 }
 
-impl GroundTruth {
-    fn interval(&self) -> Interval {
-        Interval {
-            start: self.start_secs,
-            stop: self.stop_secs,
-        }
-    }
-}
-
 impl ClipDetection {
-    fn interval(&self) -> Interval {
-        Interval {
-            start: self.start_secs,
-            stop: self.stop_secs,
+    /// What a recogniser `found` in the stream of that name.
+    pub fn new(clip: &str, found: Detection<&str>) -> Self {
+        Self {
+            clip: clip.to_owned(),
+            class: found.class.to_owned(),
+            span: found.span,
+            score: Some(found.score),
+            reported_secs: Some(found.reported_secs),
+            repetitions: found.repetitions.map(|r| r.count),
         }
     }
 }
@@ -211,7 +205,7 @@ fn streams<'a>(
             "a sample",
             &truth.clip,
             &truth.class,
-            truth.interval(),
+            truth.span,
         )?;
         if stream.info.unknown {
             return Err(EvalError::SampleInUnknown {
@@ -227,26 +221,22 @@ fn streams<'a>(
             "a detection",
             &found.clip,
             &found.class,
-            found.interval(),
+            found.span,
         )?
         .founds
         .push(found);
     }
     let mut streams: Vec<EvaluatedStream<'a>> = by_clip.into_values().collect();
     for stream in &mut streams {
-        stream.truths.sort_by(|a, b| {
-            a.interval()
-                .order(b.interval())
-                .then_with(|| a.class.cmp(&b.class))
-        });
+        stream
+            .truths
+            .sort_by(|a, b| a.span.order(b.span).then_with(|| a.class.cmp(&b.class)));
         stream.founds.sort_by(|a, b| {
             let score = |f: &ClipDetection| f.score.unwrap_or(f64::NEG_INFINITY);
             let reported = |f: &ClipDetection| f.reported_secs.unwrap_or(f64::NEG_INFINITY);
-            (a.interval()
-                .order(b.interval())
-                .then_with(|| a.class.cmp(&b.class)))
-            .then_with(|| score(b).total_cmp(&score(a)))
-            .then_with(|| reported(a).total_cmp(&reported(b)))
+            (a.span.order(b.span).then_with(|| a.class.cmp(&b.class)))
+                .then_with(|| score(b).total_cmp(&score(a)))
+                .then_with(|| reported(a).total_cmp(&reported(b)))
         });
     }
     Ok(streams)
@@ -257,16 +247,15 @@ fn stream_of<'s, 'a>(
     what: &'static str,
     clip: &str,
     class: &str,
-    at: Interval,
+    span: TimeSpan,
 ) -> Result<&'s mut EvaluatedStream<'a>, EvalError> {
     let (class, name) = (class.to_owned(), clip.to_owned());
-    if !at.is_stretch() {
+    if !span.is_stretch() {
         return Err(EvalError::NoStretch {
             what,
             class,
             clip: name,
-            start_secs: at.start,
-            stop_secs: at.stop,
+            span,
         });
     }
     by_clip.get_mut(clip).ok_or(EvalError::NoStream {

@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::EvaluatedStream;
 use super::figures::share;
+use super::spans::reaches;
 
 /// Precision, recall and F1 where a detection must overlap a sample of its class by an intersection over union
 /// of at least `min_iou`, and each counts once.
@@ -52,8 +53,8 @@ pub(super) fn pair(stream: &EvaluatedStream<'_>, min_iou: f64) -> Vec<(usize, us
     let mut edges: Vec<(f64, usize, usize)> = Vec::new();
     for (t, truth) in stream.truths.iter().enumerate() {
         for (f, found) in stream.founds.iter().enumerate() {
-            if truth.class == found.class && truth.interval().reaches(found.interval(), min_iou) {
-                edges.push((truth.interval().iou(found.interval()), t, f));
+            if truth.class == found.class && reaches(truth.span, found.span, min_iou) {
+                edges.push((truth.span.iou(found.span), t, f));
             }
         }
     }

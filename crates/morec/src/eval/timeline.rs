@@ -88,9 +88,7 @@ fn timeline(stream: &EvaluatedStream<'_>) -> Timeline {
             let mut samples = stream.truths.iter();
             let verdict = if right {
                 DetectionVerdict::Right
-            } else if samples
-                .any(|t| t.class == found.class && t.interval().matches(found.interval()))
-            {
+            } else if samples.any(|t| t.class == found.class && t.span.matches(found.span)) {
                 DetectionVerdict::Loose
             } else if alarm {
                 DetectionVerdict::FalseAlarm

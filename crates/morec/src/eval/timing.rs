@@ -53,7 +53,7 @@ impl Delay {
     pub(super) fn of(pairs: &[(&GroundTruth, &ClipDetection)]) -> Self {
         let mut delays: Vec<f64> = pairs
             .iter()
-            .filter_map(|(truth, found)| Some(found.reported_secs? - truth.stop_secs))
+            .filter_map(|(truth, found)| Some(found.reported_secs? - truth.span.stop_secs))
             .collect();
         Self {
             count: delays.len(),
@@ -67,11 +67,11 @@ impl Boundaries {
     pub(super) fn of(pairs: &[(&GroundTruth, &ClipDetection)]) -> Self {
         let starts: Vec<f64> = pairs
             .iter()
-            .map(|(t, f)| f.start_secs - t.start_secs)
+            .map(|(t, f)| f.span.start_secs - t.span.start_secs)
             .collect();
         let stops: Vec<f64> = pairs
             .iter()
-            .map(|(t, f)| f.stop_secs - t.stop_secs)
+            .map(|(t, f)| f.span.stop_secs - t.span.stop_secs)
             .collect();
         let median = |values: &[f64]| quantile(&mut values.to_vec(), 0.5);
         let median_abs =

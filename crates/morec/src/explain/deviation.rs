@@ -1,5 +1,6 @@
 //! How well a motion was performed: its bones against those of the nearest sample.
 
+use crate::TimeSpan;
 use crate::clip::{Clip, Span};
 use crate::features::{ALL_BONES, BONE_WEIGHTS, BoneSet, Rows, all_bones_of_clip, rows_of_clip};
 use crate::live::{Detection, Model};
@@ -24,18 +25,17 @@ pub struct MotionDeviation {
 }
 
 impl MotionDeviation {
-    /// The angle over time of a performance from `start_secs` to `stop_secs`: seconds and degrees.
-    pub fn curve(&self, start_secs: f64, stop_secs: f64) -> impl Iterator<Item = (f64, f64)> {
-        let tick_secs = (stop_secs - start_secs) / self.over_time_degrees.len().max(1) as f64;
-        let at = move |tick: usize| start_secs + (tick as f64 + 0.5) * tick_secs;
+    /// The angle over time of a performance in `span`: seconds and degrees.
+    pub fn curve(&self, span: TimeSpan) -> impl Iterator<Item = (f64, f64)> {
+        let tick_secs = span.duration_secs() / self.over_time_degrees.len().max(1) as f64;
+        let at = move |tick: usize| span.start_secs + (tick as f64 + 0.5) * tick_secs;
         let degrees = self.over_time_degrees.iter().enumerate();
         degrees.map(move |(tick, degrees)| (at(tick), *degrees))
     }
 
     /// When all of it was farthest off, and by how much, of the same performance.
-    pub fn worst(&self, start_secs: f64, stop_secs: f64) -> Option<(f64, f64)> {
-        self.curve(start_secs, stop_secs)
-            .max_by(|a, b| a.1.total_cmp(&b.1))
+    pub fn worst(&self, span: TimeSpan) -> Option<(f64, f64)> {
+        self.curve(span).max_by(|a, b| a.1.total_cmp(&b.1))
     }
 }
 
@@ -46,10 +46,9 @@ pub struct Performance {
     pub clip: String,
     /// Name of its class.
     pub class: String,
-    /// When it began, on the clip's clock.
-    pub start_secs: f64,
-    /// When it ended.
-    pub stop_secs: f64,
+    /// When it happened, on the clip's clock.
+    #[serde(flatten)]
+    pub span: TimeSpan,
     /// It against the nearest sample.
     pub deviation: MotionDeviation,
 }
@@ -89,9 +88,8 @@ pub fn deviation(
 
 fn of_motion(model: &TemplateModel, rows: &Rows, found: &Detection) -> Option<MotionDeviation> {
     let hz = model.features.tick_hz();
-    let tick = |secs: f64| ((secs * hz).round().max(0.0) as usize).min(rows.len());
-    let first = tick(found.start_secs);
-    let stretch = rows.slice(first..tick(found.stop_secs).max(first));
+    let ticks = found.span.frames_among(rows.len(), hz);
+    let stretch = rows.slice(ticks.clone());
     if stretch.is_empty() {
         return None;
     }
@@ -101,7 +99,7 @@ fn of_motion(model: &TemplateModel, rows: &Rows, found: &Detection) -> Option<Mo
         (compared.off_degrees(), compared, sample.rows.len())
     });
     let (_, nearest, length) = compared.min_by(|a, b| a.0.total_cmp(&b.0))?;
-    let start_secs = first as f64 / hz;
+    let start_secs = ticks.start as f64 / hz;
     Some(nearest.deviation(stretch.len(), start_secs, 1.0 / hz, length))
 }
 

@@ -12,10 +12,12 @@ mod tests;
 
 use std::ops::Range;
 
+use crate::TimeSpan;
 use crate::classes::ClassId;
 use crate::clip::{Clip, Span};
 use crate::decode::FAR;
 use crate::features::{RowLayout, Rows, all_bones_of_clip, rows_of_clip};
+use crate::labels::Mark;
 use crate::live::{Detection, Model};
 use crate::roles::RoleMap;
 use crate::templates::{
@@ -34,10 +36,9 @@ pub struct Miss {
     pub clip: String,
     /// Its class.
     pub class: String,
-    /// Start of the sample.
-    pub start_secs: f64,
-    /// Its end.
-    pub stop_secs: f64,
+    /// The sample's time.
+    #[serde(flatten)]
+    pub span: TimeSpan,
     /// Reason why it was not reported.
     pub reason: Reason,
     /// The least rate of false alarms a minute at which it would have been near enough, if the threshold was the
@@ -45,27 +46,16 @@ pub struct Miss {
     pub sensitivity: Option<f64>,
 }
 
-/// A labelled stretch of a stream that was missed.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sought<'a> {
-    /// Its class.
-    pub class: &'a str,
-    /// Start.
-    pub start_secs: f64,
-    /// End.
-    pub stop_secs: f64,
-}
-
 /// A match belongs to a sample if it shares more than this part of the shorter of the two with it.
 const BELONGS: f64 = 0.5;
 
-/// Says of each of `sought` in `clip` why it was missed; `found` is what was recognised. Empty for the method of 2009,
+/// Says of each of `sought`, labelled stretches of `clip`, why it was missed; `found` is what was recognised. Empty for the method of 2009,
 /// whose decisions are in its own report. `rest` are the frames that a conversion left at the start.
 /// O(frames · template rows · d).
 pub fn explain(
     model: &Model,
     clip: (&Clip, &RoleMap, &Span),
-    sought: &[Sought<'_>],
+    sought: &[Mark<&str>],
     found: &[Detection],
 ) -> Vec<Miss> {
     let Model::Templates(model) = model else {
@@ -75,11 +65,10 @@ pub fn explain(
     if sought.is_empty() {
         return Vec::new();
     }
-    let miss = |sought: &Sought<'_>, (reason, sensitivity)| Miss {
+    let miss = |sought: &Mark<&str>, (reason, sensitivity)| Miss {
         clip: clip.name.clone(),
         class: sought.class.to_owned(),
-        start_secs: sought.start_secs,
-        stop_secs: sought.stop_secs,
+        span: sought.span,
         reason,
         sensitivity,
     };
@@ -116,16 +105,16 @@ struct ComparedStream<'a> {
 
 impl<'a> ComparedStream<'a> {
     /// The wider gate if it was open when the sample began: as the motions that were reported before let it.
-    fn open_gate(&self, sought: &Sought<'_>) -> Option<&'a StrangerGate> {
+    fn open_gate(&self, sought: &Mark<&str>) -> Option<&'a StrangerGate> {
         let gate = self.model.stranger.as_ref()?;
         let hz = self.model.features.tick_hz();
         let mut level = PerformerLevel::new(gate);
         let before = self
             .found
             .iter()
-            .filter(|d| d.reported_secs <= sought.start_secs);
+            .filter(|d| d.reported_secs <= sought.span.start_secs);
         for detection in before.filter(|_| gate.performer == PerformerKind::Auto) {
-            let tick = (detection.stop_secs * hz).round() as usize;
+            let tick = (detection.span.stop_secs * hz).round() as usize;
             let last = tick
                 .saturating_sub(1)
                 .min(self.trace.ticks().saturating_sub(1));
@@ -136,7 +125,7 @@ impl<'a> ComparedStream<'a> {
         level.is_open().then_some(gate)
     }
 
-    fn reason(&mut self, sought: &Sought<'_>) -> (Reason, Option<f64>) {
+    fn reason(&mut self, sought: &Mark<&str>) -> (Reason, Option<f64>) {
         let named = |c: &crate::classes::ClassInfo| c.name == sought.class;
         let Some(class) = self.model.classes.iter().position(named) else {
             return (Reason::NoSuchClass, None);
@@ -211,10 +200,9 @@ impl<'a> ComparedStream<'a> {
     }
 
     /// The ticks of a sample that lie in the stream.
-    fn ticks_of(&self, sought: &Sought<'_>) -> Range<usize> {
+    fn ticks_of(&self, sought: &Mark<&str>) -> Range<usize> {
         let hz = self.model.features.tick_hz();
-        let tick = |secs: f64| ((secs * hz).round().max(0.0) as usize).min(self.rows.len());
-        tick(sought.start_secs)..tick(sought.stop_secs)
+        sought.span.frames_among(self.rows.len(), hz)
     }
 
     /// The nearest match of a class that ends at `tick` and passes the gate that held at the sample.
@@ -333,24 +321,27 @@ impl<'a> ComparedStream<'a> {
     }
 
     /// A detection that took the sample's place.
-    fn neighbour(&self, sought: &Sought<'_>, class: ClassId) -> Reason {
+    fn neighbour(&self, sought: &Mark<&str>, class: ClassId) -> Reason {
         let slack = self.model.decode.tail_ticks as f64 / self.model.features.tick_hz();
-        let touches = |d: &&Detection| {
-            d.start_secs < sought.stop_secs && d.stop_secs + slack > sought.start_secs
+        let reach = |d: &Detection| TimeSpan {
+            stop_secs: d.span.stop_secs + slack,
+            ..d.span
         };
-        let shared =
-            |d: &Detection| d.stop_secs.min(sought.stop_secs) - d.start_secs.max(sought.start_secs);
+        // Below 0 where only the slack reaches.
+        let shared = |d: &Detection| {
+            let (a, b) = (d.span, sought.span);
+            a.stop_secs.min(b.stop_secs) - a.start_secs.max(b.start_secs)
+        };
         let nearest = self
             .found
             .iter()
-            .filter(touches)
+            .filter(|d| reach(d).overlaps(sought.span))
             .max_by(|a, b| shared(a).total_cmp(&shared(b)));
         match nearest {
             Some(d) => Reason::Neighbour {
                 same: d.class == class,
                 class: self.model.classes[d.class.index()].name.clone(),
-                start_secs: d.start_secs,
-                stop_secs: d.stop_secs,
+                span: d.span,
             },
             None => Reason::Elsewhere,
         }

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::TimeSpan;
+
 /// Reason why a sample was not reported.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
@@ -83,10 +85,9 @@ pub enum Reason {
         same: bool,
         /// Class of the detection.
         class: String,
-        /// Its start.
-        start_secs: f64,
-        /// Its end.
-        stop_secs: f64,
+        /// Its time.
+        #[serde(flatten)]
+        span: TimeSpan,
     },
     /// It was near enough; its best match ends outside the sample.
     Elsewhere,
@@ -194,11 +195,11 @@ impl fmt::Display for Reason {
             Self::Neighbour {
                 same,
                 class,
-                start_secs,
-                stop_secs,
+                span,
             } => {
                 let what = if *same { "part of the same motion" } else { class };
-                write!(f, "taken as {what}, reported from {start_secs:.2} s to {stop_secs:.2} s")
+                let (from, to) = (span.start_secs, span.stop_secs);
+                write!(f, "taken as {what}, reported from {from:.2} s to {to:.2} s")
             }
             Self::Elsewhere => f.write_str("near enough, but its best match ends outside the sample"),
         }

@@ -73,10 +73,9 @@ fn reason(model: &Model, take: &SyntheticTake, class: Option<&str>) -> Miss {
     let played = played(take.clip.clone());
     let found = recognize_clip(model, &played.clip, &played.roles, &played.rest).unwrap();
     let label = &take.labels[0];
-    let sought = Sought {
+    let sought = Mark {
         class: class.unwrap_or(label.class),
-        start_secs: label.start_secs,
-        stop_secs: label.stop_secs,
+        span: label.span,
     };
     let parts = (&played.clip, &played.roles, &played.rest);
     explain(model, parts, &[sought], &found).remove(0)
@@ -159,10 +158,9 @@ fn a_detection_that_took_the_place_is_named() {
     let played = played(takes[0].clip.clone());
     let label = &takes[0].labels[0];
     let found = recognize_clip(&model, &played.clip, &played.roles, &played.rest).unwrap();
-    let sought = Sought {
+    let sought = Mark {
         class: label.class,
-        start_secs: label.start_secs,
-        stop_secs: label.stop_secs,
+        span: label.span,
     };
     let parts = (&played.clip, &played.roles, &played.rest);
     let miss = explain(&model, parts, &[sought], &found).remove(0);
@@ -213,10 +211,9 @@ fn turned(model: &Model, take: &SyntheticTake, degrees: f64) -> MotionDeviation 
     let class = model.classes().iter().position(|c| c.name == label.class);
     let motion = Detection {
         class: ClassId(class.unwrap() as u16),
-        start_secs: label.start_secs,
-        stop_secs: label.stop_secs,
+        span: label.span,
         score: 1.0,
-        reported_secs: label.stop_secs,
+        reported_secs: label.span.stop_secs,
         repetitions: None,
     };
     let parts = (&played.clip, &played.roles, &played.rest);
@@ -242,7 +239,7 @@ fn worse_performances_are_farther_off_and_the_limb_is_named() {
     let bone = &worst.bones[0];
     assert_eq!(bone.bone, "right_forearm");
     let label = &takes[0].labels[0];
-    assert!((label.start_secs - 0.1..label.stop_secs + 0.1).contains(&bone.worst_secs));
+    assert!((label.span.start_secs - 0.1..label.span.stop_secs + 0.1).contains(&bone.worst_secs));
     let mean = worst.over_time_degrees.iter().sum::<f64>() / worst.over_time_degrees.len() as f64;
     assert!(
         (mean / worst.off_degrees - 1.0).abs() < 0.3,
@@ -267,7 +264,7 @@ fn worse_captures_rank_below_better_ones_whatever_makes_them_worse() {
         }
         stream.finish(&mut |row| rows.push(row));
         let tick = |secs: f64| (secs * params.tick_hz()).round() as usize;
-        rows.slice(tick(label.start_secs)..tick(label.stop_secs))
+        rows.slice(tick(label.span.start_secs)..tick(label.span.stop_secs))
     };
     let sample = rows(&[]);
     let off = |worse: Perturbation| {

@@ -9,6 +9,7 @@ use super::resolve::{ClipLength, known_name};
 use super::table::{Row, Table};
 use crate::eval::ClipDetection;
 use crate::formats::{ParseError, Place, Warning};
+use crate::live::Detection;
 
 /// The first line of a table of detections, without a line ending.
 pub const FOUND_HEADER: &str =
@@ -21,36 +22,28 @@ pub const FOUND_HEADER: &str =
 pub struct FoundLine<'a> {
     /// The clip's name.
     pub clip: &'a str,
-    /// The class's name.
-    pub class: &'a str,
-    /// Start in seconds.
-    pub start_secs: f64,
-    /// Stop in seconds.
-    pub stop_secs: f64,
-    /// Score; larger is surer.
-    pub score: f64,
-    /// When the detection was reported, in seconds.
-    pub reported_secs: f64,
+    /// The detection, on the clip's clock.
+    pub found: Detection<&'a str>,
     /// The clip's frames a second.
     pub rate_hz: f64,
 }
 
 impl fmt::Display for FoundLine<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let frame = |secs: f64| (secs * self.rate_hz).round().max(0.0) as usize;
-        let start = frame(self.start_secs);
+        let found = &self.found;
+        let frames = found.span.frames(self.rate_hz);
         // A detection is never empty, however low the clip's rate.
-        let stop = frame(self.stop_secs).max(start + 1);
+        let (start, stop) = (frames.start, frames.end.max(frames.start + 1));
         let clean = |name: &str| name.replace(['\t', '\r', '\n'], " ");
         write!(
             f,
             "{}\t{start}\t{stop}\t{}\t{:.4}\t{}\t{:.4}\t{:.4}",
             clean(self.clip),
-            clean(self.class),
-            self.score,
-            frame(self.reported_secs),
-            self.start_secs,
-            self.stop_secs
+            clean(found.class),
+            found.score,
+            (found.reported_secs * self.rate_hz).round() as usize,
+            found.span.start_secs,
+            found.span.stop_secs
         )
     }
 }
@@ -177,7 +170,6 @@ impl FoundTable {
                 continue;
             };
             let length = clips[name];
-            let (start_secs, stop_secs) = length.secs(&row.extent);
             let reported_secs = row.reported.map(|reported| match reported {
                 ReportedAt::Frame(frame) => frame as f64 / length.rate_hz,
                 ReportedAt::Secs(secs) => secs,
@@ -186,8 +178,7 @@ impl FoundTable {
             found.push(ClipDetection {
                 clip,
                 class,
-                start_secs,
-                stop_secs,
+                span: length.span(&row.extent),
                 score: row.score,
                 reported_secs,
                 repetitions: row.repetitions,
@@ -206,6 +197,7 @@ impl FoundTable {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::TimeSpan;
     use proptest::prelude::*;
 
     #[test]
@@ -237,12 +229,8 @@ mod tests {
         let (found, warnings) = table.unwrap().resolve(&clips);
         assert_eq!(found.len(), 1);
         assert_eq!(
-            (
-                found[0].start_secs,
-                found[0].stop_secs,
-                found[0].reported_secs
-            ),
-            (1.0, 2.0, Some(3.0))
+            (found[0].span, found[0].reported_secs),
+            (TimeSpan::new(1.0, 2.0), Some(3.0))
         );
         assert_eq!(
             warnings[0].to_string(),
@@ -256,11 +244,11 @@ mod tests {
             start in 0usize..100_000, length in 1usize..1000, delay in 0usize..200, score in -2.0f64..2.0,
             rate_hz in prop::sample::select(vec![30.0, 60.0, 120.000_48, 240.0]), class in "[a-z<&][a-z <&]{0,9}[a-z]",
         ) {
-            let at = |frame: usize| frame as f64 / rate_hz;
-            let line = FoundLine {
-                clip: "clip 1", class: &class, start_secs: at(start), stop_secs: at(start + length), score,
-                reported_secs: at(start + length + delay), rate_hz,
+            let found = Detection {
+                class: class.as_str(), span: TimeSpan::of_frames(start..start + length, rate_hz), score,
+                reported_secs: (start + length + delay) as f64 / rate_hz, repetitions: None,
             };
+            let line = FoundLine { clip: "clip 1", found, rate_hz };
             let row = read_detections(format!("{FOUND_HEADER}\n{line}\n").as_bytes()).unwrap().rows.remove(0);
             prop_assert_eq!(row.extent, Extent::Frames(start..start + length));
             prop_assert_eq!(row.reported, Some(ReportedAt::Frame(start + length + delay)));

@@ -10,15 +10,18 @@
 //! - Detections ([`read_detections`], [`FoundLine`]): what `morec recognize` writes.
 
 mod found;
+mod mark;
 mod people;
 mod read;
 mod resolve;
 mod table;
 
+use crate::TimeSpan;
 use crate::clip::Span;
 use crate::formats::Warning;
 
 pub use found::{FOUND_HEADER, FoundLine, FoundRow, FoundTable, ReportedAt, read_detections};
+pub use mark::Mark;
 pub use people::{People, read_people};
 pub use resolve::{ClipLength, Resolved, Sample};
 
@@ -27,8 +30,8 @@ pub use resolve::{ClipLength, Resolved, Sample};
 pub enum Extent {
     /// Frames at the clip's own rate, from 0, stop exclusive.
     Frames(Span),
-    /// Start and stop in seconds from the clip's beginning.
-    Secs(f64, f64),
+    /// Seconds from the clip's beginning.
+    Secs(TimeSpan),
     /// From the clip's first frame to its last.
     WholeClip,
 }
@@ -69,12 +72,12 @@ impl Labels {
         read().map_err(|kind: crate::files::FileErrorKind| kind.at(path))
     }
 
-    /// Adds a label: in the clip of that name, `class` happens from start to stop, in seconds.
-    pub fn add(&mut self, clip: &str, class: &str, secs: std::ops::Range<f64>) {
+    /// Adds a label: in the clip of that name, `class` happens in `span`: `1.2..2.5`, in seconds.
+    pub fn add(&mut self, clip: &str, class: &str, span: impl Into<TimeSpan>) {
         self.rows.push(Label {
             clip: clip.to_owned(),
             class: class.to_owned(),
-            extent: Extent::Secs(secs.start, secs.end),
+            extent: Extent::Secs(span.into()),
             person: None,
             line: self.rows.len() as u64 + 1,
         });

@@ -2,6 +2,7 @@
 
 use super::table::{Row, Table};
 use super::{Extent, Label, Labels};
+use crate::TimeSpan;
 use crate::formats::ParseError;
 
 /// The columns that may say where a label lies.
@@ -125,7 +126,7 @@ fn secs(row: &Row<'_>, (start, stop): (usize, usize)) -> Result<Extent, ParseErr
     if to <= from {
         return Err(row.error(stop, &format!("a stop after the start, {from} s")));
     }
-    Ok(Extent::Secs(from, to))
+    Ok(Extent::Secs(TimeSpan::new(from, to)))
 }
 
 #[cfg(test)]
@@ -149,7 +150,7 @@ mod tests {
         let secs = read(
             "class\tclip\tstart_secs\tstop_secs\tperson\nwalk\ta\t0.5\t1.25\tp\nrun\ta\t2\t3\t\n",
         );
-        assert_eq!(secs.rows[0].extent, Extent::Secs(0.5, 1.25));
+        assert_eq!(secs.rows[0].extent, Extent::Secs(TimeSpan::new(0.5, 1.25)));
         assert_eq!(secs.rows[0].person.as_deref(), Some("p"));
         assert_eq!(secs.rows[1].person, None);
         let some = read(

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::{Extent, Label, Labels};
+use crate::TimeSpan;
 use crate::eval::GroundTruth;
 use crate::formats::{Place, Warning};
 
@@ -22,10 +23,8 @@ pub struct Sample {
     pub clip: String,
     /// Class of the motion.
     pub class: String,
-    /// Start, from the clip's beginning.
-    pub start_secs: f64,
-    /// Stop, from the clip's beginning.
-    pub stop_secs: f64,
+    /// When it happens, from the clip's beginning.
+    pub span: TimeSpan,
     /// True if the table gave no extent: the clip as a whole is the sample, still ends and all.
     pub whole_clip: bool,
     /// The person who moves, if known.
@@ -47,18 +46,10 @@ pub struct Resolved {
 
 impl From<Sample> for GroundTruth {
     fn from(sample: Sample) -> Self {
-        let Sample {
-            clip,
-            class,
-            start_secs,
-            stop_secs,
-            ..
-        } = sample;
         Self {
-            clip,
-            class,
-            start_secs,
-            stop_secs,
+            clip: sample.clip,
+            class: sample.class,
+            span: sample.span,
         }
     }
 }
@@ -69,15 +60,12 @@ impl ClipLength {
         self.frames as f64 / self.rate_hz
     }
 
-    /// Start and stop of an extent in seconds, not yet held against the clip's length.
-    pub fn secs(&self, extent: &Extent) -> (f64, f64) {
+    /// An extent in seconds, not yet held against the clip's length.
+    pub fn span(&self, extent: &Extent) -> TimeSpan {
         match extent {
-            Extent::Frames(span) => (
-                span.start as f64 / self.rate_hz,
-                span.end as f64 / self.rate_hz,
-            ),
-            Extent::Secs(start, stop) => (*start, *stop),
-            Extent::WholeClip => (0.0, self.duration_secs()),
+            Extent::Frames(frames) => TimeSpan::of_frames(frames.clone(), self.rate_hz),
+            Extent::Secs(span) => *span,
+            Extent::WholeClip => TimeSpan::new(0.0, self.duration_secs()),
         }
     }
 }
@@ -115,7 +103,7 @@ impl Resolved {
     fn add(&mut self, row: &Label, clip: &str, length: ClipLength) {
         let duration_secs = length.duration_secs();
         let half_frame = 0.5 / length.rate_hz;
-        let (start_secs, mut stop_secs) = length.secs(&row.extent);
+        let mut span = length.span(&row.extent);
         let mut warn = |text: String| {
             self.warnings
                 .push(Warning::new(Place::Line(row.line), text))
@@ -124,25 +112,26 @@ impl Resolved {
             "{clip} ends at {duration_secs:.3} s (frame {})",
             length.frames
         );
-        if length.frames == 0 || start_secs >= duration_secs {
+        if length.frames == 0 || span.start_secs >= duration_secs {
             return warn(format!(
-                "the label starts at {start_secs:.3} s but {end}; left out"
+                "the label starts at {:.3} s but {end}; left out",
+                span.start_secs
             ));
         }
-        if stop_secs > duration_secs {
+        if span.stop_secs > duration_secs {
             // Seconds in a table are rounded: less than half a frame is no mistake.
-            if stop_secs > duration_secs + half_frame {
+            if span.stop_secs > duration_secs + half_frame {
                 warn(format!(
-                    "the label stops at {stop_secs:.3} s but {end}; cut there"
+                    "the label stops at {:.3} s but {end}; cut there",
+                    span.stop_secs
                 ));
             }
-            stop_secs = duration_secs;
+            span.stop_secs = duration_secs;
         }
         self.samples.push(Sample {
             clip: clip.to_owned(),
             class: row.class.clone(),
-            start_secs,
-            stop_secs,
+            span,
             whole_clip: row.extent == Extent::WholeClip,
             person: row.person.clone(),
             line: row.line,
@@ -153,7 +142,7 @@ impl Resolved {
         let mut order: Vec<&Sample> = self.samples.iter().collect();
         order.sort_by(|a, b| {
             (a.clip.cmp(&b.clip))
-                .then(a.start_secs.total_cmp(&b.start_secs))
+                .then(a.span.start_secs.total_cmp(&b.span.start_secs))
                 .then(a.line.cmp(&b.line))
         });
         let mut warnings = Vec::new();
@@ -161,16 +150,20 @@ impl Resolved {
         let mut furthest: Option<&Sample> = None;
         for sample in order {
             let before = furthest.filter(|f| f.clip == sample.clip);
-            if let Some(before) = before
-                .filter(|b| b.stop_secs - sample.start_secs > 0.5 / clips[&sample.clip].rate_hz)
-            {
+            if let Some(before) = before.filter(|b| {
+                b.span.stop_secs - sample.span.start_secs > 0.5 / clips[&sample.clip].rate_hz
+            }) {
                 let text = format!(
                     "{} at {:.3} s overlaps {} of line {}, which stops at {:.3} s",
-                    sample.class, sample.start_secs, before.class, before.line, before.stop_secs
+                    sample.class,
+                    sample.span.start_secs,
+                    before.class,
+                    before.line,
+                    before.span.stop_secs
                 );
                 warnings.push(Warning::new(Place::Line(sample.line), text));
             }
-            if before.is_none_or(|b| sample.stop_secs > b.stop_secs) {
+            if before.is_none_or(|b| sample.span.stop_secs > b.span.stop_secs) {
                 furthest = Some(sample);
             }
         }
@@ -206,13 +199,10 @@ mod tests {
         let frames = resolve("clip\tclass\tstart\tstop\na\tx\t60\t240\n");
         let secs = resolve("clip\tclass\tstart_secs\tstop_secs\na.bvh\tx\t0.5\t2\n");
         let whole = resolve("clip\tclass\na\tx\n");
-        assert_eq!(
-            (frames.samples[0].start_secs, frames.samples[0].stop_secs),
-            (0.5, 2.0)
-        );
+        assert_eq!(frames.samples[0].span, TimeSpan::new(0.5, 2.0));
         assert_eq!(secs.samples, frames.samples);
         assert_eq!(
-            (whole.samples[0].stop_secs, whole.samples[0].whole_clip),
+            (whole.samples[0].span.stop_secs, whole.samples[0].whole_clip),
             (2.5, true)
         );
         assert!(
@@ -226,7 +216,7 @@ mod tests {
             "clip\tclass\tstart\tstop\na\tx\t200\t301\na\tx\t300\t310\nb\tx\t0\t1\nb\tx\t1\t2\n",
         );
         assert_eq!(resolved.samples.len(), 1);
-        assert_eq!(resolved.samples[0].stop_secs, 2.5);
+        assert_eq!(resolved.samples[0].span.stop_secs, 2.5);
         let texts: Vec<String> = resolved.warnings.iter().map(|w| w.to_string()).collect();
         assert!(
             texts[0].starts_with("line 2: the label stops at 2.508 s but a ends at 2.500 s"),

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use crate::TimeSpan;
 use crate::classes::ClassId;
 use crate::decode::Repetitions;
 
@@ -15,10 +16,9 @@ const MAX_DETECTIONS_PER_PUSH: usize = 64;
 pub struct Detection<C = ClassId> {
     /// Class of the motion.
     pub class: C,
-    /// When it began, on the stream's clock.
-    pub start_secs: f64,
-    /// When it ended.
-    pub stop_secs: f64,
+    /// When it happened, on the stream's clock.
+    #[serde(flatten)]
+    pub span: TimeSpan,
     /// 0 just accepted … 1 identical to a sample.
     pub score: f64,
     /// The stream's clock when it was reported: the time of the pose that settled it.
@@ -30,10 +30,17 @@ pub struct Detection<C = ClassId> {
 impl Detection {
     /// The same with the name of its class in `model`.
     pub fn named(self, model: &Model) -> Detection<&str> {
+        let class = model.class_name(self.class);
+        self.with_class(class)
+    }
+}
+
+impl<C> Detection<C> {
+    /// The same with its class said otherwise.
+    pub fn with_class<D>(self, class: D) -> Detection<D> {
         Detection {
-            class: model.class_name(self.class),
-            start_secs: self.start_secs,
-            stop_secs: self.stop_secs,
+            class,
+            span: self.span,
             score: self.score,
             reported_secs: self.reported_secs,
             repetitions: self.repetitions,
@@ -44,10 +51,11 @@ impl Detection {
 impl<C: fmt::Display> fmt::Display for Detection<C> {
     /// `wave from 1.23 s to 2.50 s, score 0.87`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (from, to) = (self.span.start_secs, self.span.stop_secs);
         write!(
             f,
-            "{} from {:.2} s to {:.2} s, score {:.2}",
-            self.class, self.start_secs, self.stop_secs, self.score
+            "{} from {from:.2} s to {to:.2} s, score {:.2}",
+            self.class, self.score
         )
     }
 }
@@ -88,6 +96,12 @@ impl Steps {
             step_secs: 1.0 / rate_hz,
         }
     }
+
+    /// From step `start` to step `stop`.
+    pub(super) fn span(self, start: i64, stop: i64) -> TimeSpan {
+        let at = |step: i64| self.origin_secs + step as f64 * self.step_secs;
+        TimeSpan::new(at(start), at(stop))
+    }
 }
 
 /// Detections of the present push, with the time at which they are reported.
@@ -126,8 +140,7 @@ impl DetectionBuffer {
         if self.detections.len() < self.detections.capacity() {
             self.detections.push(Detection {
                 class,
-                start_secs: at.origin_secs + start as f64 * at.step_secs,
-                stop_secs: at.origin_secs + stop as f64 * at.step_secs,
+                span: at.span(start, stop),
                 score,
                 reported_secs: self.reported_secs,
                 repetitions,

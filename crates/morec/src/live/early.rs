@@ -1,5 +1,6 @@
 //! Tentative detections of motions that have not ended, and repetitions of activities.
 
+use crate::TimeSpan;
 use crate::classes::ClassId;
 use crate::decode::Repetitions;
 
@@ -35,13 +36,12 @@ struct OpenMotion {
     heard_secs: f64,
 }
 
-/// An activity and the last of its repetitions that was reported.
+/// An activity and those of its repetitions that were reported.
 #[derive(Debug, Clone, Copy)]
 struct RepeatedActivity {
     class: ClassId,
-    start_secs: f64,
+    span: TimeSpan,
     count: u32,
-    stop_secs: f64,
 }
 
 impl EarlyTracker {
@@ -119,16 +119,16 @@ impl EarlyTracker {
     ) {
         let mut told = self.repeated_in(of);
         for number in told.count + 1..=count {
-            let start_secs = told.stop_secs;
-            told.stop_secs = stop_secs - f64::from(count - number) * period_secs;
+            let start_secs = told.span.stop_secs;
+            told.span.stop_secs = stop_secs - f64::from(count - number) * period_secs;
             told.count = number;
             let one = EarlyDetection {
                 progress: 1.0,
                 start_secs,
-                seen_secs: told.stop_secs,
+                seen_secs: told.span.stop_secs,
                 repetitions: Some(Repetitions {
                     count: number,
-                    period_secs: told.stop_secs - start_secs,
+                    period_secs: told.span.stop_secs - start_secs,
                 }),
                 ..*of
             };
@@ -140,13 +140,12 @@ impl EarlyTracker {
     /// What was reported of the repetitions of this activity.
     fn repeated_in(&self, of: &EarlyDetection) -> RepeatedActivity {
         let is_same = |told: &RepeatedActivity| {
-            told.class == of.class && (told.start_secs - of.start_secs).abs() < SAME_START_SECS
+            told.class == of.class && (told.span.start_secs - of.start_secs).abs() < SAME_START_SECS
         };
         self.repeated.filter(is_same).unwrap_or(RepeatedActivity {
             class: of.class,
-            start_secs: of.start_secs,
+            span: TimeSpan::new(of.start_secs, of.start_secs),
             count: 0,
-            stop_secs: of.start_secs,
         })
     }
 
@@ -165,8 +164,8 @@ impl EarlyTracker {
         let left = f64::from(repeated.count.saturating_sub(told.count));
         let period_secs = repeated
             .period_secs
-            .min((ended.seen_secs - told.stop_secs) / left.max(1.0));
-        let whole = (repeated.count, told.stop_secs + left * period_secs);
+            .min((ended.seen_secs - told.span.stop_secs) / left.max(1.0));
+        let whole = (repeated.count, told.span.stop_secs + left * period_secs);
         self.tell_repetitions(motion, ended, (whole, period_secs), now_secs, say);
     }
 
@@ -174,7 +173,7 @@ impl EarlyTracker {
     pub(super) fn take(&mut self, detection: &Detection) -> Option<u64> {
         let is_end = |open: &OpenMotion| {
             let early = &open.last_reported;
-            early.start_secs < detection.stop_secs
+            early.start_secs < detection.span.stop_secs
                 && (!early.goes_on || early.class == detection.class)
         };
         self.open.take_if(|open| is_end(open))?.motion
@@ -224,8 +223,7 @@ mod tests {
     fn ends(class: ClassId, start_secs: f64, stop_secs: f64, count: u32) -> Detection {
         Detection {
             class,
-            start_secs,
-            stop_secs,
+            span: TimeSpan::new(start_secs, stop_secs),
             score: 1.0,
             reported_secs: stop_secs,
             repetitions: (count > 0).then_some(Repetitions {
@@ -293,7 +291,7 @@ mod tests {
             let repetitions: Vec<&Event> = (events.iter())
                 .filter(|e| e.phase == Phase::Repetition)
                 .collect();
-            let bounds = repetitions.iter().map(|e| (e.start_secs, e.stop_secs));
+            let bounds = repetitions.iter().map(|e| e.span);
             let expected = [
                 (10.0, 12.0),
                 (12.0, 14.0),
@@ -301,8 +299,8 @@ mod tests {
                 (16.0, 18.0),
                 (18.0, 19.2),
             ];
-            for ((start, stop), (first, last)) in bounds.zip(expected) {
-                assert!((start - first).abs() < 1e-9 && (stop - last).abs() < 1e-9);
+            for (span, (first, last)) in bounds.zip(expected) {
+                assert!(span.is_near(TimeSpan::new(first, last), 1e-9));
             }
             let numbers = repetitions.iter().map(|e| e.repetitions.unwrap().count);
             assert_eq!(numbers.collect::<Vec<_>>(), [1, 2, 3, 4, 5]);
@@ -319,7 +317,7 @@ mod tests {
         assert!(of_jog.iter().all(|e| e.class == JOG));
         assert_eq!(of_wave.len(), 1);
         for pair in of_jog.windows(2) {
-            assert!(pair[1].stop_secs - pair[0].stop_secs < 1.2);
+            assert!(pair[1].span.stop_secs - pair[0].span.stop_secs < 1.2);
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Emission of one performer's events.
 
 use super::{EarlyDetection, Event, PerformerId, Phase};
+use crate::TimeSpan;
 
 /// Numbers motions and gives events their common parts.
 pub(super) struct EventEmitter<'a, F: FnMut(Event)> {
@@ -32,8 +33,7 @@ impl<F: FnMut(Event)> EventEmitter<'_, F> {
             class: what.class,
             score: what.score,
             progress: what.progress,
-            start_secs: what.start_secs,
-            stop_secs: what.seen_secs,
+            span: TimeSpan::new(what.start_secs, what.seen_secs),
             reported_secs,
             wall_secs: self.wall_secs,
             repetitions: what.repetitions,

@@ -1,5 +1,6 @@
 //! Events that a live session emits.
 
+use crate::TimeSpan;
 use crate::classes::ClassId;
 use crate::decode::Repetitions;
 
@@ -51,10 +52,8 @@ pub struct Event {
     pub score: f64,
     /// Share of the motion that has been seen, 0 to 1; 1 at its end.
     pub progress: f64,
-    /// When it began.
-    pub start_secs: f64,
-    /// When it ended; when it was last seen, if it has not.
-    pub stop_secs: f64,
+    /// From its beginning to its end, or to when it was last seen, if it has not ended.
+    pub span: TimeSpan,
     /// The source's clock at the frame that settled it.
     pub reported_secs: f64,
     /// Wall clock at the arrival of that frame: seconds since 1970, UTC.
@@ -68,8 +67,7 @@ impl Event {
     pub fn detection(&self) -> Detection {
         Detection {
             class: self.class,
-            start_secs: self.start_secs,
-            stop_secs: self.stop_secs,
+            span: self.span,
             score: self.score,
             reported_secs: self.reported_secs,
             repetitions: self.repetitions,

@@ -39,21 +39,21 @@ impl EventTracker {
     ) {
         let before_secs = &mut self.class_secs[d.class.index()];
         // A method that lets rivals wait may report what ended first after what ended later.
-        if (d.stop_secs - *before_secs).abs() < self.refractory_secs {
+        if (d.span.stop_secs - *before_secs).abs() < self.refractory_secs {
             self.suppressed += 1;
             early.cancel(Some(d.reported_secs), &mut self.say(wall_secs, out));
             return;
         }
-        *before_secs = before_secs.max(d.stop_secs);
-        self.any_secs = self.any_secs.max(d.stop_secs);
+        *before_secs = before_secs.max(d.span.stop_secs);
+        self.any_secs = self.any_secs.max(d.span.stop_secs);
         let mut say = self.say(wall_secs, out);
         let motion = early.take(d).unwrap_or_else(|| say.new_motion());
         let ended = EarlyDetection {
             class: d.class,
             score: d.score,
             progress: 1.0,
-            start_secs: d.start_secs,
-            seen_secs: d.stop_secs,
+            start_secs: d.span.start_secs,
+            seen_secs: d.span.stop_secs,
             goes_on: false,
             repetitions: d.repetitions,
             whole: None,

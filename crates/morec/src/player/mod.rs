@@ -4,28 +4,17 @@
 //! Positions are stored as 16-bit differences from the clip's middle, in millimetres or, where somebody goes further than 32 m, in
 //! as coarse a unit as that needs, at most 30 frames a second, and drawn on a canvas by a script in the page; nothing is fetched from anywhere.
 
-use std::ops::Range;
-
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::json;
 
+use crate::TimeSpan;
 use crate::clip::Clip;
 use crate::features::{ALL_BONES, Bone, BoneKind, Hand, Profile};
 use crate::kinematics::WorldPose;
+use crate::labels::Mark;
 use crate::math::Vec3;
 use crate::roles::{Role, RoleMap};
-
-/// A stretch of a clip with a name.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Mark {
-    /// Name of the motion.
-    pub name: String,
-    /// Start, seconds from the clip's beginning.
-    pub start_secs: f64,
-    /// Stop, seconds from the clip's beginning.
-    pub stop_secs: f64,
-}
 
 /// A clip with what is known of it.
 #[derive(Debug, Clone)]
@@ -34,8 +23,8 @@ pub struct PlayedClip<'a> {
     pub clip: &'a Clip,
     /// The joint of each role.
     pub roles: &'a RoleMap,
-    /// The stretch to show, seconds; `None` for the whole clip.
-    pub secs: Option<Range<f64>>,
+    /// The stretch to show; `None` for the whole clip.
+    pub span: Option<TimeSpan>,
     /// Labels of the clip.
     pub labels: Vec<Mark>,
     /// Detections in the clip.
@@ -137,11 +126,10 @@ fn escaped(text: &str) -> String {
 
 fn clip(played: &PlayedClip, most: usize) -> serde_json::Value {
     let PlayedClip { clip, roles, .. } = played;
-    let whole = 0.0..clip.duration_secs();
-    let secs = played.secs.clone().unwrap_or(whole);
-    let frame_at = |secs: f64| ((secs * clip.rate_hz).round().max(0.0) as usize).min(clip.frames);
-    let (first, end) = (frame_at(secs.start), frame_at(secs.end));
-    let shown = end.saturating_sub(first);
+    let whole = TimeSpan::new(0.0, clip.duration_secs());
+    let shown = played.span.unwrap_or(whole);
+    let shown = shown.frames_among(clip.frames, clip.rate_hz);
+    let (first, shown) = (shown.start, shown.len());
     // Rates are halved until the stretch has no more frames than wanted.
     let mut step = (clip.rate_hz / RATE_HZ).max(1.0);
     while shown as f64 / step > most as f64 {
@@ -184,12 +172,12 @@ fn clip(played: &PlayedClip, most: usize) -> serde_json::Value {
     let parents: Vec<Option<usize>> = own.chain(tips).collect();
     let start = first as f64 / clip.rate_hz;
     let marks = |marks: &[Mark]| -> Vec<serde_json::Value> {
-        let mark = |m: &Mark| json!([m.name, m.start_secs - start, m.stop_secs - start]);
+        let mark = |m: &Mark| json!([m.class, m.span.start_secs - start, m.span.stop_secs - start]);
         marks.iter().map(mark).collect()
     };
     let sides: Vec<i8> = (0..joints.len()).map(|j| side(clip, roles, j)).collect();
-    let name = match &played.secs {
-        Some(secs) => format!("{} {:.2}–{:.2} s", clip.name, secs.start, secs.end),
+    let name = match played.span {
+        Some(span) => format!("{} {span:.2}", clip.name),
         None => clip.name.clone(),
     };
     json!({
@@ -277,15 +265,11 @@ mod tests {
     fn a_page_stands_alone_and_holds_every_clip() {
         let script = Script::new(3, Person::draw(31, 2)).rest(0.3).play("wave");
         let take = Take::new(script.film("wa</script>ve", 120.0).unwrap().clip).unwrap();
-        let mark = |name: &str| Mark {
-            name: name.to_owned(),
-            start_secs: 0.3,
-            stop_secs: 1.0,
-        };
+        let mark = |class: &str| Mark::new(class, TimeSpan::new(0.3, 1.0));
         let played = PlayedClip {
             clip: &take.clip,
             roles: &take.roles,
-            secs: None,
+            span: None,
             labels: vec![mark("wave")],
             detections: vec![mark("wave"), mark("<b>")],
         };
@@ -346,7 +330,7 @@ mod tests {
         PlayedClip {
             clip: &take.clip,
             roles: &take.roles,
-            secs: None,
+            span: None,
             labels: Vec::new(),
             detections: Vec::new(),
         }
@@ -374,12 +358,8 @@ mod tests {
         let played = PlayedClip {
             clip: &take.clip,
             roles: &take.roles,
-            secs: Some(0.3..1.3),
-            labels: vec![Mark {
-                name: "wave".to_owned(),
-                start_secs: 0.5,
-                stop_secs: 1.0,
-            }],
+            span: Some(TimeSpan::new(0.3, 1.3)),
+            labels: vec![Mark::new("wave", TimeSpan::new(0.5, 1.0))],
             detections: Vec::new(),
         };
         for (most, frames, rate) in [(100, 30, 30.0), (20, 15, 15.0), (8, 7, 7.5)] {

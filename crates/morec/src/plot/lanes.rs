@@ -2,6 +2,7 @@
 
 use super::axis::PlotAxis;
 use super::{Text, colour, open};
+use crate::TimeSpan;
 
 const WIDTH: f64 = 1100.0;
 const LEFT: f64 = 90.0;
@@ -10,13 +11,11 @@ const TOP: f64 = 34.0;
 const BAR: f64 = 22.0;
 const LANE: f64 = BAR + 6.0;
 
-/// A bar: from, to, what it is.
-#[derive(Debug, Clone, PartialEq)]
+/// A bar of a lane.
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bar {
-    /// Seconds.
-    pub from_secs: f64,
-    /// Seconds.
-    pub to_secs: f64,
+    /// From where to where.
+    pub span: TimeSpan,
     /// Kind of the bar, an index into the names of [`LaneChart::new`]; decides the colour.
     pub kind: usize,
 }
@@ -96,13 +95,11 @@ impl LaneChart {
     }
 
     fn push_bar(&self, out: &mut String, bar: &Bar, axis: &PlotAxis, y: f64) {
-        if !(bar.from_secs.is_finite() && bar.to_secs.is_finite()) {
+        if !(bar.span.start_secs.is_finite() && bar.span.stop_secs.is_finite()) {
             return;
         }
-        let (from, to) = (
-            bar.from_secs.clamp(0.0, self.secs),
-            bar.to_secs.clamp(0.0, self.secs),
-        );
+        let shown = bar.span.map(|secs| secs.clamp(0.0, self.secs));
+        let (from, to) = (shown.start_secs, shown.stop_secs);
         let (x, wide) = (axis.at(from), (axis.at(to) - axis.at(from)).max(1.0));
         let name = self.kinds.get(bar.kind).map_or("", String::as_str);
         out.push_str(&format!(

@@ -1,6 +1,7 @@
 //! Pictures hold what was put in, whatever it was called, and nothing that is not a number.
 
 use super::{Bar, Chart, HeatMap, LaneChart, Regions};
+use crate::TimeSpan;
 
 fn whole(svg: &str) {
     assert!(
@@ -113,8 +114,7 @@ fn a_heat_map_draws_what_is_positive() {
 #[test]
 fn lanes_hold_their_bars_and_name_what_is_there() {
     let bar = |from_secs, to_secs, kind| Bar {
-        from_secs,
-        to_secs,
+        span: TimeSpan::new(from_secs, to_secs),
         kind,
     };
     let kinds = ["walk", "<jump>", "never"].map(str::to_owned).to_vec();

@@ -87,7 +87,7 @@ impl<'a> Square<'a> {
             ),
         };
         let founds: Vec<String> = (timeline.founds.iter())
-            .map(|(f, _)| format!("{} {:.2}–{:.2} s", f.class, f.start_secs, f.stop_secs))
+            .map(|(f, _)| format!("{} {:.2}", f.class, f.span))
             .collect();
         let founds = if founds.is_empty() {
             "nothing found".to_owned()

@@ -54,8 +54,8 @@ fn push_table(out: &mut String, misses: &[Miss]) {
              <td>{at}</td></tr>\n",
             Text(&miss.clip),
             Text(&miss.class),
-            miss.start_secs,
-            miss.stop_secs,
+            miss.span.start_secs,
+            miss.span.stop_secs,
             Text(&miss.reason.to_string()),
         ));
     }

@@ -51,24 +51,25 @@ fn push_figure(out: &mut String, performance: &Performance) {
     let Performance {
         clip,
         class,
-        start_secs,
-        stop_secs,
+        span,
         deviation,
     } = performance;
     out.push_str(&format!(
-        "<figure class=\"performance\"><figcaption><b>{}</b> in {}, {start_secs:.2} to {stop_secs:.2} s: {:.0}° off on average, in \
+        "<figure class=\"performance\"><figcaption><b>{}</b> in {}, {:.2} to {:.2} s: {:.0}° off on average, in \
          {:.2} times the sample's duration</figcaption>\n",
         Text(class),
         Text(clip),
+        span.start_secs,
+        span.stop_secs,
         deviation.off_degrees,
         deviation.pace,
     ));
     let chart = Chart::new(format!("{class}: angle from the nearest sample over time"))
         .axes("seconds of the clip", "degrees off")
         .size(WIDTH, HEIGHT)
-        .line("all bones", deviation.curve(*start_secs, *stop_secs))
-        .line("", [(*start_secs, 0.0)]);
-    let worst = deviation.worst(*start_secs, *stop_secs);
+        .line("all bones", deviation.curve(*span))
+        .line("", [(span.start_secs, 0.0)]);
+    let worst = deviation.worst(*span);
     let chart = chart.marks("worst moment", worst.map(|(secs, _)| secs));
     out.push_str(&chart.svg());
     out.push_str(
@@ -102,8 +103,8 @@ fn push_table(out: &mut String, performances: &[&Performance]) {
              <td>{:.0}°</td><td>{:.2} s</td></tr>\n",
             Text(&performance.clip),
             Text(&performance.class),
-            performance.start_secs,
-            performance.stop_secs,
+            performance.span.start_secs,
+            performance.span.stop_secs,
             performance.deviation.off_degrees,
             performance.deviation.pace,
             words(bone),

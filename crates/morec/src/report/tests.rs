@@ -1,6 +1,7 @@
 //! Properties that a reader of the report may rely on.
 
 use super::*;
+use crate::TimeSpan;
 use crate::eval::{ClipDetection, GroundTruth, StreamInfo, timelines};
 use crate::explain::{BoneDeviation, MotionDeviation, Reason};
 
@@ -8,8 +9,7 @@ fn truth(clip: &str, class: &str, start_secs: f64, stop_secs: f64) -> GroundTrut
     GroundTruth {
         clip: clip.into(),
         class: class.into(),
-        start_secs,
-        stop_secs,
+        span: TimeSpan::new(start_secs, stop_secs),
     }
 }
 
@@ -17,8 +17,7 @@ fn found(clip: &str, class: &str, start_secs: f64, stop_secs: f64) -> ClipDetect
     ClipDetection {
         clip: clip.into(),
         class: class.into(),
-        start_secs,
-        stop_secs,
+        span: TimeSpan::new(start_secs, stop_secs),
         score: Some(0.5),
         reported_secs: None,
         repetitions: None,
@@ -68,8 +67,7 @@ fn performance(off_degrees: f64) -> Performance {
     Performance {
         clip: "c".to_owned(),
         class: "<y>".to_owned(),
-        start_secs: 1.5,
-        stop_secs: 3.5,
+        span: TimeSpan::new(1.5, 3.5),
         deviation: MotionDeviation {
             off_degrees,
             pace: 1.2,
@@ -216,8 +214,7 @@ fn curves_and_reasons_are_shown_where_they_are_known() {
     let misses = [Miss {
         clip: "c".into(),
         class: "x".into(),
-        start_secs: 9.0,
-        stop_secs: 10.0,
+        span: TimeSpan::new(9.0, 10.0),
         reason: Reason::OtherClass {
             class: "<y>".into(),
             distance: 2.0,

@@ -3,6 +3,7 @@
 use super::grid;
 use super::html::Text;
 use super::palette::Palette;
+use crate::TimeSpan;
 use crate::eval::{ClipDetection, DetectionVerdict, GroundTruth, GroundTruthVerdict, Timeline};
 
 const WIDTH: f64 = 1120.0;
@@ -86,8 +87,7 @@ fn push_clip(out: &mut String, timeline: &Timeline, scale: f64, palette: &Palett
     let rows = rows_of(timeline);
     let row_secs = stream.duration_secs / rows as f64;
     let windows = (0..rows).map(|r| TimeWindow {
-        from: r as f64 * row_secs,
-        to: (r + 1) as f64 * row_secs,
+        span: TimeSpan::new(r as f64 * row_secs, (r + 1) as f64 * row_secs),
         scale,
     });
     let (shown, blank): (Vec<TimeWindow>, Vec<TimeWindow>) =
@@ -129,41 +129,40 @@ fn summary(timeline: &Timeline) -> String {
 /// The part of a clip that a row shows.
 #[derive(Clone, Copy)]
 struct TimeWindow {
-    from: f64,
-    to: f64,
+    span: TimeSpan,
     scale: f64,
 }
 
 impl TimeWindow {
     fn x(self, secs: f64) -> f64 {
-        LEFT + (secs.clamp(self.from, self.to) - self.from) * self.scale
-    }
-
-    fn shows(self, start: f64, stop: f64) -> bool {
-        stop > self.from && start < self.to
+        let TimeSpan {
+            start_secs,
+            stop_secs,
+        } = self.span;
+        LEFT + (secs.clamp(start_secs, stop_secs) - start_secs) * self.scale
     }
 
     fn holds_any(self, timeline: &Timeline) -> bool {
         timeline
             .truths
             .iter()
-            .any(|(t, _)| self.shows(t.start_secs, t.stop_secs))
+            .any(|(t, _)| t.span.overlaps(self.span))
             || timeline
                 .founds
                 .iter()
-                .any(|(f, _)| self.shows(f.start_secs, f.stop_secs))
+                .any(|(f, _)| f.span.overlaps(self.span))
     }
 }
 
 fn push_row(out: &mut String, timeline: &Timeline, window: TimeWindow, palette: &Palette) {
-    let (right, name) = (window.x(window.to), Text(&timeline.stream.clip));
+    let (right, name) = (window.x(window.span.stop_secs), Text(&timeline.stream.clip));
     out.push_str(&format!(
         "<svg viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\"><title>{name}, {:.1} s to {:.1} s</title>\n\
          <rect class=\"ground\" x=\"{LEFT}\" y=\"{TRUTH_Y}\" width=\"{:.1}\" height=\"{BAR}\"/>\
          <rect class=\"ground\" x=\"{LEFT}\" y=\"{FOUND_Y}\" width=\"{:.1}\" height=\"{BAR}\"/>\n\
          <text x=\"0\" y=\"{}\">labels</text><text x=\"0\" y=\"{}\">found</text>\n",
-        window.from,
-        window.to,
+        window.span.start_secs,
+        window.span.stop_secs,
         right - LEFT,
         right - LEFT,
         TRUTH_Y + 15.0,
@@ -172,18 +171,18 @@ fn push_row(out: &mut String, timeline: &Timeline, window: TimeWindow, palette: 
     let truths = timeline
         .truths
         .iter()
-        .filter(|(t, _)| window.shows(t.start_secs, t.stop_secs));
+        .filter(|(t, _)| t.span.overlaps(window.span));
     let founds = timeline
         .founds
         .iter()
-        .filter(|(f, _)| window.shows(f.start_secs, f.stop_secs));
+        .filter(|(f, _)| f.span.overlaps(window.span));
     let mut truth_names = Names::new(TRUTH_Y, right);
     for (truth, verdict) in truths {
         push_truth(out, truth, verdict, window, palette);
         truth_names.add(
             &truth.class,
-            window.x(truth.start_secs),
-            window.x(truth.stop_secs),
+            window.x(truth.span.start_secs),
+            window.x(truth.span.stop_secs),
         );
     }
     let mut found_names = Names::new(FOUND_Y, right);
@@ -192,8 +191,8 @@ fn push_row(out: &mut String, timeline: &Timeline, window: TimeWindow, palette: 
         let counted = found.repetitions.map(|n| format!("{} × {n}", found.class));
         found_names.add(
             counted.as_deref().unwrap_or(&found.class),
-            window.x(found.start_secs),
-            window.x(found.stop_secs),
+            window.x(found.span.start_secs),
+            window.x(found.span.stop_secs),
         );
     }
     truth_names.push(out);
@@ -214,11 +213,11 @@ fn push_truth(
         GroundTruthVerdict::Mistaken(other) => ("bar mistaken", "✗", format!("taken for {other}")),
         GroundTruthVerdict::Missed => ("bar missed", "○", "missed".to_owned()),
     };
-    let title = format!(
-        "{} {:.2}–{:.2} s: {text}",
-        truth.class, truth.start_secs, truth.stop_secs
+    let title = format!("{} {:.2}: {text}", truth.class, truth.span);
+    let (from, to) = (
+        window.x(truth.span.start_secs),
+        window.x(truth.span.stop_secs),
     );
-    let (from, to) = (window.x(truth.start_secs), window.x(truth.stop_secs));
     push_bar(
         out,
         class,
@@ -242,10 +241,7 @@ fn push_found(
         DetectionVerdict::WrongClass => ("bar wrong", "✗", "wrong class"),
         DetectionVerdict::FalseAlarm => ("bar alarm", "!", "false alarm"),
     };
-    let mut title = format!(
-        "{} {:.2}–{:.2} s: {text}",
-        found.class, found.start_secs, found.stop_secs
-    );
+    let mut title = format!("{} {:.2}: {text}", found.class, found.span);
     if let Some(score) = found.score {
         title.push_str(&format!(", score {score:.3}"));
     }
@@ -254,7 +250,7 @@ fn push_found(
     }
     if let Some(reported) = found.reported_secs {
         title.push_str(&format!(", reported at {reported:.2} s"));
-        if reported >= window.from && reported <= window.to {
+        if (window.span.start_secs..=window.span.stop_secs).contains(&reported) {
             let x = window.x(reported);
             let (top, bottom) = (FOUND_Y + BAR, FOUND_Y + BAR + 5.0);
             out.push_str(&format!(
@@ -262,7 +258,10 @@ fn push_found(
             ));
         }
     }
-    let (from, to) = (window.x(found.start_secs), window.x(found.stop_secs));
+    let (from, to) = (
+        window.x(found.span.start_secs),
+        window.x(found.span.stop_secs),
+    );
     push_bar(
         out,
         class,
@@ -297,17 +296,17 @@ fn push_mark(out: &mut String, mark: &str, x: f64, y: f64) {
 }
 
 fn push_axis(out: &mut String, window: TimeWindow) {
-    let right = window.x(window.to);
+    let right = window.x(window.span.stop_secs);
     out.push_str(&format!(
         "<path class=\"axis\" d=\"M{LEFT} {AXIS_Y}H{right:.1}\"/>"
     ));
-    let shown = window.to - window.from;
+    let shown = window.span.duration_secs();
     let step = [0.5, 1.0, 2.0, 5.0, 10.0]
         .into_iter()
         .find(|s| shown / s <= 16.0)
         .unwrap_or(30.0);
-    let first = (window.from / step - 1e-9).ceil() as u64;
-    let last = (window.to / step + 1e-9).floor() as u64;
+    let first = (window.span.start_secs / step - 1e-9).ceil() as u64;
+    let last = (window.span.stop_secs / step + 1e-9).floor() as u64;
     for tick in first..=last {
         let secs = tick as f64 * step;
         let x = window.x(secs);

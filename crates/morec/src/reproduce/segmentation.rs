@@ -1,5 +1,6 @@
 //! §5.1: cutting clips without labels.
 
+use crate::TimeSpan;
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -61,30 +62,26 @@ fn one(study: &Study<'_>, clip: &TrainClip) -> Result<(Segmented, Picture), Repr
         .chain(cuts_secs.iter().copied())
         .chain([secs])
         .collect();
-    let samples: Vec<(f64, f64, usize)> = study
+    let segments: Vec<TimeSpan> = (borders.windows(2))
+        .map(|b| TimeSpan::new(b[0], b[1]))
+        .collect();
+    let samples: Vec<Bar> = study
         .samples
         .iter()
         .filter(|s| s.clip == clip.name)
         .filter_map(|s| {
-            let class = study.classes.iter().position(|c| *c == s.class)?;
-            Some((s.start_secs, s.stop_secs, class))
+            let kind = study.classes.iter().position(|c| *c == s.class)?;
+            Some(Bar { span: s.span, kind })
         })
         .collect();
-    let has_its_own = |(start, stop, _): &&(f64, f64, usize)| {
-        borders.windows(2).any(|b| {
-            let common = stop.min(b[1]) - start.max(b[0]);
-            common > 0.5 * (stop - start).max(b[1] - b[0])
-        })
+    let has_its_own = |sample: &&Bar| {
+        let of = sample.span;
+        let is_own =
+            |s: &TimeSpan| s.overlap_secs(of) > 0.5 * s.duration_secs().max(of.duration_secs());
+        segments.iter().any(is_own)
     };
-    let bars = samples.iter().map(|(from, to, kind)| Bar {
-        from_secs: *from,
-        to_secs: *to,
-        kind: *kind,
-    });
-    let segments = borders.windows(2).enumerate();
-    let segments = segments.map(|(i, b)| Bar {
-        from_secs: b[0],
-        to_secs: b[1],
+    let cuts = segments.iter().enumerate().map(|(i, span)| Bar {
+        span: *span,
         kind: study.classes.len() + i % 2,
     });
     let kinds = study
@@ -97,8 +94,8 @@ fn one(study: &Study<'_>, clip: &TrainClip) -> Result<(Segmented, Picture), Repr
         kinds.collect(),
         secs,
     )
-    .lane("labelled", bars)
-    .lane("cut", segments)
+    .lane("labelled", samples.iter().copied())
+    .lane("cut", cuts)
     .svg();
     let name = format!("segmentation_{}", clip.name);
     let caption = format!(

@@ -75,9 +75,8 @@ fn timeline_picture(study: &Study<'_>, setting: Setting, line: &Timeline) -> Pic
             .position(|c| c == class)
             .unwrap_or(study.classes.len())
     };
-    let bar = |class: &str, from_secs, to_secs| Bar {
-        from_secs,
-        to_secs,
+    let bar = |class: &str, span| Bar {
+        span,
         kind: kind(class),
     };
     let (name, clip) = (setting.name(), &line.stream.clip);
@@ -85,15 +84,11 @@ fn timeline_picture(study: &Study<'_>, setting: Setting, line: &Timeline) -> Pic
     let svg = LaneChart::new(title, study.classes.to_vec(), line.stream.duration_secs)
         .lane(
             "labelled",
-            line.truths
-                .iter()
-                .map(|(t, _)| bar(&t.class, t.start_secs, t.stop_secs)),
+            line.truths.iter().map(|(t, _)| bar(&t.class, t.span)),
         )
         .lane(
             "recognised",
-            line.founds
-                .iter()
-                .map(|(f, _)| bar(&f.class, f.start_secs, f.stop_secs)),
+            line.founds.iter().map(|(f, _)| bar(&f.class, f.span)),
         )
         .svg();
     let caption = format!("{name}: {clip} as a stream (Figs. 5.13 and 5.14)");

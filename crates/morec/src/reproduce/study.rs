@@ -111,6 +111,5 @@ pub(super) fn rows_of(
 
 /// The frames of a sample among `count` rows at `rate_hz`.
 pub(super) fn frames_of(sample: &Sample, rate_hz: f64, count: usize) -> Range<usize> {
-    let frame = |secs: f64| ((secs * rate_hz).round() as usize).min(count);
-    frame(sample.start_secs)..frame(sample.stop_secs)
+    sample.span.frames_among(count, rate_hz)
 }

@@ -1,11 +1,12 @@
 //! Streams of several people performing gestures, with unknown motion and rest in between.
 
+use super::SyntheticTake;
 use super::actor::Actor;
 use super::film::film;
 use super::motion::{self, MotionKind, SyntheticMotion};
 use super::person::Person;
 use super::timeline::LimbSide;
-use super::{SyntheticLabel, SyntheticTake};
+use crate::labels::Mark;
 use crate::rng::Rng;
 
 /// Contents of a synthetic [`database`].
@@ -68,13 +69,9 @@ fn take(person: &Person, mut rng: Rng, name: &str, spec: &DatabaseSpec) -> Synth
     actor.wait(1.0);
     let mut labels = Vec::new();
     for motion in plan {
-        let (start_secs, stop_secs) = motion.perform(&mut actor);
+        let span = motion.perform(&mut actor);
         if motion.kind() == MotionKind::Gesture {
-            labels.push(SyntheticLabel {
-                class: motion.name(),
-                start_secs,
-                stop_secs,
-            });
+            labels.push(Mark::new(motion.name(), span));
         }
         let pause = actor.rng.range(0.5, 1.6);
         actor.wait(pause);

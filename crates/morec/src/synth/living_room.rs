@@ -5,7 +5,9 @@ use super::actor::Perform;
 use super::film::film;
 use super::motion::{MotionKind, SyntheticMotion};
 use super::person::Person;
-use super::{SyntheticLabel, SyntheticTake, everyday, unknown};
+use super::{SyntheticTake, everyday, unknown};
+use crate::TimeSpan;
+use crate::labels::Mark;
 use crate::rng::Rng;
 
 /// Motions between gestures, in turn.
@@ -27,7 +29,7 @@ pub struct LivingRoom {
     /// The clip and its gestures.
     pub take: SyntheticTake,
     /// Motions that were performed between them.
-    pub idle: Vec<SyntheticLabel>,
+    pub idle: Vec<Mark<&'static str>>,
 }
 
 /// Every class of `classes` (names of [`MotionKind::Gesture`] motions) `repetitions` times by person `number`, in random
@@ -61,20 +63,12 @@ pub fn living_room(
             let start_secs = actor.now_secs;
             actor.vary();
             perform(&mut actor);
-            idle.push(SyntheticLabel {
-                class,
-                start_secs,
-                stop_secs: actor.now_secs,
-            });
+            idle.push(Mark::new(class, TimeSpan::new(start_secs, actor.now_secs)));
             let pause = actor.rng.range(0.2, 0.9);
             actor.wait(pause);
         }
-        let (start_secs, stop_secs) = motion.perform(&mut actor);
-        labels.push(SyntheticLabel {
-            class: motion.name(),
-            start_secs,
-            stop_secs,
-        });
+        let span = motion.perform(&mut actor);
+        labels.push(Mark::new(motion.name(), span));
     }
     actor.wait(1.0);
     let clip = film(actor, &format!("living_room_{}", person.name), rate_hz);

@@ -36,34 +36,16 @@ pub use person::Person;
 pub use script::{Script, UnknownMotion};
 pub use timeline::LimbSide;
 
-use crate::clip::{Clip, Span};
-use crate::labels::Sample;
-
-/// A labelled stretch of a take.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SyntheticLabel {
-    /// The class; the motion's name.
-    pub class: &'static str,
-    /// When it leaves rest.
-    pub start_secs: f64,
-    /// When it has returned.
-    pub stop_secs: f64,
-}
-
-impl SyntheticLabel {
-    /// The frames it covers at `rate_hz`, half-open.
-    pub fn span(&self, rate_hz: f64) -> Span {
-        (self.start_secs * rate_hz).round() as usize..(self.stop_secs * rate_hz).round() as usize
-    }
-}
+use crate::clip::Clip;
+use crate::labels::{Mark, Sample};
 
 /// A clip with what was performed in it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SyntheticTake {
     /// The clip.
     pub clip: Clip,
-    /// Performed motions with their times, in order, without overlap.
-    pub labels: Vec<SyntheticLabel>,
+    /// Performed motions, each from leaving rest to its return, in order, without overlap.
+    pub labels: Vec<Mark<&'static str>>,
     /// The person.
     pub person: String,
 }
@@ -74,8 +56,7 @@ impl SyntheticTake {
         self.labels.iter().map(|label| Sample {
             clip: self.clip.name.clone(),
             class: label.class.to_owned(),
-            start_secs: label.start_secs,
-            stop_secs: label.stop_secs,
+            span: label.span,
             whole_clip: false,
             person: Some(self.person.clone()),
             line: 0,

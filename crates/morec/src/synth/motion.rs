@@ -2,6 +2,7 @@
 
 use super::actor::{Actor, Perform};
 use super::{everyday, gestures, unknown};
+use crate::TimeSpan;
 
 /// Purpose of a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -86,11 +87,11 @@ impl SyntheticMotion {
     ///
     /// The first and last hundredths of a reach move nothing that an annotator would see: with a minimum-jerk
     /// course, a tenth of its time covers a hundredth of its way.
-    pub(super) fn perform(&self, actor: &mut Actor) -> (f64, f64) {
+    pub(super) fn perform(&self, actor: &mut Actor) -> TimeSpan {
         actor.vary();
         let start_secs = actor.now_secs;
         (self.perform)(actor);
         let unseen = 0.06f64.min(0.1 * (actor.now_secs - start_secs));
-        (start_secs + unseen, actor.now_secs - unseen)
+        TimeSpan::new(start_secs + unseen, actor.now_secs - unseen)
     }
 }

@@ -1,10 +1,11 @@
 //! Scripted clips: named motions at given times, with the labels a recogniser should find.
 
+use super::SyntheticTake;
 use super::actor::Actor;
 use super::film::film;
 use super::motion::{MotionKind, SyntheticMotion, all};
 use super::person::Person;
-use super::{SyntheticLabel, SyntheticTake};
+use crate::labels::Mark;
 use crate::rng::Rng;
 
 /// A line of a script that cannot be performed.
@@ -93,13 +94,9 @@ impl Script {
                         SyntheticMotion::named(motion).ok_or_else(|| unknown(at, motion))?;
                     let usual = actor.person.tempo;
                     actor.person.tempo = usual * speed.clamp(0.2, 5.0);
-                    let (start_secs, stop_secs) = motion.perform(&mut actor);
+                    let span = motion.perform(&mut actor);
                     actor.person.tempo = usual;
-                    labels.push(SyntheticLabel {
-                        class: motion.name(),
-                        start_secs,
-                        stop_secs,
-                    });
+                    labels.push(Mark::new(motion.name(), span));
                 }
             }
         }

@@ -245,7 +245,11 @@ fn labels_are_in_range_in_order_and_each_class_comes_as_often_as_asked() {
     let takes = database(4, &spec);
     assert_eq!(takes.len(), 6);
     for take in &takes {
-        let spans: Vec<Span> = take.labels.iter().map(|l| l.span(spec.rate_hz)).collect();
+        let spans: Vec<_> = take
+            .labels
+            .iter()
+            .map(|l| l.span.frames(spec.rate_hz))
+            .collect();
         assert!(
             spans
                 .iter()
@@ -264,7 +268,7 @@ fn labels_are_in_range_in_order_and_each_class_comes_as_often_as_asked() {
     let labelled: f64 = takes
         .iter()
         .flat_map(|t| &t.labels)
-        .map(|l| l.stop_secs - l.start_secs)
+        .map(|l| l.span.duration_secs())
         .sum();
     assert!(
         (0.2..0.7).contains(&(labelled / everything)),
@@ -309,7 +313,7 @@ fn scripts_keep_their_times() {
         .rest_until(8.0)
         .play("walk");
     let take = script.film("times", 60.0).expect("known");
-    let starts: Vec<f64> = take.labels.iter().map(|l| l.start_secs).collect();
+    let starts: Vec<f64> = take.labels.iter().map(|l| l.span.start_secs).collect();
     assert!(
         (starts[0] - 2.0).abs() < 0.1 && (starts[1] - 8.0).abs() < 0.1,
         "{starts:?}"

@@ -186,8 +186,7 @@ mod tests {
         let sample = Sample {
             clip: "hand".into(),
             class: "fist".into(),
-            start_secs: 0.5,
-            stop_secs: 1.5,
+            span: crate::TimeSpan::new(0.5, 1.5),
             whole_clip: false,
             person: None,
             line: 2,

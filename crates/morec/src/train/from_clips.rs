@@ -293,8 +293,8 @@ fn stream(
         }
         // Half a frame's tolerance: a label given in seconds must not gain a tick by rounding.
         let (first, last) = (
-            sample.start_secs * params.tick_hz(),
-            sample.stop_secs * params.tick_hz(),
+            sample.span.start_secs * params.tick_hz(),
+            sample.span.stop_secs * params.tick_hz(),
         );
         (first + 0.05).floor().max(0.0) as usize..(last - 0.05).ceil().max(0.0) as usize
     };

@@ -22,7 +22,7 @@ fn notes(renamed: impl Fn(usize, &str) -> String) -> Vec<String> {
     for (number, film) in films.iter().enumerate() {
         for sample in film.samples() {
             let class = renamed(number, &sample.class);
-            labels.add(&sample.clip, &class, sample.start_secs..sample.stop_secs);
+            labels.add(&sample.clip, &class, sample.span);
         }
     }
     let ready = |film: SyntheticTake| normalize(film.clip, &ImportOptions::default()).unwrap();

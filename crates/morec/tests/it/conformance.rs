@@ -35,7 +35,7 @@ fn print_what_is_performed() {
         for l in case.take(60.0).keep(MotionKind::Gesture).labels {
             println!(
                 "    {{\"class\": \"{}\", \"start_secs\": {:.2}, \"stop_secs\": {:.2}}},",
-                l.class, l.start_secs, l.stop_secs
+                l.class, l.span.start_secs, l.span.stop_secs
             );
         }
     }
@@ -55,15 +55,15 @@ fn run(case: &Case, name: &str, rate_hz: f64, wrong: &mut Vec<String>) {
         };
         let right = found.iter().zip(&case.expect).all(|(d, e)| {
             class(d) == e.class
-                && near(d.start_secs, e.start_secs)
-                && near(d.stop_secs, e.stop_secs)
+                && near(d.span.start_secs, e.start_secs)
+                && near(d.span.stop_secs, e.stop_secs)
         });
         if !right || found.len() != case.expect.len() {
             let tell = |d: &Detection| {
                 (
                     class(d),
-                    d.start_secs - clock_secs,
-                    d.stop_secs - clock_secs,
+                    d.span.start_secs - clock_secs,
+                    d.span.stop_secs - clock_secs,
                     d.score,
                 )
             };
@@ -85,7 +85,8 @@ fn report_faults<'a>(
     poses: &'a [Timed],
 ) -> impl Iterator<Item = String> + 'a {
     let ordered = |w: &[Detection]| {
-        w[0].reported_secs <= w[1].reported_secs && w[0].stop_secs <= w[1].start_secs + 1e-9
+        w[0].reported_secs <= w[1].reported_secs
+            && w[0].span.stop_secs <= w[1].span.start_secs + 1e-9
     };
     let disorder = (!found.windows(2).all(ordered)).then(|| "out of order".to_owned());
     let late = found.iter().filter_map(|d| {
@@ -100,12 +101,12 @@ fn report_faults<'a>(
         }
         let between = poses
             .iter()
-            .filter(|p| p.0 > d.stop_secs + 0.2 && p.0 < d.reported_secs)
+            .filter(|p| p.0 > d.span.stop_secs + 0.2 && p.0 < d.reported_secs)
             .count();
         (between > 2).then(|| {
             format!(
                 "reported {:.3} s after its end",
-                d.reported_secs - d.stop_secs
+                d.reported_secs - d.span.stop_secs
             )
         })
     });

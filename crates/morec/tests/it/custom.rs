@@ -89,11 +89,11 @@ fn a_custom_skeleton_is_taught_and_recognised() {
     );
     let found = found.unwrap();
     let right = |label: &&Sample| {
-        let middle = (label.start_secs + label.stop_secs) / 2.0;
+        let middle = label.span.middle_secs();
         let class = |d: &morec::live::Detection| &model.classes[d.class.index()].name;
         let mut there = found
             .iter()
-            .filter(|d| d.start_secs < middle && middle < d.stop_secs);
+            .filter(|d| d.span.start_secs < middle && middle < d.span.stop_secs);
         there.next().is_some_and(|d| *class(d) == label.class) && there.next().is_none()
     };
     let count = labels.iter().filter(right).count();

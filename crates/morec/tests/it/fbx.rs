@@ -178,14 +178,7 @@ fn fbx_and_bvh_of_one_motion_give_the_same_detections() {
         assert_eq!(found.len(), expected.len(), "{up} {unit}");
         for (found, expected) in found.iter().zip(&expected) {
             assert_eq!(found.class, expected.class, "{up} {unit}");
-            assert!(
-                (found.start_secs - expected.start_secs).abs() < 0.05,
-                "{up} {unit}"
-            );
-            assert!(
-                (found.stop_secs - expected.stop_secs).abs() < 0.05,
-                "{up} {unit}"
-            );
+            assert!(found.span.is_near(expected.span, 0.05), "{up} {unit}");
         }
     }
 }

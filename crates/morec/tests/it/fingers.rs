@@ -11,6 +11,8 @@ use morec::synth::{Person, Script};
 use morec::train::{LabelSet, StreamKind, TrainClip, TrainOptions, train_clips};
 use std::sync::Arc;
 
+use morec::TimeSpan;
+
 const FINGERS: [&str; 5] = ["Thumb", "Index", "Middle", "Ring", "Pinky"];
 /// When a fist is made, seconds.
 const FISTS: [f64; 4] = [3.0, 6.5, 9.0, 12.5];
@@ -90,8 +92,7 @@ fn trained(bones: BoneSet) -> Model {
             FISTS.map(|start_secs| Sample {
                 clip: clip.name.clone(),
                 class: "fist".to_owned(),
-                start_secs,
-                stop_secs: start_secs + FIST_SECS,
+                span: TimeSpan::new(start_secs, start_secs + FIST_SECS),
                 whole_clip: false,
                 person: None,
                 line: 2,
@@ -118,9 +119,7 @@ fn fists_of_a_body_are_recognised_where_fingers_count() {
     assert!(!stranger.roles.played().any(|(role, _)| role.is_of_hand()));
     let model = trained(BoneSet::HANDS);
     let found = recognize_clip(&model, &stranger.clip, &stranger.roles, &stranger.rest).unwrap();
-    let middles: Vec<f64> = (found.iter())
-        .map(|d| 0.5 * (d.start_secs + d.stop_secs))
-        .collect();
+    let middles: Vec<f64> = (found.iter()).map(|d| d.span.middle_secs()).collect();
     assert_eq!(found.len(), FISTS.len(), "{middles:?}");
     for (middle, start) in middles.iter().zip(FISTS) {
         assert!(

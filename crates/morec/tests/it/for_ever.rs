@@ -51,7 +51,7 @@ fn recognised(index: &MotionIndex) -> Found {
     let name = |class| index.model.class_name(class).to_owned();
     found
         .iter()
-        .map(|d| (name(d.class), d.start_secs, d.stop_secs, d.score))
+        .map(|d| (name(d.class), d.span.start_secs, d.span.stop_secs, d.score))
         .collect()
 }
 

@@ -1,5 +1,6 @@
 //! Hands that are made here: signs that are held, gestures, another performer, the other hand.
 
+use morec::TimeSpan;
 use morec::clip::{Clip, Points};
 use morec::features::Hand;
 use morec::import::Take;
@@ -143,8 +144,7 @@ impl Filming {
         let sample = |(class, start_secs, stop_secs): (&str, f64, f64)| Sample {
             clip: name.to_owned(),
             class: class.to_owned(),
-            start_secs,
-            stop_secs,
+            span: TimeSpan::new(start_secs, stop_secs),
             whole_clip: false,
             person: None,
             line: 2,
@@ -201,7 +201,7 @@ fn taught() -> MotionIndex {
 fn events(model: &Model, take: &Take) -> Vec<String> {
     let found = recognize_clip(model, &take.clip, &take.roles, &(0..0)).unwrap();
     let mut found: Vec<_> = found.into_iter().collect();
-    found.sort_by(|a, b| a.start_secs.total_cmp(&b.start_secs));
+    found.sort_by(|a, b| a.span.start_secs.total_cmp(&b.span.start_secs));
     let name = |class| model.class_name(class).to_owned();
     found.into_iter().map(|d| name(d.class)).collect()
 }

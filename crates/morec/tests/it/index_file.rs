@@ -175,7 +175,7 @@ fn recognised(index: &MotionIndex) -> Vec<(String, f64, f64, f64)> {
     let name = |d: &morec::live::Detection| index.model.class_name(d.class).to_owned();
     found
         .iter()
-        .map(|d| (name(d), d.start_secs, d.stop_secs, d.score))
+        .map(|d| (name(d), d.span.start_secs, d.span.stop_secs, d.score))
         .collect()
 }
 

@@ -7,9 +7,10 @@ use std::collections::BTreeMap;
 
 use morec::eval::{ClipDetection, Evaluation, GroundTruth, StreamInfo};
 use morec::import::Take;
+use morec::labels::Mark;
 use morec::live::{Model, recognize_poses};
 use morec::perturb::{Device, perturb};
-use morec::synth::{DatabaseSpec, SyntheticLabel, database, living_room};
+use morec::synth::{DatabaseSpec, database, living_room};
 use morec::train::{LabelSet, StreamKind, TrainClip, TrainOptions, train_clips};
 
 const CLASSES: [&str; 5] = ["wave", "raise_hands", "point_side", "push", "bow"];
@@ -62,10 +63,9 @@ fn trained() -> Model {
 }
 
 /// True if the middle of a detection lies in one of `idle`.
-fn is_idle(found: &ClipDetection, idle: &[SyntheticLabel]) -> bool {
-    let middle = (found.start_secs + found.stop_secs) / 2.0;
-    idle.iter()
-        .any(|i| (i.start_secs..i.stop_secs).contains(&middle))
+fn is_idle(found: &ClipDetection, idle: &[Mark<&str>]) -> bool {
+    let middle = found.span.middle_secs();
+    idle.iter().any(|idle| idle.span.contains(middle))
 }
 
 fn measured(model: &Model, device: Device) -> Figures {
@@ -79,28 +79,19 @@ fn measured(model: &Model, device: Device) -> Figures {
         let found = recognize_poses(model, &seen.poses).unwrap();
         let found: Vec<ClipDetection> = found
             .iter()
-            .map(|d| ClipDetection {
-                clip: clip.name.clone(),
-                class: model.class_name(d.class).to_owned(),
-                start_secs: d.start_secs,
-                stop_secs: d.stop_secs,
-                score: Some(d.score),
-                reported_secs: Some(d.reported_secs),
-                repetitions: d.repetitions.map(|r| r.count),
-            })
+            .map(|d| ClipDetection::new(&clip.name, d.named(model)))
             .collect();
         alarms += found.iter().filter(|f| is_idle(f, &room.idle)).count();
         idle_secs += room
             .idle
             .iter()
-            .map(|i| i.stop_secs - i.start_secs)
+            .map(|i| i.span.duration_secs())
             .sum::<f64>();
         founds.extend(found);
         truths.extend(room.take.labels.iter().map(|label| GroundTruth {
             clip: clip.name.clone(),
             class: label.class.to_owned(),
-            start_secs: label.start_secs,
-            stop_secs: label.stop_secs,
+            span: label.span,
         }));
         infos.push(StreamInfo {
             clip: clip.name.clone(),

@@ -104,11 +104,9 @@ pub fn activity_model() -> TemplateModel {
     let takes = [waving(1), waving(2)];
     let goes_on = |take: &SyntheticTake| {
         let waves: Vec<Sample> = take.samples().collect();
-        let stop_secs = waves.last().unwrap().stop_secs;
-        Sample {
-            stop_secs,
-            ..waves[0].clone()
-        }
+        let mut all = waves[0].clone();
+        all.span.stop_secs = waves.last().unwrap().span.stop_secs;
+        all
     };
     let samples = takes.each_ref().map(goes_on);
     let clips = takes.map(|t| train_clip(t.clip, Some(t.person), StreamKind::Labelled));

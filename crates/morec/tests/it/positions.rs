@@ -79,14 +79,7 @@ fn the_same_motion_as_points_is_recognised_alike() {
         assert_eq!(found.len(), expected.len(), "{name}");
         for (found, expected) in found.iter().zip(&expected) {
             assert_eq!(found.class, expected.class, "{name}");
-            assert!(
-                (found.start_secs - expected.start_secs).abs() < 0.05,
-                "{name}"
-            );
-            assert!(
-                (found.stop_secs - expected.stop_secs).abs() < 0.05,
-                "{name}"
-            );
+            assert!(found.span.is_near(expected.span, 0.05), "{name}");
         }
     }
 }
@@ -109,7 +102,7 @@ fn parts_that_were_announced_and_are_never_seen_are_left_out() {
         let (mut frame, mut made, mut found) = (Frame::default(), Vec::new(), Vec::new());
         let mut take_event = |event: morec::live::Event| {
             if event.phase == Phase::End {
-                found.push((event.class, event.stop_secs));
+                found.push((event.class, event.span.stop_secs));
             }
         };
         for_each_pose(

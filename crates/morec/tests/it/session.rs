@@ -191,7 +191,10 @@ fn an_activity_is_heard_of_every_second_and_its_repetitions_are_counted() {
     assert_eq!(told[0].phase, Phase::Start);
     for pair in told.windows(2) {
         let (last, next) = (pair[0], pair[1]);
-        assert!(next.stop_secs - last.stop_secs < 1.1, "{last:?}, {next:?}");
+        assert!(
+            next.span.stop_secs - last.span.stop_secs < 1.1,
+            "{last:?}, {next:?}"
+        );
         let count = |e: &Event| e.repetitions.map_or(0, |r| r.count);
         assert!(count(next) >= count(last), "{last:?}, {next:?}");
     }
@@ -209,7 +212,7 @@ fn an_activity_is_heard_of_every_second_and_its_repetitions_are_counted() {
     assert_eq!(repetitions.len(), repeated.count as usize);
     assert!(repetitions.iter().all(|e| e.phase == Phase::Repetition));
     for pair in repetitions.windows(2) {
-        assert!((pair[0].stop_secs - pair[1].start_secs).abs() < 1e-9);
+        assert!((pair[0].span.stop_secs - pair[1].span.start_secs).abs() < 1e-9);
     }
 }
 

@@ -96,7 +96,7 @@ fn scores_of_strangers_have_a_meaning_of_their_own_and_older_indexes_keep_theirs
     let teacher = PerformerKind::Teacher;
     assert_eq!(found(&model, teacher), found(&older, teacher));
     let [new, old] = [&model, &older].map(|model| found(model, PerformerKind::Anyone));
-    let when = |d: &Detection| (d.class, d.start_secs, d.stop_secs);
+    let when = |d: &Detection| (d.class, d.span.start_secs, d.span.stop_secs);
     assert!(new.iter().map(when).eq(old.iter().map(when)));
     assert!(
         new.iter()

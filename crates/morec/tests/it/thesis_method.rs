@@ -95,18 +95,15 @@ fn both_settings_come_back_from_their_file_and_recognise_what_they_learned() {
                 .iter()
                 .filter(|label| {
                     found.iter().any(|d| {
-                        let common =
-                            d.stop_secs.min(label.stop_secs) - d.start_secs.max(label.start_secs);
-                        let shorter =
-                            (d.stop_secs - d.start_secs).min(label.stop_secs - label.start_secs);
-                        read.model.class_name(d.class) == label.class && common > 0.5 * shorter
+                        read.model.class_name(d.class) == label.class
+                            && d.span.overlap_share(label.span) > 0.5
                     })
                 })
                 .count();
             assert!(
                 found
                     .iter()
-                    .all(|d| d.reported_secs >= d.stop_secs && d.stop_secs > d.start_secs)
+                    .all(|d| d.reported_secs >= d.span.stop_secs && d.span.is_stretch())
             );
         }
         assert!(

@@ -8,6 +8,7 @@ use std::path::Path;
 
 use crate::sources;
 use modules::Modules;
+pub use modules::is_test;
 use uses::{Uses, uses};
 
 /// `lib.rs`, `main.rs` and `mod.rs` are the module of their folder, every other file one of its own name.

@@ -130,11 +130,11 @@ proptest! {
         for curve in compressed.curves() {
             let beziers: Vec<_> = compressed.beziers(curve).collect();
             prop_assert_eq!(beziers.len() + 1, curve.keyframes());
-            let joined = |w: &[Bezier]| w[0].stop_secs == w[1].start_secs && w[0].points[3] == w[1].points[0];
+            let joined = |w: &[Bezier]| w[0].span.stop_secs == w[1].span.start_secs && w[0].points[3] == w[1].points[0];
             prop_assert!(beziers.windows(2).all(joined));
             if let (Some(first), Some(last)) = (beziers.first(), beziers.last()) {
-                prop_assert_eq!(first.start_secs, 0.0);
-                prop_assert_eq!(last.stop_secs, (clip.frames - 1) as f64 / clip.rate_hz);
+                prop_assert_eq!(first.span.start_secs, 0.0);
+                prop_assert_eq!(last.span.stop_secs, (clip.frames - 1) as f64 / clip.rate_hz);
             }
         }
     }

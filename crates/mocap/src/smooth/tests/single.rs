@@ -45,7 +45,7 @@ fn splits_fall_where_the_motion_breaks() {
     let curve = compressed.curve(0, ChannelKind::Position).unwrap();
     let keys: Vec<f64> = compressed
         .beziers(curve)
-        .map(|bezier| bezier.start_secs)
+        .map(|bezier| bezier.span.start_secs)
         .collect();
     assert_eq!(keys, [0.0, 0.5]);
 }

@@ -57,7 +57,8 @@ fn print(cuts: &[ClipCuts]) -> Result<()> {
             cut.still
                 .iter()
                 .filter(|s| s.kind == kind)
-                .fold(0.0, |sum, s| sum + s.stop_secs - s.start_secs)
+                .map(|s| s.span.duration_secs())
+                .sum()
         };
         let mut at: Vec<String> = cut
             .cuts_secs

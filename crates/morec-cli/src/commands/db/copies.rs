@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
 use anyhow::Result;
+use morec::TimeSpan;
 use morec_db::search::{NearCopy, SearchIndex, near_duplicates, near_duplicates_of};
 use morec_db::{ClipFilter, ClipId, MotionDb};
 use serde::Serialize;
@@ -15,8 +16,8 @@ use crate::progress::StageBar;
 pub struct Copy {
     of: String,
     copy: String,
-    start_secs: f64,
-    stop_secs: f64,
+    #[serde(flatten)]
+    span: TimeSpan,
     mirrored: bool,
     distance: f32,
 }
@@ -28,7 +29,7 @@ impl fmt::Display for Copy {
         } else {
             "a near copy of"
         };
-        let (start, stop) = (self.start_secs, self.stop_secs);
+        let (start, stop) = (self.span.start_secs, self.span.stop_secs);
         let (copy, of, distance) = (&self.copy, &self.of, self.distance);
         write!(
             out,
@@ -62,8 +63,7 @@ pub fn find(
     let copy = |c: NearCopy| Copy {
         of: name(c.of),
         copy: name(c.copy),
-        start_secs: c.start_secs,
-        stop_secs: c.stop_secs,
+        span: c.span,
         mirrored: c.mirrored,
         distance: c.distance,
     };

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Result;
+use morec::TimeSpan;
 use morec::features::FeatureParams;
 use morec::segment::{CycleParams, Cycles, cycles};
 use morec_db::labels::{NewSample, SampleFilter, SampleId, SampleState};
@@ -58,8 +59,8 @@ struct Counted {
     clip: String,
     #[serde(skip_serializing_if = "Option::is_none")]
     class: Option<String>,
-    start_secs: f64,
-    stop_secs: f64,
+    #[serde(flatten)]
+    span: TimeSpan,
     /// Number of labels that the stretch was put together from.
     labels: usize,
     cycles: Option<Cycles>,
@@ -87,10 +88,13 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         let Some(rows) = rows.get(&stretch.id) else {
             continue;
         };
-        let tick = |secs: f64| ((secs * params.tick_hz()).round() as usize).min(rows.len());
-        let span = tick(stretch.start_secs)..tick(stretch.stop_secs);
-        if !span.is_empty() {
-            stretch.cycles = cycles(&rows.slice(span), params.tick_hz(), &CycleParams::default());
+        let ticks = (stretch.span).frames_among(rows.len(), params.tick_hz());
+        if !ticks.is_empty() {
+            stretch.cycles = cycles(
+                &rows.slice(ticks),
+                params.tick_hz(),
+                &CycleParams::default(),
+            );
         }
     }
     if args.split {
@@ -110,12 +114,11 @@ fn stretches(db: &MotionDb, args: &Args) -> Result<Vec<Counted>> {
         ..ClipFilter::default()
     })?;
     let names: BTreeMap<ClipId, &str> = clips.iter().map(|c| (c.id, c.name.as_str())).collect();
-    let stretch = |id: ClipId, start_secs, stop_secs| {
+    let stretch = |id: ClipId, span| {
         Some(Counted {
             clip: (*names.get(&id)?).to_owned(),
             class: None,
-            start_secs,
-            stop_secs,
+            span,
             labels: 0,
             cycles: None,
             samples: Vec::new(),
@@ -125,16 +128,14 @@ fn stretches(db: &MotionDb, args: &Args) -> Result<Vec<Counted>> {
     Ok(match args.of {
         CycledSpans::Clips => clips
             .iter()
-            .filter_map(|c| stretch(c.id, 0.0, c.duration_secs()))
+            .filter_map(|c| stretch(c.id, TimeSpan::new(0.0, c.duration_secs())))
             .collect(),
         CycledSpans::Cuts => {
             let segments = db.segments()?;
             let moving = segments
                 .iter()
                 .filter(|s| s.kind == morec_db::SegmentKind::Motion);
-            moving
-                .filter_map(|s| stretch(s.clip, s.start_secs, s.stop_secs))
-                .collect()
+            moving.filter_map(|s| stretch(s.clip, s.span)).collect()
         }
         CycledSpans::Labels => {
             let filter = SampleFilter {
@@ -147,16 +148,14 @@ fn stretches(db: &MotionDb, args: &Args) -> Result<Vec<Counted>> {
                 let follows = |c: &&mut Counted| {
                     c.id == sample.clip
                         && c.class.as_deref() == Some(&sample.class)
-                        && (c.stop_secs - sample.start_secs).abs() < 1.5 / sample.rate_hz
+                        && (c.span.stop_secs - sample.start_secs).abs() < 1.5 / sample.rate_hz
                         && !args.split
                 };
                 if let Some(last) = found.iter_mut().rev().find(follows) {
-                    last.stop_secs = sample.stop_secs;
+                    last.span.stop_secs = sample.stop_secs;
                     last.labels += 1;
                     last.samples.push(sample.id);
-                } else if let Some(mut new) =
-                    stretch(sample.clip, sample.start_secs, sample.stop_secs)
-                {
+                } else if let Some(mut new) = stretch(sample.clip, sample.span()) {
                     (new.class, new.labels, new.samples) = (Some(sample.class), 1, vec![sample.id]);
                     found.push(new);
                 }
@@ -177,15 +176,12 @@ fn split(db: &mut MotionDb, found: &[Counted]) -> Result<()> {
             continue;
         }
         old.extend(&stretch.samples);
-        for pair in cycles
-            .bounds(stretch.stop_secs - stretch.start_secs)
-            .windows(2)
-        {
+        for pair in cycles.bounds(stretch.span.duration_secs()).windows(2) {
             new.push(NewSample {
                 clip: stretch.id,
                 class: class.clone(),
-                start_secs: stretch.start_secs + pair[0],
-                stop_secs: stretch.start_secs + pair[1],
+                start_secs: stretch.span.start_secs + pair[0],
+                stop_secs: stretch.span.start_secs + pair[1],
                 whole_clip: false,
                 state: SampleState::Accepted,
                 score: None,
@@ -209,8 +205,8 @@ fn print(found: &[Counted]) -> Result<()> {
         table.row([
             c.clip.clone(),
             c.class.clone().unwrap_or_default(),
-            format!("{:.2}", c.start_secs),
-            format!("{:.2}", c.stop_secs),
+            format!("{:.2}", c.span.start_secs),
+            format!("{:.2}", c.span.stop_secs),
             if c.labels > 0 {
                 c.labels.to_string()
             } else {

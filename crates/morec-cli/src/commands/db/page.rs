@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use anyhow::{Context, Result};
-use morec::player::{Mark, PlayedClip, Reel};
+use morec::TimeSpan;
+use morec::player::{PlayedClip, Reel};
 use morec_db::{ClipId, MotionDb, StoredClip};
 
 use super::strip::strip;
@@ -75,35 +76,28 @@ impl Page {
         &mut self,
         db: &MotionDb,
         clip: ClipId,
-        start_secs: f64,
-        stop_secs: f64,
+        span: TimeSpan,
         caption: &str,
     ) -> Result<()> {
         let stored = match self.last.take() {
             Some((id, stored)) if id == clip => stored,
             _ => db.clip(clip)?,
         };
-        self.figure_of(&stored, start_secs, stop_secs, caption);
+        self.figure_of(&stored, span, caption);
         self.last = Some((clip, stored));
         Ok(())
     }
 
     /// A stretch of any clip.
-    pub fn figure_of(
-        &mut self,
-        stored: &StoredClip,
-        start_secs: f64,
-        stop_secs: f64,
-        caption: &str,
-    ) {
-        let svg = strip(stored, start_secs, stop_secs, POSES);
+    pub fn figure_of(&mut self, stored: &StoredClip, span: TimeSpan, caption: &str) {
+        let svg = strip(stored, span, POSES);
         let moves = match self.reel.bytes() < MOST_BYTES {
             true => {
                 let played = PlayedClip {
                     clip: &stored.clip,
                     roles: &stored.roles,
-                    secs: Some(start_secs..stop_secs),
-                    labels: Vec::<Mark>::new(),
+                    span: Some(span),
+                    labels: Vec::new(),
                     detections: Vec::new(),
                 };
                 let number = self.reel.add(&played, FRAMES);

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Result;
+use morec::TimeSpan;
 use morec_db::labels::{SampleFilter, SampleId, SampleState};
 use morec_db::{ClipFilter, ClipId, MotionDb, Proposal, ProposeOptions, most_informative};
 use serde::Serialize;
@@ -128,8 +129,7 @@ fn list(args: &Args, db: &MotionDb) -> Result<ExitCode> {
         .map(|s| Proposal {
             clip: s.clip,
             class: s.class,
-            start_secs: s.start_secs,
-            stop_secs: s.stop_secs,
+            span: TimeSpan::new(s.start_secs, s.stop_secs),
             whole_clip: s.whole_clip,
             score: s.score.unwrap_or(0.0) as f32,
         })
@@ -174,8 +174,8 @@ fn show(args: &Args, db: &MotionDb, mut proposals: Vec<Proposal>) -> Result<Exit
         table.row([
             name.clone(),
             p.class.clone(),
-            secs(p.start_secs),
-            secs(p.stop_secs),
+            secs(p.span.start_secs),
+            secs(p.span.stop_secs),
             format!("{:.2}", p.score),
         ]);
     }

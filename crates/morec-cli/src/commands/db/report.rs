@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Result;
+use morec::TimeSpan;
 use morec_db::labels::{DbSample, SampleFilter, SampleState};
 use morec_db::{ClipFilter, ClipInfo, MotionDb, SegmentKind};
 
@@ -94,19 +95,12 @@ fn classes(page: &mut Page, db: &MotionDb, limit: usize) -> Result<()> {
                 } else {
                     String::new()
                 };
-                let caption = format!(
-                    "{} {:.2}–{:.2} s{state}",
-                    s.clip_name, s.start_secs, s.stop_secs
-                );
-                page.figure(db, s.clip, s.start_secs, s.stop_secs, &caption)?;
+                let caption = format!("{} {:.2}{state}", s.clip_name, s.span());
+                page.figure(db, s.clip, s.span(), &caption)?;
             }
             if !rest.is_empty() {
-                let item = |s: &DbSample| {
-                    format!(
-                        "{} {:.2}–{:.2} s, number {}",
-                        s.clip_name, s.start_secs, s.stop_secs, s.id.0
-                    )
-                };
+                let item =
+                    |s: &DbSample| format!("{} {:.2}, number {}", s.clip_name, s.span(), s.id.0);
                 let items: Vec<String> = rest.iter().map(item).collect();
                 let summary = format!("{} more {} samples", rest.len(), state.name());
                 page.folded(&summary, &items);
@@ -129,8 +123,7 @@ fn clips(page: &mut Page, db: &MotionDb, args: &Args) -> Result<()> {
         page.figure(
             db,
             clip.id,
-            0.0,
-            secs,
+            TimeSpan::new(0.0, secs),
             &format!("{} {secs:.1} s", clip.name),
         )?;
         let of_clip: Vec<_> = segments
@@ -139,14 +132,8 @@ fn clips(page: &mut Page, db: &MotionDb, args: &Args) -> Result<()> {
             .collect();
         if of_clip.len() > 1 {
             for (number, s) in of_clip.iter().enumerate() {
-                let caption = format!(
-                    "{} cut {}: {:.1}–{:.1} s",
-                    clip.name,
-                    number + 1,
-                    s.start_secs,
-                    s.stop_secs
-                );
-                page.figure(db, clip.id, s.start_secs, s.stop_secs, &caption)?;
+                let caption = format!("{} cut {}: {:.1}", clip.name, number + 1, s.span);
+                page.figure(db, clip.id, s.span, &caption)?;
             }
             page.new_line();
         }

@@ -6,6 +6,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
+use morec::TimeSpan;
 use morec::features::{FeatureParams, rows_of_clip};
 use morec::import::ImportOptions;
 use morec_db::labels::{SampleFilter, SampleState};
@@ -190,7 +191,7 @@ fn example(db: &MotionDb, index: &SearchIndex, args: &Args) -> Result<(Example, 
     if let Ok(clip) = db.find_clip(&args.example) {
         let stop = args.stop.unwrap_or(clip.duration_secs());
         let example = index
-            .example(clip.id, args.start, stop)
+            .example(clip.id, args.start..stop)
             .with_context(short)?;
         return Ok((example, Shown::Kept(Box::new(clip))));
     }
@@ -238,18 +239,17 @@ fn report(
         Shown::Kept(clip) => clip.duration_secs(),
         Shown::File(stored) => stored.clip.duration_secs(),
     };
-    let (start, stop) = (args.start, args.stop.unwrap_or(end));
-    let caption = format!("{} {start:.2}–{stop:.2} s", args.example);
+    let span = TimeSpan::new(args.start, args.stop.unwrap_or(end));
+    let caption = format!("{} {span:.2}", args.example);
     match example {
-        Shown::Kept(clip) => page.figure(db, clip.id, start, stop, &caption)?,
-        Shown::File(stored) => page.figure_of(stored, start, stop, &caption),
+        Shown::Kept(clip) => page.figure(db, clip.id, span, &caption)?,
+        Shown::File(stored) => page.figure_of(stored, span, &caption),
     }
     page.heading("Found");
     for NamedHit { name, hit } in &found.hits {
         let mirrored = if hit.mirrored { ", mirrored" } else { "" };
-        let span = format!("{:.2}–{:.2} s", hit.start_secs, hit.stop_secs);
-        let caption = format!("{name} {span}, score {:.3}{mirrored}", hit.score);
-        page.figure(db, hit.clip, hit.start_secs, hit.stop_secs, &caption)?;
+        let caption = format!("{name} {:.2}, score {:.3}{mirrored}", hit.span, hit.score);
+        page.figure(db, hit.clip, hit.span, &caption)?;
     }
     let head = format!("{} hits in {}", found.hits.len(), args.db.display());
     page.write(path, &format!("Like {}", args.example), &head)
@@ -262,8 +262,8 @@ fn print(found: &SearchResult, tick_hz: f64) -> Result<()> {
         let hit = &named.hit;
         table.row([
             named.name.clone(),
-            format!("{:.2}", hit.start_secs),
-            format!("{:.2}", hit.stop_secs),
+            format!("{:.2}", hit.span.start_secs),
+            format!("{:.2}", hit.span.stop_secs),
             format!("{:.3}", hit.score),
             format!("{:.2}", hit.warp_distance),
             if hit.mirrored {

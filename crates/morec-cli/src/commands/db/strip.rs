@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use morec::TimeSpan;
 use morec::clip::Clip;
 use morec::features::{Hand, Profile};
 use morec::kinematics::WorldPose;
@@ -16,15 +17,11 @@ const WIDTH: f64 = 52.0;
 
 /// `poses` stick figures evenly over a stretch, each seen from its own three-quarter front; left limbs and right limbs in
 /// two colours.
-pub fn strip(stored: &StoredClip, start_secs: f64, stop_secs: f64, poses: usize) -> String {
+pub fn strip(stored: &StoredClip, span: TimeSpan, poses: usize) -> String {
     let clip = &stored.clip;
-    let frame = |secs: f64| {
-        ((secs * clip.rate_hz).round().max(0.0) as usize).min(clip.frames.saturating_sub(1))
-    };
-    let (first, last) = (
-        frame(start_secs).max(stored.rest.end.min(clip.frames.saturating_sub(1))),
-        frame(stop_secs),
-    );
+    let end = clip.frames.saturating_sub(1);
+    let frames = span.frames_among(end, clip.rate_hz);
+    let (first, last) = (frames.start.max(stored.rest.end.min(end)), frames.end);
     let mut figures = String::new();
     let mut extent = PictureBounds {
         left: 0.0,
@@ -216,13 +213,13 @@ mod tests {
             joint: hand,
             positions: positions.collect(),
         });
-        let (start, stop) = (0.0, clip.duration_secs());
+        let span = TimeSpan::new(0.0, clip.duration_secs());
         let stored = StoredClip {
             clip,
             roles,
             rest: 0..0,
         };
-        let svg = strip(&stored, start, stop, 8);
+        let svg = strip(&stored, span, 8);
         let quoted = |name: &str| svg.split_once(&format!("{name}=\"")).unwrap().1.to_owned();
         let numbers = |text: &str| -> Vec<f64> {
             let words = text.split(|c: char| !(c.is_ascii_digit() || "-.".contains(c)));

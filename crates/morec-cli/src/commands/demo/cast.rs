@@ -163,7 +163,7 @@ fn labels(takes: &[SyntheticTake]) -> String {
     let mut text = "clip\tclass\tstart\tstop\n".to_owned();
     for take in takes {
         for label in &take.labels {
-            let span = label.span(take.clip.rate_hz);
+            let span = label.span.frames(take.clip.rate_hz);
             _ = writeln!(
                 text,
                 "{}\t{}\t{}\t{}",

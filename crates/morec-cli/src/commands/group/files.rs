@@ -88,14 +88,10 @@ fn items(
     let bones = shown.reduce(BoneSet::and).unwrap_or(BoneSet::NONE);
     let item = |sample: GroupedSample| {
         let clip = clips.get(&sample.clip)?;
-        let tick = |secs: f64| ((secs * params.tick_hz()).round() as usize).min(clip.rows.len());
-        let span = tick(sample.start_secs)..tick(sample.stop_secs);
-        let rows = (!span.is_empty()).then(|| only(&clip.rows.slice(span), clip.bones, bones))?;
+        let ticks = (sample.span).frames_among(clip.rows.len(), params.tick_hz());
+        let rows = (!ticks.is_empty()).then(|| only(&clip.rows.slice(ticks), clip.bones, bones))?;
         Some(GroupMember {
-            clip: sample.clip,
-            start_secs: sample.start_secs,
-            stop_secs: sample.stop_secs,
-            class: sample.class,
+            sample,
             id: None,
             rows,
         })

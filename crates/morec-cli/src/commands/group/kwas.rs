@@ -154,16 +154,15 @@ fn spectra(
     let (mut kept, mut spectra) = (Vec::new(), Vec::new());
     for sample in samples {
         let rows: &Rows = &clips.get(&sample.clip).context("a sample of no clip")?.rows;
-        let row = |secs: f64| ((secs * rate_hz).round() as usize).min(rows.len());
-        let (start, stop) = (row(sample.start_secs), row(sample.stop_secs));
-        if start >= stop {
+        let of_sample = sample.span.frames_among(rows.len(), rate_hz);
+        if of_sample.is_empty() {
             eprintln!(
                 "morec: {}: a sample at {:.2} s holds no pose",
-                sample.clip, sample.start_secs
+                sample.clip, sample.span.start_secs
             );
             continue;
         }
-        let rows = rows.slice(start..stop);
+        let rows = rows.slice(of_sample);
         spectra.push(Spectrum::of_rows(
             &pca.map_or_else(|| rows.clone(), |pca| pca.project(&rows)),
         ));
@@ -239,7 +238,7 @@ fn contents(cluster: &[GroupedSample]) -> String {
             Some(class) => *classes.entry(class).or_default() += 1,
             None => parts.push(format!(
                 "{} {:.2}-{:.2} s",
-                sample.clip, sample.start_secs, sample.stop_secs
+                sample.clip, sample.span.start_secs, sample.span.stop_secs
             )),
         }
     }

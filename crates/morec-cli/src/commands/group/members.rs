@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use anyhow::{Result, bail};
+use morec::TimeSpan;
 use morec::cluster::{
     AffinityParams, Clusters, Hierarchy, KwasParams, PairCounts, Spectrum, adjusted_rand_index,
     affinity_propagation, kwas_clusters, resampled, squared_distance,
@@ -23,8 +24,8 @@ use crate::table::TextTable;
 #[derive(Debug, Clone, Serialize)]
 pub struct GroupedSample {
     pub clip: String,
-    pub start_secs: f64,
-    pub stop_secs: f64,
+    #[serde(flatten)]
+    pub span: TimeSpan,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub class: Option<String>,
 }
@@ -42,8 +43,7 @@ impl GroupedSample {
             .chain([end_secs])
             .map(move |stop_secs| Self {
                 clip: clip.to_owned(),
-                start_secs: std::mem::replace(&mut start_secs, stop_secs),
-                stop_secs,
+                span: TimeSpan::new(std::mem::replace(&mut start_secs, stop_secs), stop_secs),
                 class: None,
             })
     }
@@ -52,11 +52,8 @@ impl GroupedSample {
 /// A stretch to group, with its rows.
 #[derive(Serialize, Clone)]
 pub struct GroupMember {
-    pub clip: String,
-    pub start_secs: f64,
-    pub stop_secs: f64,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub class: Option<String>,
+    #[serde(flatten)]
+    pub sample: GroupedSample,
     /// Its clip in the database, if it is in one.
     #[serde(skip)]
     pub id: Option<ClipId>,
@@ -87,10 +84,11 @@ impl GroupList {
             adjusted_rand_index: None,
         };
         if has_classes {
-            let names: BTreeSet<Option<&str>> = items.iter().map(|i| i.class.as_deref()).collect();
+            let names: BTreeSet<Option<&str>> =
+                items.iter().map(|i| i.sample.class.as_deref()).collect();
             let classes: Vec<usize> = items
                 .iter()
-                .map(|i| names.range(..i.class.as_deref()).count())
+                .map(|i| names.range(..i.sample.class.as_deref()).count())
                 .collect();
             groups.rand_index = Some(PairCounts::count(&classes, &clusters.of).rand_index());
             groups.adjusted_rand_index = Some(adjusted_rand_index(&classes, &clusters.of));
@@ -182,8 +180,7 @@ pub fn labelled(
         .filter(|s| wanted(&s.class))
         .map(|s| GroupedSample {
             clip: s.clip,
-            start_secs: s.start_secs,
-            stop_secs: s.stop_secs,
+            span: s.span,
             class: Some(s.class),
         })
         .collect();
@@ -202,11 +199,12 @@ fn print(grouped: &GroupList) -> Result<()> {
         let mut classes: BTreeMap<&str, usize> = BTreeMap::new();
         let mut what = Vec::new();
         for item in group {
-            match &item.class {
+            match &item.sample.class {
                 Some(class) => *classes.entry(class).or_default() += 1,
-                None if what.len() < SHOWN => {
-                    what.push(format!("{} {:.1}", item.clip, item.start_secs))
-                }
+                None if what.len() < SHOWN => what.push(format!(
+                    "{} {:.1}",
+                    item.sample.clip, item.sample.span.start_secs
+                )),
                 None => {}
             }
         }

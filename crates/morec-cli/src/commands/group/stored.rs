@@ -5,11 +5,13 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use anyhow::{Result, bail};
+use morec::TimeSpan;
 use morec::features::{BoneSet, FeatureParams};
 use morec_db::labels::{GROUPED_BY, NewSample, SampleFilter, SampleState};
 use morec_db::{ClipFilter, ClipId, MotionDb, SegmentKind};
 
 use super::args::{Args, Grouping};
+use super::members::GroupedSample;
 use super::members::{GroupList, GroupMember, only};
 use crate::commands::db::page::{self, Page};
 use crate::database;
@@ -52,19 +54,17 @@ fn items(db: &MotionDb, of: Grouping, args: &Args) -> Result<Vec<GroupMember>> {
     let rows = db.rows_kept_if_writable(&params, &StageBar::stoppable()?)?;
     let clips = db.clips(&ClipFilter::default())?;
     let names: BTreeMap<ClipId, &str> = clips.iter().map(|c| (c.id, c.name.as_str())).collect();
-    let spans: Vec<(ClipId, f64, f64, Option<String>)> = match of {
+    let spans: Vec<(ClipId, TimeSpan, Option<String>)> = match of {
         Grouping::Clips => clips
             .iter()
-            .map(|c| (c.id, 0.0, c.duration_secs(), None))
+            .map(|c| (c.id, TimeSpan::new(0.0, c.duration_secs()), None))
             .collect(),
         Grouping::Cuts => {
             let moving = db
                 .segments()?
                 .into_iter()
                 .filter(|s| s.kind == SegmentKind::Motion);
-            moving
-                .map(|s| (s.clip, s.start_secs, s.stop_secs, None))
-                .collect()
+            moving.map(|s| (s.clip, s.span, None)).collect()
         }
         Grouping::Labels => {
             let samples = db.samples(&SampleFilter {
@@ -74,9 +74,7 @@ fn items(db: &MotionDb, of: Grouping, args: &Args) -> Result<Vec<GroupMember>> {
             let wanted = samples
                 .into_iter()
                 .filter(|s| args.classes.is_empty() || args.classes.contains(&s.class));
-            wanted
-                .map(|s| (s.clip, s.start_secs, s.stop_secs, Some(s.class)))
-                .collect()
+            wanted.map(|s| (s.clip, s.span(), Some(s.class))).collect()
         }
     };
     let rows: BTreeMap<ClipId, _> = rows.into_iter().map(|r| (r.clip, r)).collect();
@@ -87,16 +85,13 @@ fn items(db: &MotionDb, of: Grouping, args: &Args) -> Result<Vec<GroupMember>> {
         .map(|r| r.bones)
         .reduce(BoneSet::and);
     let bones = bones.unwrap_or(BoneSet::NONE);
-    let item = |(id, start_secs, stop_secs, class): (ClipId, f64, f64, Option<String>)| {
+    let item = |(id, span, class): (ClipId, TimeSpan, Option<String>)| {
         let of = rows.get(&id)?;
-        let tick = |secs: f64| ((secs * params.tick_hz()).round() as usize).min(of.rows.len());
-        let span = tick(start_secs)..tick(stop_secs);
-        let rows = (!span.is_empty()).then(|| only(&of.rows.slice(span), of.bones, bones))?;
+        let ticks = span.frames_among(of.rows.len(), params.tick_hz());
+        let rows = (!ticks.is_empty()).then(|| only(&of.rows.slice(ticks), of.bones, bones))?;
+        let clip = (*names.get(&id)?).to_owned();
         Some(GroupMember {
-            clip: (*names.get(&id)?).to_owned(),
-            start_secs,
-            stop_secs,
-            class,
+            sample: GroupedSample { clip, span, class },
             id: Some(id),
             rows,
         })
@@ -111,8 +106,8 @@ fn propose(db: &mut MotionDb, groups: &[Vec<GroupMember>], name: &str) -> Result
         samples.extend(kept.map(|(clip, item)| NewSample {
             clip,
             class: format!("{name}_{}", number + 1),
-            start_secs: item.start_secs,
-            stop_secs: item.stop_secs,
+            start_secs: item.sample.span.start_secs,
+            stop_secs: item.sample.span.stop_secs,
             whole_clip: false,
             state: SampleState::Proposed,
             score: None,
@@ -128,25 +123,19 @@ fn report(path: &Path, db: &MotionDb, of: &Path, grouped: &GroupList) -> Result<
     let mut page = Page::default();
     for (number, group) in grouped.groups.iter().enumerate() {
         page.heading(&format!("Group {}: {} members", number + 1, group.len()));
-        for item in group.iter().take(SHOWN) {
+        for member in group.iter().take(SHOWN) {
+            let item = &member.sample;
             let class = item
                 .class
                 .as_ref()
                 .map_or_else(String::new, |class| format!(", {class}"));
-            let caption = format!(
-                "{} {:.2}–{:.2} s{class}",
-                item.clip, item.start_secs, item.stop_secs
-            );
-            let Some(id) = item.id else { continue };
-            page.figure(db, id, item.start_secs, item.stop_secs, &caption)?;
+            let caption = format!("{} {:.2}{class}", item.clip, item.span);
+            let Some(id) = member.id else { continue };
+            page.figure(db, id, item.span, &caption)?;
         }
         if group.len() > SHOWN {
-            let rest = group[SHOWN..].iter().map(|item| {
-                format!(
-                    "{} {:.2}–{:.2} s",
-                    item.clip, item.start_secs, item.stop_secs
-                )
-            });
+            let rest = (group[SHOWN..].iter())
+                .map(|GroupMember { sample, .. }| format!("{} {:.2}", sample.clip, sample.span));
             let rest: Vec<String> = rest.collect();
             page.folded(&format!("{} more", rest.len()), &rest);
         }

@@ -151,8 +151,8 @@ fn rows(name: &str, take: &SyntheticTake) -> String {
             format!(
                 "{name}\t{}\t{:.3}\t{:.3}\n",
                 class(l.class),
-                l.start_secs,
-                l.stop_secs
+                l.span.start_secs,
+                l.span.stop_secs
             )
         })
         .collect()

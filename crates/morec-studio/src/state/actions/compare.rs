@@ -62,8 +62,8 @@ impl State {
         self.say(format!(
             "beside {}, {} to {}{}",
             aligned.motion.clip.name,
-            crate::format::secs(aligned.with.start_secs),
-            crate::format::secs(aligned.with.stop_secs),
+            crate::format::secs(aligned.with.span.start_secs),
+            crate::format::secs(aligned.with.span.stop_secs),
             if aligned.mirrored { ", mirrored" } else { "" }
         ));
         let all = &mut self.companions.all;
@@ -71,7 +71,7 @@ impl State {
         all.retain(|other| other.of == of && other.with != aligned.with);
         all.truncate(MOST - 2);
         all.push(aligned);
-        self.open_clip(of.clip, Some((of.start_secs, of.stop_secs)));
+        self.open_clip(of.clip, Some((of.span.start_secs, of.span.stop_secs)));
     }
 
     /// The performance that was compared last with the one that is shown, and how far off it is.
@@ -91,13 +91,9 @@ impl State {
         let (start_secs, stop_secs) = self.player.looped?;
         let found = found
             .iter()
-            .find(|d| (d.start_secs, d.stop_secs) == (start_secs, stop_secs))?;
+            .find(|d| (d.span.start_secs, d.span.stop_secs) == (start_secs, stop_secs))?;
         let clip = *clip;
-        let stretch = Stretch {
-            clip,
-            start_secs,
-            stop_secs,
-        };
+        let stretch = Stretch::new(clip, start_secs..stop_secs);
         Some((stretch, found))
     }
 
@@ -124,6 +120,6 @@ impl State {
             return at;
         };
         let apart = 0.5 * self.apart() * here.count() as f64;
-        at + crate::body::companion::aside(motion, first.of.start_secs) * apart
+        at + crate::body::companion::aside(motion, first.of.span.start_secs) * apart
     }
 }

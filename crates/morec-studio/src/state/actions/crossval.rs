@@ -35,18 +35,16 @@ impl State {
             return;
         };
         let clip = moment.clip.clone();
-        let (start, stop) = (moment.start_secs, moment.stop_secs);
+        let span = moment.span;
         self.train.moment = Some(at);
         self.companions.all.clear();
         let Some((id, end)) = self.clip_called(&clip) else {
             self.say(format!("{clip} is not in the database any more"));
             return;
         };
-        self.apply_library(LibraryCommand::GoTo {
-            clip: id,
-            start_secs: (start - AROUND_SECS).max(0.0),
-            stop_secs: (stop + AROUND_SECS).min(end),
-        });
+        let from = (span.start_secs - AROUND_SECS).max(0.0);
+        let to = (span.stop_secs + AROUND_SECS).min(end);
+        self.apply_library(LibraryCommand::GoTo(Stretch::new(id, from..to)));
     }
 
     /// Compares the chosen moment with the nearest label of a class; of the first that is worth it, if none is named.
@@ -60,15 +58,11 @@ impl State {
             .first()
             .map(|class| (*class).to_owned());
         let Some(class) = class.or(first) else { return };
-        let (start_secs, stop_secs) = (moment.start_secs, moment.stop_secs);
+        let span = moment.span;
         let Some((clip, _)) = self.clip_called(&moment.clip) else {
             return;
         };
-        let of = Stretch {
-            clip,
-            start_secs,
-            stop_secs,
-        };
+        let of = Stretch::new(clip, span);
         self.apply_compare(CompareCommand::NearestOf { of, class });
     }
 

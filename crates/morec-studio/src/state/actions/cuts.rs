@@ -32,7 +32,7 @@ impl State {
             .segments_of(clip)
             .iter()
             .filter(motions)
-            .map(|s| s.start_secs)
+            .map(|s| s.span.start_secs)
             .collect();
         // The first begins with the clip, which is no cut.
         (!starts.is_empty()).then(|| starts[1..].to_vec())

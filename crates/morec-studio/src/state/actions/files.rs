@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use morec::player::Mark;
+use morec::labels::Mark;
 use morec_db::{ClipId, DbError};
 
 use super::lines::ShownCommand;
@@ -315,11 +315,8 @@ impl State {
             return;
         };
         let found = self.detections.iter().filter(|(of, _)| *of == clip);
-        let detections = found.flat_map(|(_, found)| found).map(|f| Mark {
-            name: f.class.clone(),
-            start_secs: f.start_secs,
-            stop_secs: f.stop_secs,
-        });
+        let detections = found.flat_map(|(_, found)| found);
+        let detections = detections.map(|f| Mark::new(f.class.as_str(), f.span));
         let detections = detections.collect();
         self.export(Export::Page(clip, detections), path);
     }

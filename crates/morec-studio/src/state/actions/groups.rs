@@ -50,10 +50,10 @@ impl State {
         let new: Vec<NewSample> = items()
             .filter(|i| i.sample.is_none())
             .map(|i| NewSample {
-                clip: i.clip,
+                clip: i.of.clip,
                 class: name.trim().to_owned(),
-                start_secs: i.start_secs,
-                stop_secs: i.stop_secs,
+                start_secs: i.of.span.start_secs,
+                stop_secs: i.of.span.stop_secs,
                 whole_clip: false,
                 state: Judged::Accepted,
                 score: None,

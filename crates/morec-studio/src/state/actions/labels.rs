@@ -1,5 +1,7 @@
 //! Labels on the timeline: selected, dragged, split, merged, nudged.
 
+use std::sync::Arc;
+
 use morec_db::labels::{DbSample, NewSample, SampleState as Judged};
 
 use super::lines::ShownCommand;
@@ -21,7 +23,7 @@ impl State {
     }
 
     /// The labels of the clip that is shown.
-    pub fn shown_samples(&self) -> &[DbSample] {
+    pub fn shown_samples(&self) -> &[Arc<DbSample>] {
         match (&self.store, &self.player.motion) {
             (Some(store), Some(motion)) => store.snapshot.samples_of(motion.id),
             _ => &[],
@@ -144,18 +146,17 @@ impl State {
         let Some(drag) = self.timeline.drag.take() else {
             return;
         };
-        let moved = self.shown_samples().iter().any(|s| {
-            s.id == drag.id
-                && ((s.start_secs - drag.start_secs).abs() > 1e-6
-                    || (s.stop_secs - drag.stop_secs).abs() > 1e-6)
-        });
+        let moved = self
+            .shown_samples()
+            .iter()
+            .any(|s| s.id == drag.id && !s.span().is_near(drag.span, 1e-6));
         if !moved {
             return;
         }
         self.edit(Edit::Move {
             id: drag.id,
-            start_secs: drag.start_secs,
-            stop_secs: drag.stop_secs,
+            start_secs: drag.span.start_secs,
+            stop_secs: drag.span.stop_secs,
         });
         self.timeline.drag = Some(Drag {
             dropped: true,
@@ -183,14 +184,10 @@ impl State {
 
     fn split(&mut self) {
         let at = self.player.at_secs;
-        let inside = |s: &&&DbSample| s.start_secs < at - 1e-6 && at + 1e-6 < s.stop_secs;
-        let selected = self.selected();
-        let there = self.shown_samples();
-        let found = selected
-            .iter()
-            .find(inside)
-            .copied()
-            .or_else(|| there.iter().find(|s| inside(&s)));
+        let inside = |s: &&DbSample| s.start_secs < at - 1e-6 && at + 1e-6 < s.stop_secs;
+        let selected = self.selected().into_iter();
+        let there = self.shown_samples().iter().map(|s| &**s);
+        let found = selected.chain(there).find(inside);
         let Some(sample) = found else {
             self.say("no label lies under the playhead");
             return;
@@ -203,7 +200,7 @@ impl State {
         };
         let edit = Edit::Replace {
             what: format!("split {} of {}", sample.class, sample.clip_name),
-            old: vec![sample.id],
+            old: vec![sample.clone()],
             new: vec![part(sample.start_secs, at), part(at, sample.stop_secs)],
         };
         self.edit(edit);
@@ -222,7 +219,7 @@ impl State {
         let stop_secs = selected.iter().map(|s| s.stop_secs).fold(0.0, f64::max);
         let edit = Edit::Replace {
             what: format!("merge {} labels of {}", selected.len(), first.class),
-            old: selected.iter().map(|s| s.id).collect(),
+            old: selected.iter().map(|s| (*s).clone()).collect(),
             new: vec![NewSample {
                 stop_secs,
                 whole_clip: false,
@@ -246,11 +243,7 @@ impl State {
         let Some(clip) = self.player.motion.as_ref().map(|m| m.id) else {
             return;
         };
-        let of = Stretch {
-            clip,
-            start_secs,
-            stop_secs,
-        };
+        let of = Stretch::new(clip, start_secs..stop_secs);
         if let Some(sample) = self.new_label(class, &of) {
             self.edit(Edit::Label(vec![sample]));
         }
@@ -270,8 +263,8 @@ impl State {
         let clip = self.store.as_ref()?.snapshot.clip(of.clip)?;
         let frame = |secs: f64| (secs * clip.rate_hz).round() / clip.rate_hz;
         let (start, stop) = (
-            of.start_secs.min(of.stop_secs),
-            of.start_secs.max(of.stop_secs),
+            of.span.start_secs.min(of.span.stop_secs),
+            of.span.start_secs.max(of.span.stop_secs),
         );
         let sample = NewSample {
             clip: of.clip,

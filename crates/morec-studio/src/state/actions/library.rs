@@ -24,16 +24,14 @@ impl State {
             }
             LibraryCommand::SelectTo(clip) => self.select_to(clip),
             LibraryCommand::Open(clip) => self.open_clip(clip, None),
-            LibraryCommand::GoTo {
-                clip,
-                start_secs,
-                stop_secs,
-            } => self.open_clip(clip, Some((start_secs, stop_secs))),
+            LibraryCommand::GoTo(of) => {
+                self.open_clip(of.clip, Some((of.span.start_secs, of.span.stop_secs)));
+            }
             LibraryCommand::SelectAll => self.select_all(),
             LibraryCommand::Pattern(text) => self.library.pattern = Some(text),
             LibraryCommand::SelectStretch(of) => {
                 self.selecting = Some(of);
-                self.open_clip(of.clip, Some((of.start_secs, of.stop_secs)));
+                self.open_clip(of.clip, Some((of.span.start_secs, of.span.stop_secs)));
             }
             LibraryCommand::DismissReport => self.import_report = None,
             LibraryCommand::Strips(on) => self.library.strips = on,

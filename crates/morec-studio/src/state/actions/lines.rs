@@ -80,8 +80,8 @@ fn quoted(value: &Path) -> String {
     }
 }
 
-fn numbers(ids: &[SampleId]) -> Vec<String> {
-    ids.iter().map(|id| id.0.to_string()).collect()
+fn numbers(ids: impl IntoIterator<Item = SampleId>) -> Vec<String> {
+    ids.into_iter().map(|id| id.0.to_string()).collect()
 }
 
 /// The command that sets a label.
@@ -198,7 +198,8 @@ impl State {
                 .secs("--start", *start_secs)
                 .secs("--stop", *stop_secs),
             Edit::Replace { old, new, .. } => {
-                let remove = morec("db samples").list("--remove", &numbers(old));
+                let remove =
+                    morec("db samples").list("--remove", &numbers(old.iter().map(|s| s.id)));
                 remove.and(label_lines(db, snapshot, new)?)
             }
             Edit::Cuts { cuts, .. } if cuts.is_empty() => return None,
@@ -211,9 +212,11 @@ impl State {
             Edit::ForgetCuts(_) => return None,
             Edit::Roles(clips) => return self.roles_line(db, snapshot, clips),
             Edit::Reclass { ids, class } => morec("db classes")
-                .list("--split", &numbers(ids))
+                .list("--split", &numbers(ids.iter().copied()))
                 .with("--into", class),
-            Edit::Remove(ids) => morec("db samples").list("--remove", &numbers(ids)),
+            Edit::Remove(ids) => {
+                morec("db samples").list("--remove", &numbers(ids.iter().copied()))
+            }
             Edit::Judge { ids, state } => {
                 let line = |id: &SampleId| {
                     let s = snapshot.sample(*id)?;

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use morec::TimeSpan;
 use morec::live::PerformerId;
 use morec_db::BACKGROUND;
 
@@ -31,8 +32,8 @@ impl State {
             return;
         }
         let Some((actor, stretch)) = run.watched().and_then(|watched| {
-            let stretch = self.live.range.or_else(|| watched.last_motion())?;
-            Some((watched.actor, stretch))
+            let (start, stop) = self.live.range.or_else(|| watched.last_motion())?;
+            Some((watched.actor, TimeSpan::new(start, stop)))
         }) else {
             self.say("nothing has moved yet that could be marked");
             return;
@@ -68,19 +69,20 @@ impl State {
     }
 
     /// What a stretch becomes in the database; `None` if the stream no longer has it.
-    fn lesson(&self, (start, stop): (f64, f64), meaning: &Meaning) -> Option<Lesson> {
+    fn lesson(&self, stretch: TimeSpan, meaning: &Meaning) -> Option<Lesson> {
         // What came before and after background may be a motion of a class.
         let around = match meaning {
             Meaning::Class(_) => AROUND_SECS,
             Meaning::Background => 0.0,
         };
         let watched = self.live.run.as_ref()?.watched()?;
-        let (recording, origin) = watched.cut_out(start - around, stop + around)?;
+        let (recording, origin) =
+            watched.cut_out(stretch.start_secs - around, stretch.stop_secs + around)?;
         Some(Lesson {
             recording,
             name: meaning.name().replace(' ', "_"),
             meaning: Some(meaning.clone()),
-            extent_secs: (start - origin, stop - origin),
+            extent: stretch.map(|secs| secs - origin),
         })
     }
 
@@ -88,7 +90,7 @@ impl State {
     fn contradiction(
         &self,
         actor: PerformerId,
-        stretch: (f64, f64),
+        stretch: TimeSpan,
         meaning: &Meaning,
     ) -> Option<String> {
         let marks = self.live.marks.iter();
@@ -102,7 +104,7 @@ impl State {
             ));
         }
         let snapshot = &self.store.as_ref()?.snapshot;
-        let (clip, start) = self.live.run.as_ref()?.moment(stretch.0)?;
+        let (clip, start) = self.live.run.as_ref()?.moment(stretch.start_secs)?;
         let played = snapshot.clip(clip)?;
         let name = &played.name;
         match meaning {
@@ -111,7 +113,7 @@ impl State {
             )),
             Meaning::Class(_) => None,
             Meaning::Background => {
-                let there = (start, start + stretch.1 - stretch.0);
+                let there = TimeSpan::new(start, start + stretch.duration_secs());
                 let class = labelled_there(snapshot, clip, there)?;
                 Some(format!("Not marked: {name} has a label {class} there"))
             }
@@ -188,7 +190,7 @@ impl State {
         let lesson = Lesson {
             recording,
             meaning: None,
-            extent_secs: (0.0, 0.0),
+            extent: TimeSpan::new(0.0, 0.0),
             name: "take".to_owned(),
         };
         let line = self.record_line(&store);

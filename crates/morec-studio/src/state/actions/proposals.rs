@@ -1,5 +1,6 @@
 //! Proposals: accepted and rejected, the doubtful first.
 
+use morec::TimeSpan;
 use morec_db::labels::{DbSample, SampleId, SampleState as Judged};
 use morec_db::{Proposal, most_informative};
 
@@ -18,7 +19,11 @@ impl State {
 
     /// Proposals without an answer.
     fn proposed(&self) -> impl Iterator<Item = &DbSample> {
-        let samples = self.store.iter().flat_map(|s| &s.snapshot.samples);
+        let samples = self
+            .store
+            .iter()
+            .flat_map(|s| &s.snapshot.samples)
+            .map(|s| &**s);
         samples.filter(|s| s.state == Judged::Proposed)
     }
 
@@ -50,8 +55,7 @@ impl State {
             .map(|s| Proposal {
                 clip: s.clip,
                 class: s.class.clone(),
-                start_secs: s.start_secs,
-                stop_secs: s.stop_secs,
+                span: TimeSpan::new(s.start_secs, s.stop_secs),
                 whole_clip: s.whole_clip,
                 score: s.score.unwrap_or(0.0) as f32,
             })

@@ -64,7 +64,7 @@ impl State {
             self.timeline.pan(0.0, motion.secs());
         }
         if let Some(of) = self.selecting.take().filter(|of| of.clip == motion.id) {
-            self.select_range(Some((of.start_secs, of.stop_secs)));
+            self.select_range(Some((of.span.start_secs, of.span.stop_secs)));
         }
     }
 

@@ -37,20 +37,12 @@ impl State {
     pub fn selected_stretch(&self) -> Option<(Stretch, Option<String>)> {
         let clip = self.player.motion.as_ref()?.id;
         if let Some((start_secs, stop_secs)) = self.timeline.range {
-            let stretch = Stretch {
-                clip,
-                start_secs,
-                stop_secs,
-            };
+            let stretch = Stretch::new(clip, start_secs..stop_secs);
             return Some((stretch, None));
         }
         let selected = self.selected();
         let sample = selected.first()?;
-        let stretch = Stretch {
-            clip,
-            start_secs: sample.start_secs,
-            stop_secs: sample.stop_secs,
-        };
+        let stretch = Stretch::new(clip, sample.span());
         Some((stretch, Some(sample.class.clone())))
     }
 
@@ -79,8 +71,8 @@ impl State {
             .word(store.path())
             .word(&clip.name);
         Some(
-            line.secs("--start", of.start_secs)
-                .secs("--stop", of.stop_secs),
+            line.secs("--start", of.span.start_secs)
+                .secs("--stop", of.span.stop_secs),
         )
     }
 
@@ -106,8 +98,8 @@ impl State {
         self.edit(Edit::Label(vec![NewSample {
             clip: hit.clip,
             class,
-            start_secs: hit.start_secs,
-            stop_secs: hit.stop_secs,
+            start_secs: hit.span.start_secs,
+            stop_secs: hit.span.stop_secs,
             whole_clip: false,
             state: Judged::Accepted,
             score: None,

@@ -9,6 +9,7 @@ use crate::jobs::JobOutcome;
 use crate::jobs::load::ClipMotion;
 use crate::jobs::thesis::{self, Thesis};
 use crate::state::{LibraryCommand, State};
+use crate::stretch::Stretch;
 
 const THESIS: &str = "Training the method of 2009";
 /// Name of the job that maps confidences.
@@ -93,17 +94,13 @@ impl State {
             return;
         };
         self.train.sample = Some(at);
-        let clips = self.store.iter().flat_map(|s| &s.snapshot.clips);
+        let clips = self.store.iter().flat_map(|s| s.snapshot.clips.iter());
         let clip = clips
             .filter(|clip| clip.name == sample.clip)
             .map(|clip| clip.id)
             .next();
         match clip {
-            Some(clip) => self.apply_library(LibraryCommand::GoTo {
-                clip,
-                start_secs: sample.start_secs,
-                stop_secs: sample.stop_secs,
-            }),
+            Some(clip) => self.apply_library(LibraryCommand::GoTo(Stretch::new(clip, sample.span))),
             None => self.say(format!("{} is not in the database any more", sample.clip)),
         }
     }

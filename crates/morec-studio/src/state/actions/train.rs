@@ -251,7 +251,9 @@ impl State {
             return false;
         };
         let indexes = store.snapshot.indexes.iter();
-        let stale = indexes.filter(|i| i.name == name).any(|i| i.stale);
+        let stale = indexes
+            .filter(|i| i.name == name)
+            .any(|i| store.snapshot.is_stale(i));
         let read = morec_db::MotionDb::open_read_only(store.path())
             .and_then(|db| db.index(name))
             .map_err(|e| e.to_string())

@@ -1,5 +1,6 @@
 //! Stretches of a live stream that were marked.
 
+use morec::TimeSpan;
 use morec::live::PerformerId;
 use morec_db::ClipId;
 use morec_db::labels::SampleState;
@@ -14,8 +15,7 @@ const TOUCHING_SECS: f64 = 0.1;
 #[derive(Debug, Clone, PartialEq)]
 pub struct LiveMark {
     pub actor: PerformerId,
-    pub start_secs: f64,
-    pub stop_secs: f64,
+    pub span: TimeSpan,
     pub meaning: Meaning,
     /// The clip it became, once it is in the database.
     pub clip: Option<ClipId>,
@@ -24,11 +24,10 @@ pub struct LiveMark {
 }
 
 impl LiveMark {
-    pub fn new(actor: PerformerId, (start_secs, stop_secs): (f64, f64), meaning: Meaning) -> Self {
+    pub fn new(actor: PerformerId, span: TimeSpan, meaning: Meaning) -> Self {
         Self {
             actor,
-            start_secs,
-            stop_secs,
+            span,
             meaning,
             clip: None,
             seen: false,
@@ -36,8 +35,8 @@ impl LiveMark {
     }
 
     /// True if it shares more than its ends with a stretch of a performer.
-    pub fn meets(&self, actor: PerformerId, stretch: (f64, f64)) -> bool {
-        self.actor == actor && meet((self.start_secs, self.stop_secs), stretch)
+    pub fn meets(&self, actor: PerformerId, stretch: TimeSpan) -> bool {
+        self.actor == actor && meet(self.span, stretch)
     }
 
     /// Follows the database; false once the mark was taken back there.
@@ -58,13 +57,12 @@ impl LiveMark {
 }
 
 /// The class of an accepted label of `clip` that shares more than its ends with a stretch of it.
-pub fn labelled_there(snapshot: &Snapshot, clip: ClipId, stretch: (f64, f64)) -> Option<&str> {
+pub fn labelled_there(snapshot: &Snapshot, clip: ClipId, stretch: TimeSpan) -> Option<&str> {
     let mut samples = snapshot.samples_of(clip).iter();
-    let met = samples
-        .find(|s| s.state == SampleState::Accepted && meet((s.start_secs, s.stop_secs), stretch))?;
+    let met = samples.find(|s| s.state == SampleState::Accepted && meet(s.span(), stretch))?;
     Some(&met.class)
 }
 
-fn meet(a: (f64, f64), b: (f64, f64)) -> bool {
-    a.1.min(b.1) - a.0.max(b.0) > TOUCHING_SECS
+fn meet(a: TimeSpan, b: TimeSpan) -> bool {
+    a.overlap_secs(b) > TOUCHING_SECS
 }

@@ -1,5 +1,6 @@
 //! One run of a live source: its performers, what was recognised, how the stream is.
 
+use morec::TimeSpan;
 use morec::classes::ClassId;
 use morec::diagnosis::{Diagnosis, Severity};
 use morec::live::{EarlyDetection, Event, Frame, Model, PerformerId, Phase};
@@ -19,8 +20,7 @@ const MOST: usize = 16;
 pub struct LiveDetection {
     pub class: String,
     pub actor: PerformerId,
-    pub start_secs: f64,
-    pub stop_secs: f64,
+    pub span: TimeSpan,
     pub reported_secs: f64,
     pub score: f64,
     /// Of an activity that repeats.
@@ -154,8 +154,7 @@ impl Run {
             self.seen.push(LiveDetection {
                 class: model.class_name(event.class).to_owned(),
                 actor: event.actor,
-                start_secs: event.start_secs,
-                stop_secs: event.stop_secs,
+                span: event.span,
                 reported_secs: event.reported_secs,
                 score: event.score,
                 repetitions: event.repetitions.map(|r| r.count),

@@ -253,8 +253,8 @@ fn quantiles_interpolate() {
         .collect();
     let founds: Vec<ClipDetection> = (truths.iter().zip(delays))
         .map(|(t, d)| ClipDetection {
-            reported_secs: Some(t.stop_secs + d),
-            ..found("a", "x", t.start_secs, t.stop_secs)
+            reported_secs: Some(t.span.stop_secs + d),
+            ..found("a", "x", t.span.start_secs, t.span.stop_secs)
         })
         .collect();
     let e = Evaluation::of(&[stream("a", 4.0)], &truths, &founds).unwrap();

@@ -56,8 +56,8 @@ proptest! {
             .collect();
         let is_right = |frame: &u32| {
             let at = f64::from(*frame) / 10.0 + 0.05;
-            let truths: Vec<_> = truths.iter().filter(|t| t.start_secs < at && at < t.stop_secs).collect();
-            let mut founds = founds.iter().filter(|f| f.start_secs < at && at < f.stop_secs);
+            let truths: Vec<_> = truths.iter().filter(|t| t.span.start_secs < at && at < t.span.stop_secs).collect();
+            let mut founds = founds.iter().filter(|f| f.span.start_secs < at && at < f.span.stop_secs);
             match truths.is_empty() {
                 true => founds.next().is_none(),
                 false => founds.any(|f| truths.iter().any(|t| t.class == f.class)),

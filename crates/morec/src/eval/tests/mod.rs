@@ -11,8 +11,7 @@ fn truth(clip: &str, class: &str, start_secs: f64, stop_secs: f64) -> GroundTrut
     GroundTruth {
         clip: clip.into(),
         class: class.into(),
-        start_secs,
-        stop_secs,
+        span: TimeSpan::new(start_secs, stop_secs),
     }
 }
 
@@ -20,8 +19,7 @@ fn found(clip: &str, class: &str, start_secs: f64, stop_secs: f64) -> ClipDetect
     ClipDetection {
         clip: clip.into(),
         class: class.into(),
-        start_secs,
-        stop_secs,
+        span: TimeSpan::new(start_secs, stop_secs),
         score: None,
         reported_secs: None,
         repetitions: None,

@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::eval::interval::Interval;
+use crate::eval::spans;
 
 /// Stretches of a stream of 10 s on a grid of 50 ms, overlapping as they like, of three classes.
 fn stretches(most: usize) -> impl Strategy<Value = Vec<(usize, f64, f64)>> {
@@ -75,9 +75,9 @@ fn most_pairs(
     };
     let mut best = most_pairs(rest, founds, min_iou, used);
     for f in 0..founds.len() {
-        let (a, b) = (first.interval(), founds[f].interval());
-        let shared = (a.stop.min(b.stop) - a.start.max(b.start)).max(0.0);
-        let iou = shared / (a.stop.max(b.stop) - a.start.min(b.start));
+        let (a, b) = (first.span, founds[f].span);
+        let shared = (a.stop_secs.min(b.stop_secs) - a.start_secs.max(b.start_secs)).max(0.0);
+        let iou = shared / (a.stop_secs.max(b.stop_secs) - a.start_secs.min(b.start_secs));
         if !used[f] && first.class == founds[f].class && shared > 0.0 && iou >= min_iou - 1e-9 {
             used[f] = true;
             best = best.max(1 + most_pairs(rest, founds, min_iou, used));
@@ -118,7 +118,7 @@ proptest! {
     #[test]
     fn the_truth_itself_is_perfect(truths in sequence()) {
         let founds: Vec<ClipDetection> = (truths.iter())
-            .map(|t| ClipDetection { reported_secs: Some(t.stop_secs), ..found("a", &t.class, t.start_secs, t.stop_secs) })
+            .map(|t| ClipDetection { reported_secs: Some(t.span.stop_secs), ..found("a", &t.class, t.span.start_secs, t.span.stop_secs) })
             .collect();
         let e = evaluate(&truths, &founds);
         prop_assert_eq!(e.thesis.accuracy, Some(1.0));
@@ -174,15 +174,15 @@ proptest! {
 
     #[test]
     fn what_is_covered_and_what_is_left_make_up_the_stream(stretches in stretches(8)) {
-        let mut sorted: Vec<Interval> =
-            stretches.iter().map(|(_, start, stop)| Interval { start: *start, stop: *stop }).collect();
+        let mut sorted: Vec<TimeSpan> =
+            stretches.iter().map(|(_, start, stop)| TimeSpan::new(*start, *stop)).collect();
         sorted.sort_by(|a, b| a.order(*b));
-        let covered = interval::union(sorted.iter().copied());
-        let left = interval::gaps(&covered, 12.0, 0.0);
+        let covered = spans::union(sorted.iter().copied());
+        let left = spans::gaps(&covered, 12.0, 0.0);
         // On the grid, cell by cell: labelled by some stretch, or in a gap, never both.
         for cell in 0..240 {
             let at = (f64::from(cell) + 0.5) / 20.0;
-            let within = |all: &[Interval]| all.iter().any(|i| i.start <= at && at < i.stop);
+            let within = |all: &[TimeSpan]| all.iter().any(|i| i.contains(at));
             prop_assert_eq!(within(&covered), within(&sorted));
             prop_assert_eq!(within(&left), !within(&sorted));
         }

@@ -131,11 +131,9 @@ impl Drop for Tracking {
 
 fn detection(found: &ChunkDetection, mark: &MessageStamp, chunk_frames: i64) -> Detection {
     let found = found.in_frames(chunk_frames);
-    let at_secs = |frame: i64| mark.steps.origin_secs + frame as f64 * mark.steps.step_secs;
     Detection {
         class: found.class,
-        start_secs: at_secs(found.start),
-        stop_secs: at_secs(found.stop),
+        span: mark.steps.span(found.start, found.stop),
         score: found.score,
         reported_secs: mark.reported_secs,
         repetitions: None,

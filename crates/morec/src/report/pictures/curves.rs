@@ -61,7 +61,11 @@ pub fn channel_chart(
         }
     }
     let first = std::iter::once(0.0);
-    let keys = first.chain(compressed.beziers(curve).map(|bezier| bezier.stop_secs));
+    let keys = first.chain(
+        compressed
+            .beziers(curve)
+            .map(|bezier| bezier.span.stop_secs),
+    );
     Some(chart.marks("keyframes", keys))
 }
 
@@ -82,10 +86,10 @@ fn drawn(compressed: &CompressedClip, curve: &Curve) -> Vec<(f64, ChannelValue)>
 /// Inner control points, at the thirds of their curves' times.
 fn control_points(compressed: &CompressedClip, curve: &Curve, component: usize) -> Vec<(f64, f64)> {
     let inner = |bezier: Bezier| {
-        let third = (bezier.stop_secs - bezier.start_secs) / 3.0;
+        let third = bezier.span.duration_secs() / 3.0;
         [1, 2].map(|i| {
             (
-                bezier.start_secs + i as f64 * third,
+                bezier.span.start_secs + i as f64 * third,
                 bezier.points[i][component],
             )
         })

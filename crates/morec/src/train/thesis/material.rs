@@ -158,8 +158,7 @@ fn frames(sample: &Sample, rate_hz: f64, count: usize) -> Range<usize> {
     if sample.whole_clip {
         return 0..count;
     }
-    let frame = |secs: f64| ((secs * rate_hz).round().max(0.0) as usize).min(count);
-    frame(sample.start_secs)..frame(sample.stop_secs).max(frame(sample.start_secs))
+    sample.span.frames_among(count, rate_hz)
 }
 
 /// For each clip, a number that it shares with the clips of its person.

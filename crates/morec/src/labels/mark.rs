@@ -1,0 +1,27 @@
+//! What happens when.
+
+use crate::TimeSpan;
+use crate::eval::GroundTruth;
+
+/// A stretch of a clip with the name of what happens there.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Mark<C = String> {
+    /// Class of the motion.
+    pub class: C,
+    /// When it happens, from the clip's beginning.
+    pub span: TimeSpan,
+}
+
+impl<C> Mark<C> {
+    /// `class` in `span`.
+    pub fn new(class: impl Into<C>, span: TimeSpan) -> Self {
+        let class = class.into();
+        Self { class, span }
+    }
+}
+
+impl<'a> From<&'a GroundTruth> for Mark<&'a str> {
+    fn from(truth: &'a GroundTruth) -> Self {
+        Mark::new(truth.class.as_str(), truth.span)
+    }
+}
