@@ -346,16 +346,14 @@ pub fn warp(
     let mut bank = TemplateBank::new(&[example.rows.columns(columns)], columns.len());
     let stream = clip.rows.slice(within.clone()).columns(columns);
     let mut best: Option<(f32, Range<usize>)> = None;
-    for (tick, row) in stream.iter().enumerate() {
-        bank.step(row);
+    let mut tick = within.start;
+    bank.step_through(stream.iter(), |bank| {
         let found = bank.matched(0);
+        tick += 1;
         if found.distance < 1e20 && best.as_ref().is_none_or(|(d, _)| found.distance < *d) {
-            best = Some((
-                found.distance,
-                within.start + tick - found.age..within.start + tick + 1,
-            ));
+            best = Some((found.distance, tick - 1 - found.age..tick));
         }
-    }
+    });
     let (_, share) = shown(shared);
     best.map(|(distance, span)| (distance / share, span))
 }
