@@ -7,4 +7,5 @@ mod markdown;
 mod names;
 mod sources;
 mod spans;
+mod unsafe_code;
 mod words;

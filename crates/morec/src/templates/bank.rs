@@ -64,13 +64,17 @@ pub struct Match {
 impl TemplateBank {
     /// Lays out `templates`, all of rows of `dim` values; empty ones never match.
     pub fn new(templates: &[Rows], dim: usize) -> Self {
+        Self::in_units(templates, dim, Units::of(templates))
+    }
+
+    /// The same in units that other templates share.
+    pub(super) fn in_units(templates: &[Rows], dim: usize, units: Units) -> Self {
         let mut extents = Vec::with_capacity(templates.len());
         let mut cells = GUARDS;
         for template in templates {
             extents.push((cells, (cells + template.len()).saturating_sub(1)));
             cells += template.len() + GUARDS;
         }
-        let units = Units::of(templates);
         let (blocks, pairs) = (cells.div_ceil(LANES), dim.div_ceil(2));
         let mut rows = vec![Pairs([[0; 2]; LANES]); blocks * pairs];
         let mut fixed = vec![CellsFixed::OUTSIDE; blocks];

@@ -8,6 +8,7 @@ use crate::features::Rows;
 use super::bank::{Match, PartialMatch, TemplateBank};
 use super::spread_norm::{NormBound, SpreadNorm};
 use super::stretches::Stretches;
+use super::units::Units;
 
 /// A [`TemplateBank`] that also knows how far from each template a motionless body would be.
 ///
@@ -106,6 +107,16 @@ impl NormalizedMatch {
 impl Matcher {
     /// Lays out `templates`, all of rows of `dim` values; of `decode` only what concerns spreads counts.
     pub fn new(templates: &[Rows], dim: usize, decode: &DecodeParams) -> Self {
+        Self::in_units(templates, dim, decode, Units::of(templates))
+    }
+
+    /// The same in units that other templates share: parts of them match as all together.
+    pub(crate) fn in_units(
+        templates: &[Rows],
+        dim: usize,
+        decode: &DecodeParams,
+        units: Units,
+    ) -> Self {
         let norm = SpreadNorm {
             exponent: decode.spread_exponent,
             typical: decode.typical_spread,
@@ -118,7 +129,7 @@ impl Matcher {
             spreads.push(spread);
         }
         Self {
-            bank: TemplateBank::new(templates, dim),
+            bank: TemplateBank::in_units(templates, dim, units),
             norm,
             rest_spread: decode.rest_spread,
             norm_bounds: (spreads.iter())

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use crate::decode::FAR;
 use crate::features::{BoneSet, Rows};
 use crate::progress::Progress;
-use crate::templates::{Match, MatchGate, Matcher, Metric};
+use crate::templates::{Match, MatchGate, Matcher, Metric, Units};
 
 use super::alike::SampleRivals;
 use super::error::TrainError;
@@ -52,7 +52,7 @@ impl TrainingContext<'_> {
     /// Lays out templates that are not mapped yet, in parts whose rows fit the processor's cache.
     fn matchers<'r>(&self, rows: impl Iterator<Item = &'r Rows>) -> Vec<Matcher> {
         let mapped: Vec<Rows> = rows.map(|r| self.metric.apply_all(r)).collect();
-        let dim = self.metric.dim();
+        let (dim, units) = (self.metric.dim(), Units::of(&mapped));
         let mut parts = Vec::new();
         let mut rest = mapped.as_slice();
         while !rest.is_empty() {
@@ -62,7 +62,7 @@ impl TrainingContext<'_> {
                 values <= VALUES_OF_PART
             });
             let (part, others) = rest.split_at(fitting.count().max(1));
-            parts.push(Matcher::new(part, dim, &self.params.decode));
+            parts.push(Matcher::in_units(part, dim, &self.params.decode, units));
             rest = others;
         }
         parts

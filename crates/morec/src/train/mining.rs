@@ -258,6 +258,7 @@ fn keep_apart(mut found: Vec<NearMiss>) -> Vec<NearMiss> {
 mod tests {
     use super::*;
     use crate::decode::DecodeParams;
+    use crate::templates::Units;
     use proptest::prelude::*;
 
     fn rows(len: std::ops::Range<usize>) -> impl Strategy<Value = Rows> {
@@ -286,7 +287,8 @@ mod tests {
             let mut whole = Matcher::new(&templates, dim, &decode);
             let mut stretches = Stretches::new(dim, whole.longest_match());
             let (before, behind) = templates.split_at(cut.min(templates.len()));
-            let mut parts = [before, behind].map(|part| Matcher::new(part, dim, &decode));
+            let units = Units::of(&templates);
+            let mut parts = [before, behind].map(|part| Matcher::in_units(part, dim, &decode, units));
             let count = templates.len();
             let mut found = vec![None; stream.len() * count];
             for_each_match(&mut parts, &stream, &wanted[..stream.len()], |offer| {
