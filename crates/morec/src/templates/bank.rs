@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::decode::FAR;
 use crate::features::Rows;
 
-use super::dot::{self, AT_ONCE, Dots, Pairs};
+use super::dot::{self, AT_ONCE, PairProducts, Pairs};
 use super::kernel::{self, Cells, CellsFixed, LANES};
 use super::units::{self, StreamRows, Units};
 
@@ -37,7 +37,7 @@ pub struct TemplateBank {
     /// The cells' rows: pair by pair of coordinates, of all cells of a block together.
     rows: Arc<[Pairs]>,
     fixed: Arc<[CellsFixed]>,
-    dots: Dots,
+    dots: PairProducts,
     /// First and last cell of each template.
     extents: Arc<[(usize, usize)]>,
     last: Arc<[usize]>,

@@ -1,11 +1,13 @@
-//! Sums of products of 16-bit numbers, by the instructions that processors have for them.
+//! LaneSums of products of 16-bit numbers, by the instructions that processors have for them.
 //!
 //! The only `unsafe` code of this crate: compilers do not choose these instructions by themselves, and they make matching twice as
-//! fast. Sums are modulo 2³², so every choice gives the same numbers; each is tested against [`plain`].
+//! fast. LaneSums are modulo 2³², so every choice gives the same numbers; each is tested against [`plain`].
 
 #![allow(unsafe_code)]
 
-use super::kernel::LANES;
+/// Cells or exemplars that are worked on at once, kept in registers while the coordinates go by: four of AVX-512, eight
+/// of AVX2, sixteen of SSE2 and NEON. Memory is then read once and in order, which is what bounds the time.
+pub const LANES: usize = 64;
 
 /// Two coordinates that follow each other.
 pub type Pair = [i16; 2];
@@ -20,22 +22,22 @@ pub const AT_ONCE: usize = 4;
 
 /// `out[lane] = Σ_k rows[k].0[lane] · z[k]` for each row `z` of a stream and its `out`, at most [`AT_ONCE`]; a `z` has as many pairs as
 /// there are `rows`.
-pub type Dots = fn(rows: &[Pairs], stream: &[&[Pair]], out: &mut [[i32; LANES]]);
+pub type PairProducts = fn(rows: &[Pairs], stream: &[&[Pair]], out: &mut [[i32; LANES]]);
 
 /// What is fastest on this processor.
-pub fn fastest() -> Dots {
+pub fn fastest() -> PairProducts {
     choices().next().unwrap_or(plain)
 }
 
 /// All that this processor has besides [`plain`], the fastest first.
-fn choices() -> impl Iterator<Item = Dots> {
+fn choices() -> impl Iterator<Item = PairProducts> {
     #[cfg(target_arch = "x86_64")]
     let choices = {
         let wide = is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512bw");
         [
             (
                 wide && is_x86_feature_detected!("avx512vnni"),
-                x86::vnni as Dots,
+                x86::vnni as PairProducts,
             ),
             (wide, x86::avx512),
             (is_x86_feature_detected!("avx2"), x86::avx2),
@@ -43,15 +45,15 @@ fn choices() -> impl Iterator<Item = Dots> {
         ]
     };
     #[cfg(target_arch = "aarch64")]
-    let choices = [(true, neon::neon as Dots)];
+    let choices = [(true, neon::neon as PairProducts)];
     #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
-    let choices = [(true, wasm::simd128 as Dots)];
+    let choices = [(true, wasm::simd128 as PairProducts)];
     #[cfg(not(any(
         target_arch = "x86_64",
         target_arch = "aarch64",
         all(target_arch = "wasm32", target_feature = "simd128")
     )))]
-    let choices: [(bool, Dots); 0] = [];
+    let choices: [(bool, PairProducts); 0] = [];
     let here = choices.into_iter().filter(|(is_here, _)| *is_here);
     here.map(|(_, dots)| dots)
 }
@@ -70,9 +72,9 @@ fn plain(rows: &[Pairs], stream: &[&[Pair]], out: &mut [[i32; LANES]]) {
     }
 }
 
-/// Sums side by side, in a register or two.
+/// LaneSums side by side, in a register or two.
 #[allow(dead_code, reason = "not on every processor")]
-trait Sums: Copy {
+trait LaneSums: Copy {
     /// How many.
     const WIDE: usize;
     /// The pairs of as many rows.
@@ -99,13 +101,13 @@ trait Sums: Copy {
     unsafe fn store(self, out: *mut i32);
 }
 
-/// [`Dots`] of `N` rows of a stream, `GROUPS` registers of sums for each at a time.
+/// [`PairProducts`] of `N` rows of a stream, `GROUPS` registers of sums for each at a time.
 ///
 /// # Safety
 /// The processor has the instructions of `S`; the function is inlined into one that is compiled for them.
 #[allow(dead_code, reason = "not on every processor")]
 #[inline(always)]
-unsafe fn sums_of<S: Sums, const N: usize, const GROUPS: usize>(
+unsafe fn sums_of<S: LaneSums, const N: usize, const GROUPS: usize>(
     rows: &[Pairs],
     stream: &[&[Pair]; N],
     out: &mut [[i32; LANES]; N],
@@ -133,7 +135,7 @@ unsafe fn sums_of<S: Sums, const N: usize, const GROUPS: usize>(
     }
 }
 
-/// A function of the type [`Dots`] that is compiled for these instructions, with sums of the type `$sums`, of which so many groups are
+/// A function of the type [`PairProducts`] that is compiled for these instructions, with sums of the type `$sums`, of which this many groups are
 /// kept in registers for one row and for [`AT_ONCE`].
 #[allow(unused_macros, reason = "not on every processor")]
 macro_rules! dots {
@@ -164,7 +166,7 @@ macro_rules! dots {
 mod x86 {
     use std::arch::x86_64::*;
 
-    use super::{AT_ONCE, LANES, Pair, Pairs, Sums, sums_of};
+    use super::{AT_ONCE, LANES, LaneSums, Pair, Pairs, sums_of};
 
     /// The pair as one number, as it lies in memory.
     fn both(z: Pair) -> i32 {
@@ -174,7 +176,7 @@ mod x86 {
     #[derive(Clone, Copy)]
     struct Vnni(__m512i);
 
-    impl Sums for Vnni {
+    impl LaneSums for Vnni {
         const WIDE: usize = 16;
         type Row = __m512i;
 
@@ -196,13 +198,13 @@ mod x86 {
         }
     }
 
-    /// Sums by an instruction that multiplies and adds neighbours, and another that adds.
+    /// LaneSums by an instruction that multiplies and adds neighbours, and another that adds.
     macro_rules! by_neighbours {
         ($name:ident, $register:ty, $wide:literal, $zero:ident, $load:ident, $madd:ident, $add:ident, $splat:ident, $store:ident) => {
             #[derive(Clone, Copy)]
             struct $name($register);
 
-            impl Sums for $name {
+            impl LaneSums for $name {
                 const WIDE: usize = $wide;
                 type Row = $register;
 
@@ -270,12 +272,12 @@ mod x86 {
 mod neon {
     use std::arch::aarch64::*;
 
-    use super::{AT_ONCE, LANES, Pair, Pairs, Sums, sums_of};
+    use super::{AT_ONCE, LANES, LaneSums, Pair, Pairs, sums_of};
 
     #[derive(Clone, Copy)]
     struct Neon(int32x4_t, int32x4_t);
 
-    impl Sums for Neon {
+    impl LaneSums for Neon {
         const WIDE: usize = 8;
         type Row = int16x8x2_t;
 
@@ -314,12 +316,12 @@ mod neon {
 mod wasm {
     use std::arch::wasm32::*;
 
-    use super::{AT_ONCE, LANES, Pair, Pairs, Sums, sums_of};
+    use super::{AT_ONCE, LANES, LaneSums, Pair, Pairs, sums_of};
 
     #[derive(Clone, Copy)]
     struct Simd(v128);
 
-    impl Sums for Simd {
+    impl LaneSums for Simd {
         const WIDE: usize = 4;
         type Row = v128;
 
@@ -365,7 +367,7 @@ mod tests {
         ) {
             let rows: Vec<Pairs> = rows.as_chunks().0.iter().map(|pairs| Pairs(*pairs)).collect();
             let stream: Vec<&[Pair]> = stream.chunks_exact(pairs).collect();
-            let sums = |dots: Dots| {
+            let sums = |dots: PairProducts| {
                 let mut out = vec![[7; LANES]; stream.len()];
                 dots(&rows, &stream, &mut out);
                 out

@@ -8,12 +8,9 @@ use multiversion::multiversion;
 
 use crate::decode::FAR;
 
-use super::dot::{AT_ONCE, Dots, Pairs};
+pub use super::dot::LANES;
+use super::dot::{AT_ONCE, PairProducts, Pairs};
 use super::units::StreamRows;
-
-/// Cells or exemplars that are worked on at once, kept in registers while the coordinates go by: four of AVX-512, eight
-/// of AVX2, sixteen of SSE2 and NEON. Memory is then read once and in order, which is what bounds the time.
-pub const LANES: usize = 64;
 
 /// The same value of [`LANES`] cells.
 pub type Lanes = [f32; LANES];
@@ -99,7 +96,7 @@ struct Behind {
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 pub fn step(
     (rows, fixed, unit): (&[Pairs], &[CellsFixed], f32),
-    (stream, dots): (&StreamRows, Dots),
+    (stream, dots): (&StreamRows, PairProducts),
     now: usize,
     cells: &mut [Cells],
     (last, ends): (&[usize], &mut [(f32, i32)]),
