@@ -45,6 +45,14 @@ pub struct HistoryStep {
     pub rows: BTreeMap<String, usize>,
 }
 
+impl HistoryStep {
+    /// The step in a `history`, the last step first, if it was neither taken back nor done again since.
+    pub fn unchanged_in<'h>(&self, history: &'h [Self]) -> Option<&'h Self> {
+        let at = history.binary_search_by(|old| self.id.cmp(&old.id)).ok()?;
+        Some(&history[at]).filter(|old| old.undone == self.undone)
+    }
+}
+
 /// A number of things in the name of a step: `1 clip`, `2 clips`.
 pub(crate) fn counted(n: usize, what: &str) -> String {
     match n {
@@ -195,10 +203,9 @@ impl MotionDb {
         let steps = statement.query_map([], step)?;
         let mut steps: Vec<HistoryStep> = steps.collect::<Result<_, _>>()?;
         for step in &mut steps {
-            let known = before.binary_search_by(|old| step.id.cmp(&old.id)).ok();
-            step.rows = match known.map(|at| &before[at]) {
-                Some(old) if old.undone == step.undone => old.rows.clone(),
-                _ => touched(&self.conn, step.id)?,
+            step.rows = match step.unchanged_in(before) {
+                Some(old) => old.rows.clone(),
+                None => touched(&self.conn, step.id)?,
             };
         }
         Ok(steps)

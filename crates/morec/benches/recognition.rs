@@ -2,9 +2,8 @@
 //!
 //! Items are ticks of a stream (30 a second) in `bank` and frames at 60 Hz in `features` and `whole_path`, so that
 //! items a second say how many streams one core could follow. `bank/plain` is the same dynamic program as it is
-//! written in books, to hold `bank/step` against: a double loop in single precision over the same rows. `bank/read` adds
-//! up the table of templates once a tick and does nothing else: no step that looks at every row can be faster than
-//! memory is.
+//! written in books, to hold `bank/step` against: a double loop in single precision over the same rows. `bank/read` reads
+//! as many bytes as the rows of the templates have, once a tick, and does nothing else.
 
 // What tests share lies outside of test functions, where the lint looks for it.
 #![allow(clippy::unwrap_used)]
@@ -61,6 +60,22 @@ mod bank {
             });
     }
 
+    /// The same four ticks at a time, as for clips.
+    #[divan::bench(args = [600, 1800])]
+    fn step_through(bencher: Bencher, template_rows: usize) {
+        let (mut bank, stream) = (
+            TemplateBank::new(&templates(template_rows), DIM),
+            rows(99, 64),
+        );
+        bencher
+            .counter(ItemsCount::new(stream.len()))
+            .bench_local(|| {
+                let mut sum = 0.0;
+                bank.step_through(stream.iter(), |bank| sum += bank.matched(0).distance);
+                sum
+            });
+    }
+
     /// The same, plainly.
     #[divan::bench(args = [600, 1800])]
     fn plain(bencher: Bencher, template_rows: usize) {
@@ -79,18 +94,18 @@ mod bank {
             });
     }
 
-    /// Reading as many values as the templates have.
+    /// Reading as many bytes as the templates' rows have, of 16 bits a value.
     #[divan::bench(args = [600, 1800])]
     fn read(bencher: Bencher, template_rows: usize) {
-        let table = rows(7, template_rows);
+        let table = vec![7u64; template_rows * DIM / 4];
         let ticks = 64usize;
         bencher.counter(ItemsCount::new(ticks)).bench_local(|| {
-            let mut sums = [0.0f32; 64];
+            let mut sums = [0; 32];
             for _ in 0..ticks {
-                for chunk in divan::black_box(table.values()).as_chunks::<64>().0 {
+                for chunk in divan::black_box(&table[..]).as_chunks::<32>().0 {
                     sums.iter_mut()
                         .zip(chunk)
-                        .for_each(|(sum, value)| *sum += value);
+                        .for_each(|(sum, value)| *sum ^= value);
                 }
             }
             sums

@@ -50,8 +50,7 @@ impl DbSample {
 
     /// Its frames in the clip's file, rounded to whole ones.
     pub fn frames(&self) -> std::ops::Range<usize> {
-        let frame = |secs: f64| (secs * self.rate_hz).round().max(0.0) as usize;
-        frame(self.start_secs)..frame(self.stop_secs)
+        self.span().frames(self.rate_hz)
     }
 }
 

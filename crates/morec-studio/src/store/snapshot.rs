@@ -58,7 +58,8 @@ impl Snapshot {
                 false => &[],
             };
             let history = db.history_since(known)?;
-            let steps: Vec<&HistoryStep> = history.iter().filter(|s| !is_known(known, s)).collect();
+            let steps = history.iter().filter(|s| s.unchanged_in(known).is_none());
+            let steps: Vec<&HistoryStep> = steps.collect();
             let touched = |tables: &[&str]| {
                 let touches = |s: &&HistoryStep| tables.iter().any(|t| s.rows.contains_key(*t));
                 others != self.others || steps.iter().any(touches)
@@ -66,6 +67,7 @@ impl Snapshot {
             let mut next = Self {
                 others,
                 places: db.class_places()?,
+                program: db.program().to_owned(),
                 labels: OnceLock::new(),
                 taught: OnceLock::new(),
                 ..self.clone()
@@ -76,7 +78,6 @@ impl Snapshot {
             }
             if touched(&["clips"]) {
                 next.roles = Arc::new(db.roles()?);
-                db.program().clone_into(&mut next.program);
             }
             if touched(&["segments"]) {
                 next.segments = Arc::new(db.segments()?);
@@ -268,12 +269,6 @@ fn is_before(a: &DbSample, b: &DbSample) -> bool {
     let order = a.clip_name.cmp(&b.clip_name);
     let order = order.then(secs(a).partial_cmp(&secs(b)).unwrap_or(Ordering::Equal));
     order.then_with(|| a.class.cmp(&b.class)).is_lt()
-}
-
-/// True if a step is in the history already, and neither taken back nor done again since.
-fn is_known(history: &[HistoryStep], step: &HistoryStep) -> bool {
-    let at = history.binary_search_by(|known| step.id.cmp(&known.id));
-    at.is_ok_and(|at| history[at].undone == step.undone)
 }
 
 fn labels_of<'a>(

@@ -40,7 +40,6 @@ pub struct TemplateBank {
     dots: PairProducts,
     /// First and last cell of each template.
     extents: Arc<[(usize, usize)]>,
-    last: Arc<[usize]>,
     /// At the last tick and the one before, in turn.
     cells: Vec<Cells>,
     /// The rows of the last ticks.
@@ -95,7 +94,6 @@ impl TemplateBank {
             rows: rows.into(),
             fixed: fixed.into(),
             dots: dot::fastest(),
-            last: extents.iter().map(|(_, last)| *last).collect(),
             extents: extents.into(),
             cells: vec![Cells::EMPTY; blocks],
             stream: StreamRows::new(dim),
@@ -144,7 +142,7 @@ impl TemplateBank {
     }
 
     /// Advances by the stream's rows, of `dim` values each, and shows itself at each of them to `look`, which may ask what
-    /// [`matched`](Self::matched). As one by one, and faster: a template's row comes from memory once for some of them.
+    /// [`matched`](Self::matched). As one by one, and faster: a template's row is loaded once for four of them.
     ///
     /// # Panics
     /// A row has another width than the templates.
@@ -182,7 +180,7 @@ impl TemplateBank {
             (&self.stream, self.dots),
             self.tick % 2,
             &mut self.cells,
-            (&self.last, &mut self.ends),
+            (&self.extents, &mut self.ends),
         );
         self.tick += self.stream.count;
     }

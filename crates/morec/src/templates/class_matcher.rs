@@ -100,12 +100,12 @@ impl ClassMatcher {
         }
     }
 
-    /// The nearest match of each class at the last tick that is no body at rest, of those that [have a say](TemplateModel::reach).
+    /// The nearest match of each class at the last tick that is no body at rest, of those nearer than [`reach`](TemplateModel::reach).
     pub fn near(&self) -> &[ClassDistance] {
         &self.near
     }
 
-    /// Distance of the nearest negative at the last tick; [`FAR`] if none has a say.
+    /// Distance of the nearest negative at the last tick; [`FAR`] if none is nearer than [`reach`](TemplateModel::reach).
     pub fn negative(&self) -> f32 {
         self.negative
     }

@@ -11,7 +11,7 @@ const MATCH_BYTES: usize = 18;
 /// Rows of a template at most: nine hours of ticks.
 const MAX_LONGEST: u32 = 1 << 20;
 
-/// Nearest match of each class and nearest negative at each tick of a stream. Matches too far to have a say in any
+/// Nearest match of each class and nearest negative at each tick of a stream. Matches too far to matter to any
 /// decision are left out.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ClassMatches {

@@ -1,7 +1,7 @@
-//! LaneSums of products of 16-bit numbers, by the instructions that processors have for them.
+//! Sums of products of 16-bit numbers, by the instructions that processors have for them.
 //!
 //! The only `unsafe` code of this crate: compilers do not choose these instructions by themselves, and they make matching twice as
-//! fast. LaneSums are modulo 2³², so every choice gives the same numbers; each is tested against [`plain`].
+//! fast. Sums are modulo 2³², so every choice gives the same numbers; each is tested against [`plain`].
 
 #![allow(unsafe_code)]
 
@@ -72,7 +72,7 @@ fn plain(rows: &[Pairs], stream: &[&[Pair]], out: &mut [[i32; LANES]]) {
     }
 }
 
-/// LaneSums side by side, in a register or two.
+/// Sums side by side, in a register or two.
 #[allow(dead_code, reason = "not on every processor")]
 trait LaneSums: Copy {
     /// How many.
@@ -99,6 +99,12 @@ trait LaneSums: Copy {
     /// # Safety
     /// [`WIDE`](Self::WIDE) sums can be written.
     unsafe fn store(self, out: *mut i32);
+}
+
+/// The pair as one number, as it lies in memory.
+#[allow(dead_code, reason = "not on every processor")]
+fn both(z: Pair) -> i32 {
+    i32::from(z[0] as u16) | i32::from(z[1]) << 16
 }
 
 /// [`PairProducts`] of `N` rows of a stream, `GROUPS` registers of sums for each at a time.
@@ -135,8 +141,8 @@ unsafe fn sums_of<S: LaneSums, const N: usize, const GROUPS: usize>(
     }
 }
 
-/// A function of the type [`PairProducts`] that is compiled for these instructions, with sums of the type `$sums`, of which this many groups are
-/// kept in registers for one row and for [`AT_ONCE`].
+/// The function `$name` of the type [`PairProducts`], compiled for the instructions `$features`, with sums of the type `$sums`: `$one` of
+/// them are kept in registers for a single row, `$all` for each of [`AT_ONCE`].
 #[allow(unused_macros, reason = "not on every processor")]
 macro_rules! dots {
     ($name:ident, $features:literal, $sums:ty, $one:literal, $all:literal) => {
@@ -166,12 +172,7 @@ macro_rules! dots {
 mod x86 {
     use std::arch::x86_64::*;
 
-    use super::{AT_ONCE, LANES, LaneSums, Pair, Pairs, sums_of};
-
-    /// The pair as one number, as it lies in memory.
-    fn both(z: Pair) -> i32 {
-        i32::from(z[0] as u16) | i32::from(z[1]) << 16
-    }
+    use super::{AT_ONCE, LANES, LaneSums, Pair, Pairs, both, sums_of};
 
     #[derive(Clone, Copy)]
     struct Vnni(__m512i);
@@ -198,7 +199,7 @@ mod x86 {
         }
     }
 
-    /// LaneSums by an instruction that multiplies and adds neighbours, and another that adds.
+    /// Sums by an instruction that multiplies and adds neighbours, and another that adds.
     macro_rules! by_neighbours {
         ($name:ident, $register:ty, $wide:literal, $zero:ident, $load:ident, $madd:ident, $add:ident, $splat:ident, $store:ident) => {
             #[derive(Clone, Copy)]
@@ -316,7 +317,7 @@ mod neon {
 mod wasm {
     use std::arch::wasm32::*;
 
-    use super::{AT_ONCE, LANES, LaneSums, Pair, Pairs, sums_of};
+    use super::{AT_ONCE, LANES, LaneSums, Pair, Pairs, both, sums_of};
 
     #[derive(Clone, Copy)]
     struct Simd(v128);
@@ -335,7 +336,7 @@ mod wasm {
         }
         #[inline(always)]
         unsafe fn add(self, row: v128, z: Pair) -> Self {
-            let z = i32x4_splat(i32::from(z[0] as u16) | i32::from(z[1]) << 16);
+            let z = i32x4_splat(both(z));
             Self(i32x4_add(self.0, i32x4_dot_i16x8(row, z)))
         }
         #[inline(always)]

@@ -91,15 +91,15 @@ struct Behind {
 
 /// Ticks of [`TemplateBank`](super::TemplateBank): the squared distances of the cells' rows `T` from each `z` of `stream`, as
 /// `|T|² + |z|² − 2 T·z` in whole units, of which one is `unit` of a squared distance, and the three transitions of every cell.
-/// Of `cells`, the totals and ages at `now` are those of two ticks before. Writes totals and ages of the cells `last` at each tick to
-/// `ends`, tick by tick.
+/// Of `cells`, the totals and ages at `now` are those of two ticks before. Writes totals and ages of the templates' last cells at each tick to
+/// `ends`, tick by tick; `extents` are first and last cells.
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 pub fn step(
     (rows, fixed, unit): (&[Pairs], &[CellsFixed], f32),
     (stream, dots): (&StreamRows, PairProducts),
     now: usize,
     cells: &mut [Cells],
-    (last, ends): (&[usize], &mut [(f32, i32)]),
+    (extents, ends): (&[(usize, usize)], &mut [(f32, i32)]),
 ) {
     let nothing = Behind {
         local: 0.0,
@@ -123,11 +123,11 @@ pub fn step(
             };
             behind[tick] = advance(fixed, &local, &behind[tick], cells, (now + tick) % 2);
             end = first_end;
-            while let Some(cell) = last.get(end)
+            while let Some((_, cell)) = extents.get(end)
                 && cell / LANES == place
             {
                 let (now, lane) = ((now + tick) % 2, cell % LANES);
-                ends[tick * last.len() + end] = (cells.total[now][lane], cells.age[now][lane]);
+                ends[tick * extents.len() + end] = (cells.total[now][lane], cells.age[now][lane]);
                 end += 1;
             }
         }

@@ -243,7 +243,7 @@ impl TemplateModel {
         self.calibration.filter(|_| !stale)
     }
 
-    /// Distances from here on have no say in what the model reports, of classes and of negatives. A distance below its threshold is held
+    /// Distances from here on change nothing that the model reports, of classes and of negatives. A distance below its threshold is held
     /// against rivals, negatives, the tick before, and as far as [`separation`](crate::decode::Candidate::separation) tells apart;
     /// a verifier's evidence looks further.
     pub fn reach(&self) -> f32 {

@@ -10,12 +10,12 @@ const LONGEST_TEMPLATE: f32 = 13_000.0;
 const LONGEST_ROW: f32 = 32_700.0;
 
 /// Units in one of what rows are measured in: a power of two, so that small whole numbers stay what they are. With the longest template at
-/// 25 there are 512, and rounding moves the mean distance of a match by some 10⁻⁵ of it.
+/// 25 there are 512.
 #[derive(Debug, Clone, Copy)]
 pub struct Units(f32);
 
 impl Units {
-    /// Those in which all of `templates` can be said.
+    /// The finest in which all of `templates` fit into 16 bits.
     pub fn of(templates: &[Rows]) -> Self {
         let rows = templates.iter().flat_map(Rows::iter);
         let longest = rows.map(square).fold(0.0, f32::max).sqrt();
@@ -37,13 +37,15 @@ impl Units {
 
     /// `row` two values at a time, with a 0 behind an odd number of them.
     pub fn pairs(self, row: &[f32]) -> impl Iterator<Item = Pair> {
-        let whole = move |value: f32| {
-            let scaled = value * self.0;
-            (scaled + 0.5f32.copysign(scaled)) as i16
-        };
+        let value = move |v: &f32| whole(v * self.0);
         row.chunks(2)
-            .map(move |pair| [whole(pair[0]), pair.get(1).map_or(0, |v| whole(*v))])
+            .map(move |pair| [value(&pair[0]), pair.get(1).map_or(0, value)])
     }
+}
+
+/// The nearest whole number.
+fn whole(scaled: f32) -> i16 {
+    (scaled + 0.5f32.copysign(scaled)) as i16
 }
 
 fn square(row: &[f32]) -> f32 {
@@ -89,11 +91,9 @@ impl StreamRows {
             *exact = value * units.0;
         }
         let fits = square(&self.exact[at]) <= LONGEST_ROW * LONGEST_ROW;
-        match fits {
-            true => {
-                (self.pairs[at].iter_mut().zip(units.pairs(row))).for_each(|(to, pair)| *to = pair)
-            }
-            false => self.pairs[at].fill([0; 2]),
+        let exact = self.exact[at].as_chunks().0;
+        for (pair, exact) in self.pairs[at].iter_mut().zip(exact) {
+            *pair = if fits { exact.map(whole) } else { [0; 2] };
         }
         self.norms[at] = fits.then(|| norm(&self.pairs[at]));
     }
