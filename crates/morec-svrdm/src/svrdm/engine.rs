@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::leading::AT_ONCE;
 use super::{
     Cell, ChunkAssembly, ClassCandidates, FeatureExtraction, FrameDetection, Gram, ModelError,
     SegmentAssembly, SegmentScoring, SegmentTracking, SvrdmModel, SvrdmParams, Window,
@@ -21,6 +22,8 @@ pub struct SvrdmEngine {
     recogniser: SegmentRecogniser,
     tracking: SegmentTracking,
     column: Vec<Cell>,
+    /// The segments that end with the newest chunk.
+    ending: Vec<(Window, Gram)>,
 }
 
 /// From one segment to what it seems to be.
@@ -47,6 +50,7 @@ impl SvrdmEngine {
             segments: SegmentAssembly::new(params, dim),
             tracking: SegmentTracking::of_model(model, &scoring),
             column: vec![Cell::NOTHING; params.lengths()],
+            ending: vec![(Window { start: 0, stop: 0 }, Gram::new(dim)); params.lengths()],
             recogniser: SegmentRecogniser {
                 model: model.clone(),
                 extraction: FeatureExtraction::new(params, dim, &model.signs),
@@ -97,12 +101,23 @@ impl SvrdmEngine {
         }
         self.column.fill(Cell::NOTHING);
         let shortest = self.model.params.min_chunks;
-        let (column, recogniser, chunks) = (&mut self.column, &mut self.recogniser, &self.chunks);
-        self.segments.push(chunks.chunk(), &mut |window, segment| {
-            let cell = recogniser.recognise(segment, chunks);
-            column[window.chunks() - shortest] = cell;
-            watch(window, cell);
-        });
+        let mut count = 0;
+        self.segments
+            .push(self.chunks.chunk(), &mut |window, segment| {
+                let (of, sums) = &mut self.ending[count];
+                *of = window;
+                sums.copy_from(segment);
+                count += 1;
+            });
+        for together in self.ending[..count].chunks(AT_ONCE) {
+            let extraction = &mut self.recogniser.extraction;
+            extraction.prepare(together.iter().map(|(_, segment)| segment));
+            for (at, (window, segment)) in together.iter().enumerate() {
+                let cell = self.recogniser.recognise(at, segment, &self.chunks);
+                self.column[window.chunks() - shortest] = cell;
+                watch(*window, cell);
+            }
+        }
         let frames = self.model.params.chunk_frames as i64;
         self.tracking
             .push(&self.column, &mut |found| out(found.in_frames(frames)));
@@ -118,9 +133,9 @@ impl SvrdmEngine {
 }
 
 impl SegmentRecogniser {
-    /// The class that the segment, whose rows are the last of `chunks`, most certainly is.
-    fn recognise(&mut self, segment: &Gram, chunks: &ChunkAssembly) -> Cell {
-        let Some(feature) = self.extraction.feature(segment) else {
+    /// The class that the `at`th segment prepared, whose rows are the last of `chunks`, most certainly is.
+    fn recognise(&mut self, at: usize, segment: &Gram, chunks: &ChunkAssembly) -> Cell {
+        let Some(feature) = self.extraction.prepared(at, segment) else {
             return Cell::NOTHING;
         };
         let SvrdmParams {

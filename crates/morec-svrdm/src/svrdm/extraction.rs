@@ -1,5 +1,7 @@
 //! Segments to feature vectors and profiles (thesis, §4.6.4).
 
+use super::leading::LeadingEigenvectors;
+use super::vectors::entry;
 use super::{Centring, Directions, Gram, Scaling, SegmentDistance, SvrdmParams};
 
 /// Feature vector extraction: a segment's `AᵀA` in; its feature vector and, where asked for, its profile out.
@@ -12,6 +14,7 @@ pub struct FeatureExtraction {
     comparison: SegmentDistance,
     signs: Vec<f64>,
     directions: Directions,
+    leading: LeadingEigenvectors,
     feature: Vec<f64>,
     profile: Vec<f32>,
 }
@@ -33,6 +36,7 @@ impl FeatureExtraction {
             comparison: params.comparison,
             signs: signs.to_vec(),
             directions: Directions::new(params.eigenvectors, dim),
+            leading: LeadingEigenvectors::new(params.eigenvectors, dim),
             feature: vec![0.0; signs.len()],
             profile: vec![
                 0.0;
@@ -44,8 +48,31 @@ impl FeatureExtraction {
     /// The feature vector, `k · r` values; `None` for a segment without direction ([`Directions::find`]).
     /// O(r³), no allocation.
     pub fn feature(&mut self, segment: &Gram) -> Option<&[f64]> {
-        if !self.directions.find(segment, self.centring) {
-            return None;
+        self.prepare(std::iter::once(segment));
+        self.prepared(0, segment)
+    }
+
+    /// Prepares for the feature vectors of these segments, [`AT_ONCE`](super::leading::AT_ONCE) at most: faster than one by one.
+    pub(super) fn prepare<'a>(&mut self, segments: impl Iterator<Item = &'a Gram>) {
+        if self.scaling == Scaling::UnitRange {
+            for (lane, segment) in segments.enumerate() {
+                let centring = self.centring;
+                (self.leading).set(lane, |i, j| entry(segment, centring, i, j));
+            }
+            self.leading.solve();
+        }
+    }
+
+    /// The [feature vector](Self::feature) of the `at`th of the segments that were prepared.
+    pub(super) fn prepared(&mut self, at: usize, segment: &Gram) -> Option<&[f64]> {
+        match self.leading.vectors(at) {
+            Some(vector) => self.directions.set(vector),
+            // Shares are of all singular values.
+            None => {
+                if !self.directions.find(segment, self.centring) {
+                    return None;
+                }
+            }
         }
         self.directions.fix_signs(&self.signs);
         self.directions.feature(self.scaling, &mut self.feature);

@@ -22,6 +22,7 @@ mod engine;
 mod extraction;
 mod gram;
 pub mod kernel;
+mod leading;
 mod map;
 mod model;
 mod params;

@@ -73,6 +73,14 @@ impl Directions {
         }
     }
 
+    /// Becomes directions that were found elsewhere, of which component `i` of the `j`th is `vector(j, i)`. Their shares are not known.
+    pub(super) fn set(&mut self, vector: impl Fn(usize, usize) -> f64) {
+        self.shares.fill(f64::NAN);
+        for (place, value) in self.vectors.iter_mut().enumerate() {
+            *value = vector(place / self.dim, place % self.dim);
+        }
+    }
+
     /// Turns every vector to the side of its sign vector: `signs` are `k` vectors of `r` values, as Algorithm 5 finds
     /// them from the training samples.
     pub fn fix_signs(&mut self, signs: &[f64]) {
@@ -159,6 +167,15 @@ impl Directions {
     }
 }
 
+/// Row `i`, column `j ≤ i` of the matrix whose eigenvectors are the directions.
+#[inline]
+pub(super) fn entry(gram: &Gram, centring: Centring, i: usize, j: usize) -> f64 {
+    match centring {
+        Centring::Database => gram.product(i, j),
+        Centring::Segment => gram.centred(i, j),
+    }
+}
+
 /// `find` in a matrix of a size known when compiling, which needs no memory from the system. A narrower `gram` is
 /// put beside a diagonal below all its eigenvalues: the directions of that come last and are never taken.
 macro_rules! find_in {
@@ -167,10 +184,7 @@ macro_rules! find_in {
         #[inline(never)]
         fn $name(directions: &mut Directions, gram: &Gram, centring: Centring) -> bool {
             let dim = directions.dim;
-            let entry = |i, j| match centring {
-                Centring::Database => gram.product(i, j),
-                Centring::Segment => gram.centred(i, j),
-            };
+            let entry = |i, j| entry(gram, centring, i, j);
             let trace: f64 = (0..dim).map(|i| entry(i, i)).sum();
             // Not a number, or no motion.
             if !(trace.is_finite() && trace > 0.0) {
