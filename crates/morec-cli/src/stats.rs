@@ -60,12 +60,8 @@ impl Stats {
         });
         let metric = Metric::new(&model.ridged, &model.total);
         let mut matcher = ClassMatcher::new(model, &metric);
-        let mut mapped = vec![0.0; metric.dim()];
         timed(&mut self.matching, || {
-            for row in rows.iter() {
-                metric.apply(row, &mut mapped);
-                matcher.step(&mapped);
-            }
+            rows.iter().for_each(|row| matcher.step(row));
         });
         let mut engine = TemplateEngine::new(model)?;
         timed(&mut self.recognising, || {

@@ -42,21 +42,18 @@ pub struct PartMatcher {
     steps: MatchSteps,
 }
 
-/// Metric, templates and recorded matches: the steps for each feature row.
+/// Templates and recorded matches: the steps for each feature row.
 #[derive(Debug, Clone)]
 struct MatchSteps {
-    metric: Metric,
     matcher: ClassMatcher,
     matches: ClassMatches,
     /// Distances from here on do not count.
     reach: f32,
-    mapped: Vec<f32>,
 }
 
 impl MatchSteps {
     fn take(&mut self, row: &[f32]) {
-        self.metric.apply(row, &mut self.mapped);
-        self.matcher.step(&self.mapped);
+        self.matcher.step(row);
         let (near, negative) = (self.matcher.near(), self.matcher.negative());
         self.matches.push(near, negative, self.reach);
     }
@@ -78,8 +75,6 @@ impl PartMatcher {
                 matcher: ClassMatcher::new(&part, &metric),
                 matches: ClassMatches::new(part.longest()),
                 reach: part.reach(),
-                mapped: vec![0.0; metric.dim()],
-                metric,
             },
         })
     }

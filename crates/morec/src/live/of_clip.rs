@@ -75,8 +75,10 @@ pub(super) fn recognize_with(
         return Ok(found);
     }
     let mut reader = reader(model, clip, roles)?;
-    for_each_world_pose(clip, rest, |time_secs, world| {
-        found.extend_from_slice(recognizer.push(time_secs, reader.read(world)));
+    recognizer.push_each(&mut found, |push| {
+        for_each_world_pose(clip, rest, |time_secs, world| {
+            push(time_secs, reader.read(world))
+        });
     });
     found.extend_from_slice(recognizer.finish());
     Ok(found)

@@ -90,9 +90,22 @@ impl Recognizer {
     /// Takes poses with their times, in order, and adds what they settled to `out`: the same detections as of
     /// pushing one by one. Allocates only if `out` has to grow.
     pub fn push_all(&mut self, poses: &[(f64, KeyPose)], out: &mut Vec<Detection>) {
-        for (time_secs, pose) in poses {
-            out.extend_from_slice(self.push(*time_secs, pose));
-        }
+        self.push_each(out, |each| {
+            (poses.iter()).for_each(|(time_secs, pose)| each(*time_secs, pose.into()));
+        });
+    }
+
+    /// [`push_all`](Self::push_all) of the poses that `poses` gives to the function it is called with.
+    pub(super) fn push_each(
+        &mut self,
+        out: &mut Vec<Detection>,
+        poses: impl FnOnce(&mut dyn FnMut(f64, RecognizerInput<'_>)),
+    ) {
+        self.pipeline.let_rows_wait(true, &mut self.found);
+        poses(&mut |time_secs, pose| out.extend_from_slice(self.push(time_secs, pose)));
+        self.found.begin(self.now_secs);
+        self.pipeline.let_rows_wait(false, &mut self.found);
+        out.extend_from_slice(&self.found.detections);
     }
 
     /// Ends the stream: returns what its last moments still hold. The next push begins a new stream, of any performer: nothing is

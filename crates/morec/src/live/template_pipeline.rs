@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use crate::features::{BoneSet, FeatureStream, Pushed};
+use crate::features::{BoneSet, FeatureStream, Pushed, RowLayout};
 use crate::templates::{
-    ClassMatches, EarlyDetectionParams, OngoingMatch, TemplateEngine, TemplateModel,
+    AT_ONCE, ClassMatches, EarlyDetectionParams, OngoingMatch, TemplateEngine, TemplateModel,
 };
 
 use super::detection::{DetectionBuffer, Steps};
@@ -18,8 +18,38 @@ pub(super) struct TemplatePipeline {
     pub(super) model: Arc<TemplateModel>,
     features: FeatureStream,
     engine: TemplateEngine,
+    waiting: WaitingRows,
     early: EarlyDetectionParams,
     seen: PartialMatchTracker,
+}
+
+/// Rows that wait until there are as many as are matched at once.
+#[derive(Debug, Clone)]
+struct WaitingRows {
+    values: Vec<f32>,
+    /// Of each row, what noise it holds and the time of the pose that completed it.
+    notes: [(f32, f64); AT_ONCE],
+    count: usize,
+    /// As many are matched at once.
+    most: usize,
+}
+
+impl WaitingRows {
+    /// None, of `dim` values; none will wait.
+    fn new(dim: usize) -> Self {
+        Self {
+            values: vec![0.0; AT_ONCE * dim],
+            notes: [(0.0, 0.0); AT_ONCE],
+            count: 0,
+            most: 1,
+        }
+    }
+
+    fn push(&mut self, row: &[f32], noise_gain: f32, reported_secs: f64) {
+        self.values[self.count * row.len()..][..row.len()].copy_from_slice(row);
+        self.notes[self.count] = (noise_gain, reported_secs);
+        self.count += 1;
+    }
 }
 
 /// The partial match at the last tick that was asked about.
@@ -60,6 +90,7 @@ impl TemplatePipeline {
 
     fn with(model: Arc<TemplateModel>, engine: TemplateEngine) -> Self {
         Self {
+            waiting: WaitingRows::new(RowLayout::of(model.bones).dim()),
             features: FeatureStream::new(model.bones, &model.features),
             engine,
             model,
@@ -68,18 +99,43 @@ impl TemplatePipeline {
         }
     }
 
-    /// Detections of the rows that are complete.
+    /// Detections of the rows that are complete, but for those that wait.
     fn recognise_rows(&mut self, found: &mut DetectionBuffer) {
-        let steps = self.steps();
         loop {
-            self.engine.set_noise_gain(self.features.noise_gain());
+            let noise_gain = self.features.noise_gain();
             let Some(row) = self.features.next_row() else {
                 break;
             };
-            for d in self.engine.push(row) {
+            self.waiting.push(row, noise_gain, found.reported_secs);
+            if self.waiting.count == self.waiting.most {
+                self.recognise_waiting(found);
+            }
+        }
+    }
+
+    /// Detections of the rows that wait, reported at the times of their poses.
+    fn recognise_waiting(&mut self, found: &mut DetectionBuffer) {
+        let steps = self.steps();
+        let now_secs = found.reported_secs;
+        let WaitingRows {
+            values,
+            notes,
+            count,
+            ..
+        } = &mut self.waiting;
+        let dim = self.features.dim();
+        let values = &values[..*count * dim];
+        self.engine.advance(values);
+        for (at, row) in values.chunks_exact(dim).enumerate() {
+            let (noise_gain, reported_secs) = notes[at];
+            self.engine.set_noise_gain(noise_gain);
+            found.reported_secs = reported_secs;
+            for d in self.engine.decide(at, row) {
                 found.add(d.class, steps, (d.start, d.stop), d.score, d.repetitions);
             }
         }
+        *count = 0;
+        found.reported_secs = now_secs;
     }
 
     fn steps(&self) -> Steps {
@@ -114,11 +170,19 @@ impl Pipeline for TemplatePipeline {
     fn end_stretch(&mut self, found: &mut DetectionBuffer) {
         self.features.end();
         self.recognise_rows(found);
+        self.recognise_waiting(found);
         let steps = self.steps();
         for d in self.engine.finish() {
             found.add(d.class, steps, (d.start, d.stop), d.score, d.repetitions);
         }
         self.features.reset();
+    }
+
+    fn let_rows_wait(&mut self, wait: bool, found: &mut DetectionBuffer) {
+        self.waiting.most = if wait { AT_ONCE } else { 1 };
+        if !wait {
+            self.recognise_waiting(found);
+        }
     }
 
     fn early_detection(&mut self) -> Option<EarlyDetection> {

@@ -153,28 +153,34 @@ impl TemplateBank {
     ) {
         let mut rows = rows.fuse();
         loop {
-            self.stream.count = 0;
-            for z in rows.by_ref().take(AT_ONCE) {
-                assert_eq!(
-                    z.len(),
-                    self.dim,
-                    "a stream row of another width than the templates'"
-                );
-                self.stream.push(z, self.units);
-            }
-            if self.stream.count == 0 {
+            let count = self.advance(rows.by_ref().take(AT_ONCE));
+            if count == 0 {
                 return;
             }
-            self.advance();
-            for shown in 0..self.stream.count {
-                self.shown = shown;
+            for tick in 0..count {
+                self.show(tick);
                 look(self);
             }
         }
     }
 
-    /// Advances by the ticks of the rows in `stream`.
-    fn advance(&mut self) {
+    /// Advances by the stream's rows, [`AT_ONCE`] at most; gives how many there were, of which it shows the last.
+    ///
+    /// # Panics
+    /// There are more, or a row has another width than the templates.
+    pub(super) fn advance<'r>(&mut self, rows: impl Iterator<Item = &'r [f32]>) -> usize {
+        self.stream.count = 0;
+        for z in rows {
+            assert_eq!(
+                z.len(),
+                self.dim,
+                "a stream row of another width than the templates'"
+            );
+            self.stream.push(z, self.units);
+        }
+        if self.stream.count == 0 {
+            return 0;
+        }
         kernel::step(
             (&self.rows, &self.fixed, self.units.square()),
             (&self.stream, self.dots),
@@ -183,6 +189,13 @@ impl TemplateBank {
             (&self.extents, &mut self.ends),
         );
         self.tick += self.stream.count;
+        self.show(self.stream.count - 1);
+        self.stream.count
+    }
+
+    /// Shows the matches at tick `at` of those that it last advanced by.
+    pub(super) fn show(&mut self, at: usize) {
+        self.shown = at;
     }
 
     /// Match of template `index` to a stretch that ends with the last tick stepped, or the one that is shown.

@@ -6,12 +6,16 @@ use crate::classes::ClassId;
 use crate::decode::{ClassDistance, FAR};
 use crate::features::Rows;
 
+use super::dot::AT_ONCE;
 use super::early::{EarlyDetectionParams, OngoingMatch};
 use super::{MatchGate, Matcher, Metric, Stretches, TemplateModel};
 
-/// Templates and negatives of a model, matched against a stream of mapped rows.
+/// Templates and negatives of a model, matched against a stream of rows.
 #[derive(Debug, Clone)]
 pub struct ClassMatcher {
+    metric: Metric,
+    /// The rows that it last advanced by, mapped; room for [`AT_ONCE`].
+    mapped: Vec<f32>,
     matcher: Matcher,
     negatives: Matcher,
     /// Of the mapped rows.
@@ -25,7 +29,7 @@ pub struct ClassMatcher {
 }
 
 impl ClassMatcher {
-    /// Lays the templates of `model` out for streaming, mapped by `metric`.
+    /// Lays the templates of `model` out for streaming. `metric` is the model's, and maps them and the stream.
     pub fn new(model: &TemplateModel, metric: &Metric) -> Self {
         let map = |rows: &Rows| metric.apply_all(rows);
         let templates: Vec<Rows> = model.samples.iter().map(|s| map(&s.rows)).collect();
@@ -35,6 +39,8 @@ impl ClassMatcher {
         let negatives = Matcher::new(&negatives, dim, &model.decode);
         let longest_match = matcher.longest_match().max(negatives.longest_match());
         Self {
+            metric: metric.clone(),
+            mapped: vec![0.0; AT_ONCE * dim],
             stretches: Stretches::new(dim, longest_match),
             matcher,
             negatives,
@@ -63,11 +69,29 @@ impl ClassMatcher {
         self.stretches.set_noise_gain(gain);
     }
 
-    /// Takes the next tick's row, mapped. O(template rows · d), no allocation.
-    pub fn step(&mut self, mapped: &[f32]) {
-        self.matcher.step(mapped);
-        self.negatives.step(mapped);
-        self.stretches.push(mapped);
+    /// Takes the next tick's row and looks at it. O(template rows · d), no allocation.
+    pub fn step(&mut self, row: &[f32]) {
+        self.advance(row);
+        self.look(0);
+    }
+
+    /// Takes the rows of the next ticks, one after the other, [`AT_ONCE`] at most. Each must be [looked at](Self::look) in turn: the same as
+    /// step by step, and faster. No allocation.
+    pub fn advance(&mut self, rows: &[f32]) {
+        let dim = self.metric.dim();
+        let mapped = &mut self.mapped[..rows.len()];
+        let places = mapped.chunks_exact_mut(dim);
+        (rows.chunks_exact(dim).zip(places)).for_each(|(row, to)| self.metric.apply(row, to));
+        self.matcher.advance(mapped.chunks_exact(dim));
+        self.negatives.advance(mapped.chunks_exact(dim));
+    }
+
+    /// Finds the nearest matches at tick `at` of those that it last advanced by.
+    pub fn look(&mut self, at: usize) {
+        self.matcher.show(at);
+        self.negatives.show(at);
+        let dim = self.metric.dim();
+        self.stretches.push(&self.mapped[at * dim..][..dim]);
         self.match_classes();
         self.negative = FAR;
         let all = MatchGate {
@@ -100,17 +124,17 @@ impl ClassMatcher {
         }
     }
 
-    /// The nearest match of each class at the last tick that is no body at rest, of those nearer than [`reach`](TemplateModel::reach).
+    /// The nearest match of each class at the tick looked at last that is no body at rest, of those nearer than [`reach`](TemplateModel::reach).
     pub fn near(&self) -> &[ClassDistance] {
         &self.near
     }
 
-    /// Distance of the nearest negative at the last tick; [`FAR`] if none is nearer than [`reach`](TemplateModel::reach).
+    /// Distance of the nearest negative at the tick looked at last; [`FAR`] if none is nearer than [`reach`](TemplateModel::reach).
     pub fn negative(&self) -> f32 {
         self.negative
     }
 
-    /// The class whose beginning is nearest at the last tick, if one is near enough by `params` under this threshold.
+    /// The class whose beginning is nearest at the last tick, which must be looked at, if one is near enough by `params` under this threshold.
     /// O(template rows), no allocation; changes nothing.
     pub fn underway(&self, params: &EarlyDetectionParams, threshold: f32) -> Option<OngoingMatch> {
         let (mut best, mut other) = (None::<OngoingMatch>, FAR);

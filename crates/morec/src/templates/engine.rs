@@ -21,7 +21,6 @@ pub struct TemplateEngine {
     judge: Option<CandidateScorer>,
     decoder: Decoder,
     recent: RecentRows,
-    mapped: Vec<f32>,
     threshold: f32,
     calibration: Option<Calibration>,
     stranger: Option<Box<PerformerAdaptation>>,
@@ -166,7 +165,6 @@ impl TemplateEngine {
             decoder,
             // A match of n rows spans at most 2 n ticks and is judged when its window has passed.
             recent: RecentRows::new(dim, 2 * longest + window + 2),
-            mapped: vec![0.0; dim],
             threshold: model.threshold,
             calibration: model.calibration_in_use(),
             stranger,
@@ -233,6 +231,20 @@ impl TemplateEngine {
 
     /// Takes the next tick's row and returns the detections that are now certain. No allocation.
     pub fn push(&mut self, row: &[f32]) -> impl Iterator<Item = &TickDetection> {
+        self.advance(row);
+        self.decide(0, row)
+    }
+
+    /// Takes the rows of the next ticks, one after the other, [`AT_ONCE`] at most. What each makes certain comes from
+    /// [`decide`](Self::decide), which must be called for each in turn: the same as of pushing one by one, and faster.
+    pub fn advance(&mut self, rows: &[f32]) {
+        if let Matches::Computed(matcher) = &mut self.matches {
+            matcher.advance(rows);
+        }
+    }
+
+    /// The detections that are certain with `row`, the `at`th of those that it last advanced by. No allocation.
+    pub fn decide(&mut self, at: usize, row: &[f32]) -> impl Iterator<Item = &TickDetection> {
         self.recent.push(row);
         if let Some(held) = &mut self.held {
             held.push(row);
@@ -242,8 +254,7 @@ impl TemplateEngine {
         }
         let (near, negative) = match &mut self.matches {
             Matches::Computed(matcher) => {
-                self.metric.apply(row, &mut self.mapped);
-                matcher.step(&self.mapped);
+                matcher.look(at);
                 (matcher.near(), matcher.negative())
             }
             Matches::Given(replay) => replay.step(),

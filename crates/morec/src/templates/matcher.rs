@@ -162,6 +162,16 @@ impl Matcher {
         self.bank.step(row);
     }
 
+    /// Advances by the stream's rows, [`AT_ONCE`](super::dot::AT_ONCE) at most.
+    pub(super) fn advance<'r>(&mut self, rows: impl Iterator<Item = &'r [f32]>) {
+        self.bank.advance(rows);
+    }
+
+    /// Shows the matches at tick `at` of those that it last advanced by.
+    pub(super) fn show(&mut self, at: usize) {
+        self.bank.show(at);
+    }
+
     /// Advances by the stream's rows, and shows the bank at each of them to `look`. Faster than one by one.
     #[cfg(feature = "train")]
     pub(crate) fn step_through<'r>(

@@ -28,6 +28,7 @@ pub(crate) use activities::{STEP_TICKS, windows_of};
 pub use bank::{Match, PartialMatch, TemplateBank};
 pub use class_matcher::ClassMatcher;
 pub use class_matches::{ClassMatches, ClassMatchesError};
+pub use dot::AT_ONCE;
 pub use early::{EarlyDetectionParams, OngoingMatch};
 pub use engine::TemplateEngine;
 pub use held::HeldPoses;
