@@ -54,25 +54,19 @@ impl FeatureExtraction {
 
     /// Prepares for the feature vectors of these segments, [`AT_ONCE`](super::leading::AT_ONCE) at most: faster than one by one.
     pub(super) fn prepare<'a>(&mut self, segments: impl Iterator<Item = &'a Gram>) {
-        if self.scaling == Scaling::UnitRange {
-            for (lane, segment) in segments.enumerate() {
-                let centring = self.centring;
-                (self.leading).set(lane, |i, j| entry(segment, centring, i, j));
-            }
-            self.leading.solve();
+        let centring = self.centring;
+        for (lane, segment) in segments.enumerate() {
+            (self.leading).set(lane, |i, j| entry(segment, centring, i, j));
         }
+        self.leading.solve();
     }
 
     /// The [feature vector](Self::feature) of the `at`th of the segments that were prepared.
     pub(super) fn prepared(&mut self, at: usize, segment: &Gram) -> Option<&[f64]> {
         match self.leading.vectors(at) {
-            Some(vector) => self.directions.set(vector),
-            // Shares are of all singular values.
-            None => {
-                if !self.directions.find(segment, self.centring) {
-                    return None;
-                }
-            }
+            Some(vector) => self.directions.set(vector, |j| self.leading.share(at, j)),
+            None if self.directions.find(segment, self.centring) => {}
+            None => return None,
         }
         self.directions.fix_signs(&self.signs);
         self.directions.feature(self.scaling, &mut self.feature);

@@ -12,18 +12,18 @@ type Lane = [f64; AT_ONCE];
 
 const ZERO: Lane = [0.0; AT_ONCE];
 
-/// Halvings of the range in which an eigenvalue lies. [`REFINED`] Rayleigh quotients make of its 2⁻²⁰ what double precision has.
-const HALVED: usize = 20;
-const REFINED: usize = 3;
+/// Rounds of the iteration before an eigenvalue is given up; two or three are the rule.
+const MAX_ROUNDS: usize = 30;
 
-/// Eigenvalues nearer to each other than this share of the trace are not told apart here.
+/// Eigenvectors of eigenvalues nearer to each other than this share of the trace are not told apart here.
 const LEAST_GAP: f64 = 1e-4;
 
 /// Finds the eigenvectors of the largest eigenvalues of positive semidefinite matrices.
 ///
-/// Householder's reduction to tridiagonal form; bisection by Sturm's sequence for the eigenvalues; an eigenvector of a tridiagonal matrix
-/// from both of its ends (Dhillon and Parlett, *Multiple representations to compute orthogonal eigenvectors*, 2004, §2). O(n³) with a
-/// small factor, as nothing of the other eigenvectors is made; no allocation after `new`.
+/// Householder's reduction to tridiagonal form; all eigenvalues by the rational QL iteration (Reinsch, *Algorithm 464: Eigenvalues of a real,
+/// symmetric, tridiagonal matrix*, 1973); an eigenvector of a tridiagonal matrix from both of its ends (Dhillon and Parlett, *Multiple
+/// representations to compute orthogonal eigenvectors*, 2004, §2). O(n³) with a small factor, as nothing of the other eigenvectors is
+/// made; no allocation after `new`.
 #[derive(Debug, Clone)]
 pub struct LeadingEigenvectors {
     dim: usize,
@@ -36,9 +36,10 @@ pub struct LeadingEigenvectors {
     below_squared: Vec<Lane>,
     /// `2 / |v|²` of each reflection.
     reflected: Vec<Lane>,
-    /// Ranges of the eigenvalues, the largest first: `count` and one more, if there are so many.
-    low: Vec<Lane>,
-    high: Vec<Lane>,
+    /// The largest eigenvalues, falling: `count` and one more, if there are so many.
+    values: Vec<Lane>,
+    /// Sum of the square roots of all.
+    roots: Lane,
     /// `count` vectors of `dim` values.
     vectors: Vec<Lane>,
     /// Room for rows.
@@ -60,8 +61,8 @@ impl LeadingEigenvectors {
             below: row.clone(),
             below_squared: row.clone(),
             reflected: row.clone(),
-            low: values.clone(),
-            high: values,
+            values,
+            roots: ZERO,
             vectors: vec![ZERO; count * dim],
             rows: [row.clone(), row],
             found: [false; AT_ONCE],
@@ -82,6 +83,11 @@ impl LeadingEigenvectors {
         solve(self);
     }
 
+    /// The square root of eigenvalue `j` of matrix `lane` over the sum of all of them.
+    pub fn share(&self, lane: usize, j: usize) -> f64 {
+        self.values[j][lane].max(0.0).sqrt() / self.roots[lane]
+    }
+
     /// Component `i` of vector `j` of matrix `lane`, of length 1 and either sign. `None` if it was not found: an eigenvalue is too near to
     /// the next, the matrix is 0, or holds what is no number.
     pub fn vectors(&self, lane: usize) -> Option<impl Fn(usize, usize) -> f64> {
@@ -93,17 +99,17 @@ impl LeadingEigenvectors {
 fn solve(s: &mut LeadingEigenvectors) {
     let trace = lanes(|l| (0..s.dim).map(|i| s.matrix[i * s.dim + i][l]).sum());
     tridiagonalise(s);
-    bisect(s, trace);
+    eigenvalues(s, trace);
     for j in 0..s.count {
         eigenvector(s, j, trace);
     }
-    let gap = |j: usize, l: usize| match s.low.get(j + 1) {
-        Some(next) => s.low[j][l] - next[l],
+    let gap = |j: usize, l: usize| match s.values.get(j + 1) {
+        Some(next) => s.values[j][l] - next[l],
         None => f64::INFINITY,
     };
     s.found = std::array::from_fn(|l| {
         let apart = (0..s.count).all(|j| gap(j, l) > LEAST_GAP * trace[l]);
-        apart && trace[l].is_finite() && trace[l] > 0.0
+        apart && s.roots[l].is_finite() && s.roots[l] > 0.0
     });
 }
 
@@ -194,43 +200,97 @@ fn at_least(value: f64, least: f64) -> f64 {
     if value.abs() < least { least } else { value }
 }
 
-/// Halves the ranges of the eigenvalues, from 0 to the trace.
+/// All eigenvalues of the tridiagonal matrices; keeps the largest and the sum of the roots. A lane whose iteration has not come to an end in
+/// [`MAX_ROUNDS`] gets what is no number.
 #[inline(always)]
-fn bisect(s: &mut LeadingEigenvectors, trace: Lane) {
-    let least = lanes(|l| 1e-30 * trace[l]);
-    let margin = 1.0 + 1e-9;
-    s.low.fill(lanes(|l| (1.0 - margin) * trace[l]));
-    s.high.fill(lanes(|l| margin * trace[l]));
-    for _ in 0..HALVED {
-        for j in 0..s.low.len() {
-            let middle = lanes(|l| 0.5 * (s.low[j][l] + s.high[j][l]));
-            // Eigenvalues above it: positive pivots of the matrix less `middle`.
-            let (mut above, mut pivot) = (ZERO, lanes(|_| 1.0));
-            for i in 0..s.dim {
-                let squared = if i == 0 { ZERO } else { s.below_squared[i - 1] };
-                for l in 0..AT_ONCE {
-                    let next = s.diagonal[i][l] - middle[l] - squared[l] / pivot[l];
-                    pivot[l] = at_least(next, least[l]);
-                    above[l] += if pivot[l] > 0.0 { 1.0 } else { 0.0 };
-                }
+fn eigenvalues(s: &mut LeadingEigenvectors, trace: Lane) {
+    let n = s.dim;
+    let [d, e] = &mut s.rows;
+    d.copy_from_slice(&s.diagonal);
+    e.copy_from_slice(&s.below_squared);
+    let least = lanes(|l| f64::EPSILON * trace[l]);
+    s.values.fill(lanes(|_| f64::NEG_INFINITY));
+    s.roots = ZERO;
+    let mut shifted = ZERO;
+    for at in 0..n {
+        let mut rounds = 0;
+        loop {
+            let open = lanes(|l| (e[at][l].abs() > least[l] * least[l]).into());
+            if at + 1 == n || open == ZERO {
+                break;
             }
+            rounds += 1;
+            if rounds > MAX_ROUNDS {
+                s.roots = lanes(|l| if open[l] > 0.0 { f64::NAN } else { s.roots[l] });
+                break;
+            }
+            shift(d, &e[at], at, &open, &mut shifted);
+            sweep(&mut d[at..], &mut e[at..], &open, &least);
+        }
+        let mut value = lanes(|l| d[at][l] + shifted[l]);
+        for l in 0..AT_ONCE {
+            s.roots[l] += value[l].max(0.0).sqrt();
+        }
+        for place in &mut s.values {
             for l in 0..AT_ONCE {
-                let is_below = above[l] > j as f64;
-                s.low[j][l] = if is_below { middle[l] } else { s.low[j][l] };
-                s.high[j][l] = if is_below { s.high[j][l] } else { middle[l] };
+                let (larger, smaller) = (place[l].max(value[l]), place[l].min(value[l]));
+                (place[l], value[l]) = (larger, smaller);
             }
         }
     }
 }
 
-/// Vector `j` of the matrices themselves, from the eigenvalue's range.
+/// Takes from the diagonal `d`, from `at` on, what makes the next eigenvalue there nearly 0; in `open` lanes.
+#[inline(always)]
+fn shift(d: &mut [Lane], e: &Lane, at: usize, open: &Lane, shifted: &mut Lane) {
+    let mut by = ZERO;
+    for l in 0..AT_ONCE {
+        let s = e[l].abs().sqrt();
+        let p = (d[at + 1][l] - d[at][l]) / (2.0 * s);
+        let root = s / (p + (p * p + 1.0).sqrt().copysign(p));
+        by[l] = if open[l] > 0.0 { d[at][l] - root } else { 0.0 };
+        shifted[l] += by[l];
+    }
+    for d in &mut d[at..] {
+        for l in 0..AT_ONCE {
+            d[l] -= by[l];
+        }
+    }
+}
+
+/// A rational QL transformation from the last of the diagonal `d` to the first, `e` being the squares beside it; in `open` lanes.
+#[inline(always)]
+fn sweep(d: &mut [Lane], e: &mut [Lane], open: &Lane, least: &Lane) {
+    let last = d.len() - 1;
+    let mut g = lanes(|l| at_least(d[last][l], least[l] * f64::EPSILON));
+    let (mut h, mut s) = (g, ZERO);
+    for i in (0..last).rev() {
+        for l in 0..AT_ONCE {
+            let is_open = open[l] > 0.0;
+            let p = g[l] * h[l];
+            let r = (p + e[i][l]).max(f64::MIN_POSITIVE);
+            e[i + 1][l] = if is_open { s[l] * r } else { e[i + 1][l] };
+            s[l] = e[i][l] / r;
+            let next = h[l] + s[l] * (h[l] + d[i][l]);
+            d[i + 1][l] = if is_open { next } else { d[i + 1][l] };
+            g[l] = at_least(d[i][l] - e[i][l] / g[l], least[l] * f64::EPSILON);
+            h[l] = g[l] * p / r;
+        }
+    }
+    for l in 0..AT_ONCE {
+        let is_open = open[l] > 0.0;
+        e[0][l] = if is_open { h[l] * s[l] * g[l] } else { e[0][l] };
+        d[0][l] = if is_open { h[l] } else { d[0][l] };
+    }
+}
+
+/// Vector `j` of the matrices themselves.
 #[inline(always)]
 fn eigenvector(s: &mut LeadingEigenvectors, j: usize, trace: Lane) {
     let n = s.dim;
-    let mut value = lanes(|l| 0.5 * (s.low[j][l] + s.high[j][l]));
-    for _ in 0..=REFINED {
-        value = tridiagonal_vector(s, j, value, trace);
-    }
+    // Once more at the Rayleigh quotient, for the last digits.
+    let value = tridiagonal_vector(s, j, s.values[j], trace);
+    tridiagonal_vector(s, j, value, trace);
     let v = &mut s.vectors[j * n..][..n];
     // Reflections back, the last first.
     for j in (0..n.saturating_sub(2)).rev() {
@@ -351,7 +411,12 @@ mod tests {
                     prop_assert!(!apart);
                     continue;
                 };
+                let roots: f64 = all.eigenvalues.iter().map(|v| v.max(0.0).sqrt()).sum();
+                // An eigenvalue is good to a few ε of the trace, so the root of one that is 0 to a few √ε; all of them are in the sum.
+                let tolerance = 4.0 * (dim as f64) * f64::EPSILON.sqrt();
                 for j in 0..count {
+                    let expected = value(j).max(0.0).sqrt() / roots;
+                    prop_assert!((leading.share(lane, j) - expected).abs() < tolerance);
                     let along: f64 = (0..dim).map(|i| vector(j, i) * all.eigenvectors[(i, order[j])]).sum();
                     prop_assert!(along.abs() > 1.0 - 1e-12, "{along}");
                 }

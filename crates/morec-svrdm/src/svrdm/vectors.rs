@@ -73,9 +73,15 @@ impl Directions {
         }
     }
 
-    /// Becomes directions that were found elsewhere, of which component `i` of the `j`th is `vector(j, i)`. Their shares are not known.
-    pub(super) fn set(&mut self, vector: impl Fn(usize, usize) -> f64) {
-        self.shares.fill(f64::NAN);
+    /// Becomes directions that were found elsewhere: component `i` of the `j`th is `vector(j, i)`.
+    pub(super) fn set(
+        &mut self,
+        vector: impl Fn(usize, usize) -> f64,
+        share: impl Fn(usize) -> f64,
+    ) {
+        for (j, place) in self.shares.iter_mut().enumerate() {
+            *place = share(j);
+        }
         for (place, value) in self.vectors.iter_mut().enumerate() {
             *value = vector(place / self.dim, place % self.dim);
         }
