@@ -11,7 +11,7 @@ use morec::kinematics::for_each_world_pose;
 use morec::live::Model;
 use morec::pivots::{PivotMap, pose_rows_of_clip};
 use morec::svrdm::{SvrdmEngine, SvrdmModel};
-use morec::templates::{ClassMatcher, Metric, TemplateEngine, TemplateModel};
+use morec::templates::{AT_ONCE, ClassMatcher, Metric, TemplateEngine, TemplateModel};
 
 /// Frames and times, summed over clips; all on one thread.
 #[derive(Debug, Clone, Default)]
@@ -61,12 +61,18 @@ impl Stats {
         let metric = Metric::new(&model.ridged, &model.total);
         let mut matcher = ClassMatcher::new(model, &metric);
         timed(&mut self.matching, || {
-            rows.iter().for_each(|row| matcher.step(row));
+            for ticks in rows.values().chunks(AT_ONCE * rows.dim()) {
+                matcher.advance(ticks);
+                (0..ticks.len() / rows.dim()).for_each(|at| matcher.look(at));
+            }
         });
         let mut engine = TemplateEngine::new(model)?;
         timed(&mut self.recognising, || {
-            for row in rows.iter() {
-                let _ = engine.push(row);
+            for ticks in rows.values().chunks(AT_ONCE * rows.dim()) {
+                engine.advance(ticks);
+                for (at, row) in ticks.chunks_exact(rows.dim()).enumerate() {
+                    let _ = engine.decide(at, row);
+                }
             }
             let _ = engine.finish();
         });

@@ -6,7 +6,7 @@ use crate::decode::FAR;
 use crate::features::Rows;
 
 use super::dot::{self, AT_ONCE, PairProducts, Pairs};
-use super::kernel::{self, Cells, CellsFixed, LANES};
+use super::kernel::{self, Cells, CellsFixed, LANES, Reached};
 use super::units::{self, StreamRows, Units};
 
 /// Cells left empty before each template, so that transitions from "before the first row" cost [`FAR`] without
@@ -45,7 +45,7 @@ pub struct TemplateBank {
     /// The rows of the last ticks.
     stream: StreamRows,
     /// Totals and ages of the templates' last cells at each of those ticks.
-    ends: Vec<(f32, i32)>,
+    ends: Vec<Reached>,
     /// The tick that is looked at, of those.
     shown: usize,
     tick: usize,
@@ -216,7 +216,7 @@ impl TemplateBank {
     }
 
     /// Total and age of a cell at the last tick.
-    fn at(&self, cell: usize) -> (f32, i32) {
+    fn at(&self, cell: usize) -> Reached {
         let (block, now) = (&self.cells[cell / LANES], (self.tick + 1) % 2);
         (block.total[now][cell % LANES], block.age[now][cell % LANES])
     }

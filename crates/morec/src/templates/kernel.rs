@@ -81,12 +81,15 @@ impl CellsFixed {
     }
 }
 
+/// Total and age of a cell.
+pub type Reached = (f32, i32);
+
 /// The last of a block's cells at a tick, which the first of the next look back to.
 #[derive(Clone, Copy)]
 struct Behind {
     local: f32,
-    before: [(f32, i32); 2],
-    earlier: (f32, i32),
+    before: [Reached; 2],
+    earlier: Reached,
 }
 
 /// Ticks of [`TemplateBank`](super::TemplateBank): the squared distances of the cells' rows `T` from each `z` of `stream`, as
@@ -99,7 +102,7 @@ pub fn step(
     (stream, dots): (&StreamRows, PairProducts),
     now: usize,
     cells: &mut [Cells],
-    (extents, ends): (&[(usize, usize)], &mut [(f32, i32)]),
+    (extents, ends): (&[(usize, usize)], &mut [Reached]),
 ) {
     let nothing = Behind {
         local: 0.0,
