@@ -344,9 +344,10 @@ fn class_distances(index: &MotionIndex, data: &Arc<ClipData>) -> Result<Vec<f32>
     for row in metric.apply_all(&rows).iter() {
         matcher.step(row);
         stretches.push(row);
+        matcher.look(f32::INFINITY, &mut stretches);
         for (number, sample) in model.samples.iter().enumerate() {
             let best = &mut least[sample.class.index()];
-            if let Some(found) = matcher.nearer(number, *best, gate, &mut stretches) {
+            if let Some(found) = matcher.nearer(number, *best, gate, &stretches) {
                 *best = found.distance;
             }
         }

@@ -92,6 +92,9 @@ impl ClassMatcher {
         self.negatives.show(at);
         let dim = self.metric.dim();
         self.stretches.push(&self.mapped[at * dim..][..dim]);
+        let all_within = self.reach / (1.0 - self.gate.discount);
+        self.matcher.look(all_within, &mut self.stretches);
+        self.negatives.look(all_within, &mut self.stretches);
         self.match_classes();
         self.negative = FAR;
         let all = MatchGate {
@@ -100,7 +103,7 @@ impl ClassMatcher {
         };
         for i in 0..self.negatives.bank().len() {
             let within = self.negative.min(self.reach);
-            let nearer = self.negatives.nearer(i, within, all, &mut self.stretches);
+            let nearer = self.negatives.nearer(i, within, all, &self.stretches);
             if let Some(found) = nearer {
                 self.negative = found.distance;
             }
@@ -112,7 +115,7 @@ impl ClassMatcher {
         for (template, class) in self.template_classes.iter().enumerate() {
             let best = &mut self.near[class.index()];
             let within = best.distance.min(self.reach);
-            let nearer = (self.matcher).nearer(template, within, self.gate, &mut self.stretches);
+            let nearer = (self.matcher).nearer(template, within, self.gate, &self.stretches);
             if let Some(found) = nearer {
                 *best = ClassDistance {
                     distance: found.distance,

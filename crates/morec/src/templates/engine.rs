@@ -235,7 +235,7 @@ impl TemplateEngine {
         self.decide(0, row)
     }
 
-    /// Takes the rows of the next ticks, one after the other, [`AT_ONCE`] at most. What each makes certain comes from
+    /// Takes the rows of the next ticks, one after the other, [`AT_ONCE`](super::dot::AT_ONCE) at most. What each makes certain comes from
     /// [`decide`](Self::decide), which must be called for each in turn: the same as of pushing one by one, and faster.
     pub fn advance(&mut self, rows: &[f32]) {
         if let Matches::Computed(matcher) = &mut self.matches {

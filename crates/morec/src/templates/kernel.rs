@@ -269,7 +269,7 @@ fn place<const WIDE: usize>(
 }
 
 /// Numbers whose squares are summed side by side, each place in a sum of its own.
-const SUMS: usize = 4;
+const SUMS: usize = 8;
 
 /// `|m|²` of the mean `m = (end − start) · share`, in [`SUMS`] partial sums.
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]

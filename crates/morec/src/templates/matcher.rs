@@ -6,7 +6,7 @@ use crate::decode::{DecodeParams, FAR};
 use crate::features::Rows;
 
 use super::bank::{Match, PartialMatch, TemplateBank};
-use super::spread_norm::{NormBound, SpreadNorm};
+use super::spread_norm::{self, NormBound, SpreadNorm};
 use super::stretches::Stretches;
 use super::units::Units;
 
@@ -44,6 +44,18 @@ pub struct Matcher {
     norm_bounds: Arc<[NormBound]>,
     /// `m_T` of each template.
     means: Arc<Rows>,
+    found: Found,
+}
+
+/// Matches of all templates at the tick looked at last, side by side.
+#[derive(Debug, Clone, Default)]
+struct Found {
+    /// Without what noise adds.
+    distances: Vec<f32>,
+    ages: Vec<usize>,
+    /// Of the matched stretches, without noise.
+    spreads: Vec<f32>,
+    normalized: Vec<f32>,
 }
 
 /// Noise up to this share of the typical spread is none: fast motion leaves as much.
@@ -139,6 +151,12 @@ impl Matcher {
             noises: templates.iter().map(Stretches::noise_of).collect(),
             noise_share: decode.noise_share,
             means: Arc::new(means),
+            found: Found {
+                distances: vec![FAR; templates.len()],
+                ages: vec![0; templates.len()],
+                spreads: vec![0.0; templates.len()],
+                normalized: vec![FAR; templates.len()],
+            },
         }
     }
 
@@ -187,7 +205,7 @@ impl Matcher {
     pub fn compare(&self, index: usize, stretches: &mut Stretches) -> NormalizedMatch {
         let (matched, noise) = self.without_noise(index, self.bank.matched(index), stretches);
         let near = self.nearness(index, matched, noise, stretches);
-        self.held_against_rest(index, matched, near, stretches)
+        self.held_against_rest(index, matched.distance, near, stretches)
     }
 
     /// A match of template `index` without what noise adds to it, and that noise.
@@ -207,19 +225,58 @@ impl Matcher {
         )
     }
 
-    /// The match of template `index` if it passes `gate` and is nearer than `distance`. O(1) for most templates that are not
-    /// nearer.
+    /// Normalises the matches of all templates at the tick that the bank shows, for [`nearer`](Self::nearer); `stretches` has taken the
+    /// same rows. Distances from `reach` on may stay [`FAR`]. O(templates), and O(d) for each age among them.
+    pub fn look(&mut self, reach: f32, stretches: &mut Stretches) {
+        for index in 0..self.bank.len() {
+            let (matched, noise) = self.without_noise(index, self.bank.matched(index), stretches);
+            self.found.distances[index] = matched.distance;
+            self.found.ages[index] = matched.age;
+            self.found.spreads[index] = (stretches.spread(matched.age) - noise).max(0.0);
+        }
+        let Found {
+            distances,
+            spreads,
+            normalized,
+            ..
+        } = &mut self.found;
+        spread_norm::normalize(
+            (self.norm, &self.norm_bounds, reach),
+            (&self.spreads, spreads),
+            distances,
+            normalized,
+        );
+    }
+
+    /// The match of template `index` that was [looked at](Self::look) if it passes `gate` and is nearer than `distance`. O(1) for most
+    /// templates that are not nearer.
     pub fn nearer(
         &self,
         index: usize,
         distance: f32,
         gate: MatchGate,
-        stretches: &mut Stretches,
+        stretches: &Stretches,
     ) -> Option<NormalizedMatch> {
-        self.nearer_match(index, self.bank.matched(index), distance, gate, stretches)
+        let found = &self.found;
+        let near = NormalizedMatch {
+            distance: found.normalized[index],
+            age: found.ages[index],
+            rest_share: f32::MAX,
+            spread: found.spreads[index],
+            offset_share: 0.0,
+        };
+        self.admitted(
+            index,
+            found.distances[index],
+            near,
+            distance,
+            gate,
+            stretches,
+        )
     }
 
-    /// [`nearer`](Self::nearer) with the match as [`TemplateBank::matched`] gave it, whatever the bank has gone on to.
+    /// The match of template `index` as [`TemplateBank::matched`] gave it, whatever the bank has gone on to, if it passes `gate` and is nearer
+    /// than `distance`. O(1) for most that are not nearer.
     pub fn nearer_match(
         &self,
         index: usize,
@@ -238,10 +295,23 @@ impl Matcher {
             return None;
         }
         let near = self.nearness(index, matched, noise, stretches);
+        self.admitted(index, matched.distance, near, distance, gate, stretches)
+    }
+
+    /// `near`, whose distance was `plain`, if it passes `gate` and is nearer than `distance`.
+    fn admitted(
+        &self,
+        index: usize,
+        plain: f32,
+        near: NormalizedMatch,
+        distance: f32,
+        gate: MatchGate,
+        stretches: &Stretches,
+    ) -> Option<NormalizedMatch> {
         if near.distance * (1.0 - gate.discount) >= distance {
             return None;
         }
-        let found = self.held_against_rest(index, matched, near, stretches);
+        let found = self.held_against_rest(index, plain, near, stretches);
         let found = found.discounted(gate.discount);
         (found.distance < distance && found.moves(gate.rest_share)).then_some(found)
     }
@@ -268,18 +338,18 @@ impl Matcher {
         found
     }
 
-    /// `near` with its distance as a share of that of a body at rest, or in other motion of its spread.
+    /// `near` with its plain `distance` as a share of that of a body at rest, or in other motion of its spread.
     fn held_against_rest(
         &self,
         index: usize,
-        Match { distance, age }: Match,
+        distance: f32,
         near: NormalizedMatch,
         stretches: &Stretches,
     ) -> NormalizedMatch {
         if distance >= FAR {
             return near;
         }
-        let offset = stretches.mean_offset(age, self.means.row(index));
+        let offset = stretches.mean_offset(near.age, self.means.row(index));
         let other = self.spreads[index] + offset + self.rest_spread * near.spread;
         NormalizedMatch {
             rest_share: distance / other.max(f32::MIN_POSITIVE),
@@ -390,10 +460,11 @@ mod tests {
                 let compared = matcher.compare(0, &mut stretches);
                 prop_assert!((compared.offset_share * found.distance - offset).abs() < 1e-3);
                 let all = MatchGate::plain(0.0);
-                prop_assert!(matcher.nearer(0, FAR, all, &mut stretches) == Some(compared));
-                prop_assert!(matcher.nearer(0, compared.distance, all, &mut stretches).is_none());
+                matcher.look(FAR, &mut stretches);
+                prop_assert!(matcher.nearer(0, FAR, all, &stretches) == Some(compared));
+                prop_assert!(matcher.nearer(0, compared.distance, all, &stretches).is_none());
                 let open = MatchGate { discount: 0.5, ..all };
-                let nearer = matcher.nearer(0, FAR, open, &mut stretches).unwrap();
+                let nearer = matcher.nearer(0, FAR, open, &stretches).unwrap();
                 let left = found.distance - 0.5 * offset.min(found.distance);
                 let scale = compared.distance / found.distance.max(f32::MIN_POSITIVE);
                 prop_assert!((nearer.distance - left * scale).abs() < 1e-3 * (1.0 + nearer.distance));
@@ -413,7 +484,11 @@ mod tests {
                 stretches.push(row);
                 let found = matcher.compare(0, &mut stretches).discounted(discount);
                 let is_nearer = found.distance < within && found.moves(0.7);
-                let nearer = matcher.nearer(0, within, gate, &mut stretches);
+                matcher.look(within / (1.0 - discount), &mut stretches);
+                let nearer = matcher.nearer(0, within, gate, &stretches);
+                prop_assert_eq!(nearer, is_nearer.then_some(found));
+                let matched = matcher.bank().matched(0);
+                let nearer = matcher.nearer_match(0, matched, within, gate, &mut stretches);
                 prop_assert_eq!(nearer, is_nearer.then_some(found));
             }
         }

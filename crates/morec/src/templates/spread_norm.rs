@@ -1,6 +1,8 @@
 //! Divisors that make distances of small and of large motions comparable.
 
-use crate::decode::TYPICAL_SPREAD;
+use multiversion::multiversion;
+
+use crate::decode::{FAR, TYPICAL_SPREAD};
 use crate::math::portable;
 
 /// Smaller spreads, as shares of the typical one, count as this.
@@ -16,6 +18,7 @@ pub(super) struct SpreadNorm {
 
 impl SpreadNorm {
     /// Divisor of a distance where the mean spread is `spread`.
+    #[inline(always)]
     pub fn at(self, spread: f32) -> f32 {
         let scale = self.typical / TYPICAL_SPREAD;
         if self.exponent == 0.0 {
@@ -52,8 +55,41 @@ impl NormBound {
         }
     }
 
+    #[inline(always)]
     pub fn at(self, spread: f32) -> f32 {
         self.at_zero + self.slope * spread
+    }
+}
+
+/// Distances that are normalised together.
+const TOGETHER: usize = 16;
+
+/// Normalises the `distances` of templates with the spreads `taught` from stretches with the spreads `seen`. Where none of some neighbours
+/// is below `reach` by its bound, they stay [`FAR`], as what is there.
+#[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
+pub(super) fn normalize(
+    (norm, bounds, reach): (SpreadNorm, &[NormBound], f32),
+    (taught, seen): (&[f32], &[f32]),
+    distances: &[f32],
+    normalized: &mut [f32],
+) {
+    for (part, out) in normalized.chunks_mut(TOGETHER).enumerate() {
+        let all = part * TOGETHER..part * TOGETHER + out.len();
+        let (distances, bounds) = (&distances[all.clone()], &bounds[all.clone()]);
+        let (taught, seen) = (&taught[all.clone()], &seen[all]);
+        out.fill(FAR);
+        let mut is_near = false;
+        for ((distance, bound), seen) in distances.iter().zip(bounds).zip(seen) {
+            is_near |= *distance < reach * bound.at(*seen);
+        }
+        if !is_near {
+            continue;
+        }
+        for (((out, distance), taught), seen) in out.iter_mut().zip(distances).zip(taught).zip(seen)
+        {
+            let normalized = distance / norm.at((taught + seen) / 2.0);
+            *out = if *distance < FAR { normalized } else { FAR };
+        }
     }
 }
 
