@@ -15,7 +15,7 @@ const ZERO: Lane = [0.0; AT_ONCE];
 /// Rounds of the iteration before an eigenvalue is given up; two or three are the rule.
 const MAX_ROUNDS: usize = 30;
 
-/// Eigenvectors of eigenvalues nearer to each other than this share of the trace are not told apart here.
+/// Eigenvectors of eigenvalues nearer to each other than this share of the trace are not distinguished here.
 const LEAST_GAP: f64 = 1e-4;
 
 /// Finds the eigenvectors of the largest eigenvalues of positive semidefinite matrices.
@@ -36,7 +36,7 @@ pub struct LeadingEigenvectors {
     below_squared: Vec<Lane>,
     /// `2 / |v|²` of each reflection.
     reflected: Vec<Lane>,
-    /// The largest eigenvalues, falling: `count` and one more, if there are so many.
+    /// The largest eigenvalues, falling: `count` and one more, if there is another.
     values: Vec<Lane>,
     /// Sum of the square roots of all.
     roots: Lane,
