@@ -381,7 +381,7 @@ mod tests {
         }
 
         #[test]
-        fn means_are_apart_by_four_partial_sums(values in values(3 * 23), dim in 0usize..23, share in 0.01f64..1.0) {
+        fn means_are_apart_by_partial_sums(values in values(3 * 23), dim in 0usize..23, share in 0.01f64..1.0) {
             let of = |part: usize| -> Vec<f64> { values[23 * part..][..dim].iter().map(|v| f64::from(*v) * 1.7).collect() };
             let (end, start, point) = (of(0), of(1), &values[46..46 + dim]);
             let sum = |term: &dyn Fn(usize) -> f64| {
