@@ -36,7 +36,7 @@ pub struct LeadingEigenvectors {
     below_squared: Vec<Lane>,
     /// `2 / |v|²` of each reflection.
     reflected: Vec<Lane>,
-    /// The largest eigenvalues, falling: `count` and one more, if there is another.
+    /// The largest eigenvalues, falling: `count` and the one after them, if there is one.
     values: Vec<Lane>,
     /// Sum of the square roots of all.
     roots: Lane,

@@ -92,9 +92,10 @@ impl ClassMatcher {
         self.negatives.show(at);
         let dim = self.metric.dim();
         self.stretches.push(&self.mapped[at * dim..][..dim]);
-        let all_within = self.reach / (1.0 - self.gate.discount);
-        self.matcher.look(all_within, &mut self.stretches);
-        self.negatives.look(all_within, &mut self.stretches);
+        // The gate takes the discount off distances that are normalised without it.
+        let undiscounted_reach = self.reach / (1.0 - self.gate.discount);
+        self.matcher.look(undiscounted_reach, &mut self.stretches);
+        self.negatives.look(undiscounted_reach, &mut self.stretches);
         self.match_classes();
         self.negative = FAR;
         let all = MatchGate {

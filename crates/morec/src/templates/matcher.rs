@@ -48,9 +48,9 @@ pub struct Matcher {
 }
 
 /// Matches of all templates at the tick looked at last, side by side.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 struct Found {
-    /// Without what noise adds.
+    /// Not normalised, without what noise adds.
     distances: Vec<f32>,
     ages: Vec<usize>,
     /// Of the matched stretches, without noise.
@@ -285,9 +285,6 @@ impl Matcher {
         gate: MatchGate,
         stretches: &mut Stretches,
     ) -> Option<NormalizedMatch> {
-        if matched.distance >= FAR {
-            return None;
-        }
         let (matched, noise) = self.without_noise(index, matched, stretches);
         // Most templates end here, before a power is taken.
         let bound = self.norm_bounds[index].at(stretches.spread(matched.age));
@@ -308,7 +305,7 @@ impl Matcher {
         gate: MatchGate,
         stretches: &Stretches,
     ) -> Option<NormalizedMatch> {
-        if near.distance * (1.0 - gate.discount) >= distance {
+        if near.distance >= FAR || near.distance * (1.0 - gate.discount) >= distance {
             return None;
         }
         let found = self.held_against_rest(index, plain, near, stretches);
@@ -448,6 +445,10 @@ mod tests {
                 stretches.push(row);
                 let found = matcher.bank().matched(0);
                 if found.distance >= FAR {
+                    let all = MatchGate::plain(0.0);
+                    matcher.look(f32::INFINITY, &mut stretches);
+                    prop_assert!(matcher.nearer(0, f32::INFINITY, all, &stretches).is_none());
+                    prop_assert!(matcher.nearer_match(0, found, f32::INFINITY, all, &mut stretches).is_none());
                     continue;
                 }
                 let stretch = stream.slice(t - found.age..t + 1);

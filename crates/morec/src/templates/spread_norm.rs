@@ -64,8 +64,8 @@ impl NormBound {
 /// Distances that are normalised together.
 const TOGETHER: usize = 16;
 
-/// Normalises the `distances` of templates with the spreads `taught` from stretches with the spreads `seen`. Where none of some neighbours
-/// is below `reach` by its bound, they stay [`FAR`], as what is there.
+/// Normalises the `distances` of templates with the spreads `taught` from stretches with the spreads `seen`. A distance of [`FAR`] stays;
+/// [`TOGETHER`] neighbours become [`FAR`] if their bounds say that none is below `reach`.
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 pub(super) fn normalize(
     (norm, bounds, reach): (SpreadNorm, &[NormBound], f32),
@@ -106,6 +106,26 @@ mod tests {
             let norm = SpreadNorm { exponent, typical };
             let line = NormBound::new(norm, template).at(stretch);
             prop_assert!(line >= norm.at((template + stretch) / 2.0));
+        }
+
+        #[test]
+        fn distances_within_reach_are_normalised_as_one_by_one(
+            matches in prop::collection::vec((0.0f32..9.0, 0.0f32..20.0, 0.0f32..60.0, any::<bool>()), 0..40),
+            exponent in 0.0f32..=1.0, typical in 0.1f32..5.0, reach in 0.0f32..4.0,
+        ) {
+            let norm = SpreadNorm { exponent, typical };
+            let taught: Vec<f32> = matches.iter().map(|m| m.1).collect();
+            let seen: Vec<f32> = matches.iter().map(|m| m.2).collect();
+            let distances: Vec<f32> = matches.iter().map(|m| if m.3 { m.0 } else { FAR }).collect();
+            let bounds: Vec<NormBound> = taught.iter().map(|t| NormBound::new(norm, *t)).collect();
+            let mut normalized = vec![f32::NAN; matches.len()];
+            normalize((norm, &bounds, reach), (&taught, &seen), &distances, &mut normalized);
+            for (i, found) in normalized.iter().enumerate() {
+                let alone = distances[i] / norm.at((taught[i] + seen[i]) / 2.0);
+                let unreached = distances[i] >= FAR || alone >= reach;
+                prop_assert!(found.to_bits() == alone.to_bits() || (unreached && *found == FAR));
+                prop_assert!(distances[i] < FAR || *found == FAR);
+            }
         }
     }
 }
