@@ -106,7 +106,16 @@ impl Clip {
 /// Frames in `rest` (the T-pose that a conversion left at the start) show the first pose after them instead:
 /// times stay those of the file, and the jump out of the T-pose is not taken for motion. In its gaps a point of a clip of
 /// points is nowhere (its position is not a number), but for gaps at the clip's start: streams begin with its first frame.
-pub fn for_each_world_pose(clip: &Clip, rest: &Span, mut each: impl FnMut(f64, &WorldPose)) {
+pub fn for_each_world_pose(clip: &Clip, rest: &Span, each: impl FnMut(f64, &WorldPose)) {
+    each_frame(clip, rest, |world, frame| world.set(clip, frame), each);
+}
+
+fn each_frame(
+    clip: &Clip,
+    rest: &Span,
+    set: impl Fn(&mut WorldPose, usize),
+    mut each: impl FnMut(f64, &WorldPose),
+) {
     let mut world = WorldPose::default();
     for frame in 0..clip.frames {
         let shown = if rest.contains(&frame) {
@@ -114,7 +123,7 @@ pub fn for_each_world_pose(clip: &Clip, rest: &Span, mut each: impl FnMut(f64, &
         } else {
             frame
         };
-        world.set(clip, shown);
+        set(&mut world, shown);
         let gaps = clip.points.iter().flat_map(|points| &points.gaps);
         for gap in gaps.filter(|gap| gap.frames.start > 0 && gap.frames.contains(&shown)) {
             if let Some(position) = world.positions.get_mut(gap.joint) {
@@ -122,5 +131,79 @@ pub fn for_each_world_pose(clip: &Clip, rest: &Span, mut each: impl FnMut(f64, &
             }
         }
         each(frame as f64 / clip.rate_hz, &world);
+    }
+}
+
+/// A part of a clip's skeleton: some joints and all that they hang from.
+#[derive(Debug)]
+pub struct PartialSkeleton<'c> {
+    clip: &'c Clip,
+    /// Parents come first.
+    joints: Vec<PartialJoint<'c>>,
+}
+
+#[derive(Debug)]
+struct PartialJoint<'c> {
+    joint: usize,
+    parent: Option<usize>,
+    offset: Vec3,
+    /// Where it is in its parent's frame at each frame, if it moves there.
+    track: Option<&'c [Vec3]>,
+    /// True if other joints of the part hang from it.
+    is_parent: bool,
+}
+
+impl<'c> PartialSkeleton<'c> {
+    /// The part of `clip`'s skeleton that `wanted` joints need. O(joints).
+    pub fn of(clip: &'c Clip, wanted: impl IntoIterator<Item = usize>) -> Self {
+        let all = clip.skeleton.joints();
+        let (mut included, mut is_parent) = (vec![false; all.len()], vec![false; all.len()]);
+        wanted.into_iter().for_each(|joint| included[joint] = true);
+        for (j, joint) in all.iter().enumerate().rev() {
+            if let (true, Some(parent)) = (included[j], joint.parent) {
+                (included[parent], is_parent[parent]) = (true, true);
+            }
+        }
+        let joints = all.iter().enumerate().filter(|(j, _)| included[*j]);
+        let joints = joints.map(|(joint, of)| PartialJoint {
+            joint,
+            parent: of.parent,
+            offset: of.offset,
+            track: clip.track(joint).map(|track| &track.positions[..]),
+            is_parent: is_parent[joint],
+        });
+        Self {
+            joints: joints.collect(),
+            clip,
+        }
+    }
+
+    /// [`for_each_world_pose`] of this part: joints outside are nowhere, and rotations of joints from which nothing hangs are
+    /// not computed.
+    pub fn for_each_world_pose(&self, rest: &Span, each: impl FnMut(f64, &WorldPose)) {
+        each_frame(
+            self.clip,
+            rest,
+            |world, frame| self.pose(world, frame),
+            each,
+        );
+    }
+
+    fn pose(&self, world: &mut WorldPose, frame: usize) {
+        let locals = self.clip.frame_rotations(frame);
+        world.positions.resize(locals.len(), Vec3::repeat(f64::NAN));
+        world.rotations.resize(locals.len(), Quat::identity());
+        let (positions, rotations) = (&mut world.positions[..], &mut world.rotations[..]);
+        for part in &self.joints {
+            let local_position = part.track.map_or(part.offset, |track| track[frame]);
+            let (position, above) = match part.parent {
+                Some(p) => (positions[p] + rotations[p] * local_position, rotations[p]),
+                None => (local_position, Quat::identity()),
+            };
+            positions[part.joint] = position;
+            if part.is_parent {
+                rotations[part.joint] = above * locals[part.joint];
+            }
+        }
     }
 }

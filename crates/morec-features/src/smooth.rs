@@ -10,7 +10,7 @@ use crate::layout::RowLayout;
 use crate::noise::{Filter, NOISE_GAINS, NoiseMeter, PROBE, WIDEST_FRAMES, filters};
 use crate::observe::{Observation, heading_from_world};
 use crate::params::FeatureParams;
-use crate::{BONE_WEIGHTS, BONES, BoneSet};
+use crate::{BONE_WEIGHTS, BoneSet};
 
 /// A frame as the filters want it.
 #[derive(Debug, Clone, Copy)]
@@ -61,6 +61,8 @@ pub struct Smoother {
     /// No more frames come: rows need not wait for them.
     ended: bool,
     row: Vec<f32>,
+    /// Smoothed directions around the frame of a row: before it, at it and behind it.
+    smoothed: [Vec<Vec3>; 3],
 }
 
 /// The filters of directions and of root motion, from their centres outwards.
@@ -124,6 +126,7 @@ impl Smoother {
             next_row_frame: params.frames_per_tick - 1,
             ended: false,
             row: vec![0.0; RowLayout::of(bones).dim()],
+            smoothed: std::array::from_fn(|_| vec![Vec3::zeros(); bones.span().len()]),
             params: params.clone(),
         }
     }
@@ -175,10 +178,13 @@ impl Smoother {
             return;
         }
         let frame = (self.pushed - 1 - PROBE.cut_frames) as isize;
-        let smooth = self.directions(frame, &self.probe);
+        let mut smoothed = std::mem::take(&mut self.smoothed);
+        let smooth = &mut smoothed[0];
+        self.smooth_directions(frame, &self.probe, smooth);
         let (here, first) = (self.directions_at(frame), self.span.start);
         let residual = |bone: usize| (here[bone - first] - smooth[bone - first]).norm_squared();
         let sum: f64 = self.bones.indices().map(residual).sum();
+        self.smoothed = smoothed;
         self.noise.take(sum / self.bones.len().max(1) as f64);
     }
 
@@ -204,8 +210,11 @@ impl Smoother {
         );
         let per_secs = rate / ((after - before).max(1) as f64);
         let kernels = &self.kernels[self.noise.step()];
-        let [then, here, soon] =
-            [before, frame, after].map(|frame| self.directions(frame, &kernels.directions));
+        let mut smoothed = std::mem::take(&mut self.smoothed);
+        for (frame, smoothed) in [before, frame, after].into_iter().zip(&mut smoothed) {
+            self.smooth_directions(frame, &kernels.directions, smoothed);
+        }
+        let [then, here, soon] = &smoothed;
         for (slot, bone) in self.bones.indices().enumerate() {
             let weight = BONE_WEIGHTS[bone];
             let at = bone - self.span.start;
@@ -223,7 +232,7 @@ impl Smoother {
         for (out, value) in row[layout.root()].iter_mut().zip(&root) {
             *out = (value * self.params.root_weight) as f32;
         }
-        self.row = row;
+        (self.row, self.smoothed) = (row, smoothed);
         self.next_row_frame += self.params.frames_per_tick;
         Some(&self.row)
     }
@@ -250,21 +259,18 @@ impl Smoother {
         &self.directions[self.place(index) * width..][..width]
     }
 
-    /// Directions of the bones of the span from its first on, smoothed with `kernel`; zero behind its last.
-    fn directions(&self, frame: isize, kernel: &[f64]) -> [Vec3; BONES] {
-        let mut sums = [Vec3::zeros(); BONES];
-        let sum = &mut sums[..self.span.len()];
-        for (sum, direction) in sum.iter_mut().zip(self.directions_at(frame)) {
+    /// Directions of the bones of the span, as many as `sums`, smoothed with `kernel`.
+    fn smooth_directions(&self, frame: isize, kernel: &[f64], sums: &mut [Vec3]) {
+        for (sum, direction) in sums.iter_mut().zip(self.directions_at(frame)) {
             *sum = direction * kernel[0];
         }
         for (k, weight) in kernel.iter().enumerate().skip(1) {
             let a = self.directions_at(frame - k as isize);
             let b = self.directions_at(frame + k as isize);
-            for ((sum, a), b) in sum.iter_mut().zip(a).zip(b) {
+            for ((sum, a), b) in sums.iter_mut().zip(a).zip(b) {
                 *sum += (a + b) * *weight;
             }
         }
-        sums
     }
 
     /// Velocity in the heading frame in the performer's unit of length a second (lateral, up, forward) and yaw rate, smoothed.

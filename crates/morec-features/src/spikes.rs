@@ -38,12 +38,15 @@ impl SpikeFilter {
         *self = Self::new(self.profile);
     }
 
-    /// `pose` without the joints that jumped. `unit_length` gives the scale of the source's unit.
-    pub fn clean(&mut self, time_secs: f64, pose: &KeyPose, unit_length: Option<f64>) -> KeyPose {
-        let mut out = *pose;
-        let (Some(unit), Some(origin)) = (unit_length, self.origin(pose)) else {
-            return out;
-        };
+    /// `pose` without the joints that jumped, if any did. `unit_length` gives the scale of the source's unit.
+    pub fn clean(
+        &mut self,
+        time_secs: f64,
+        pose: &KeyPose,
+        unit_length: Option<f64>,
+    ) -> Option<KeyPose> {
+        let (unit, origin) = (unit_length?, self.origin(pose)?);
+        let mut cleaned: Option<KeyPose> = None;
         let fastest = FASTEST * unit / LEG_METRES;
         for role in pose.roles() {
             let Some(place) = pose.get(role).map(|p| p - origin) else {
@@ -54,13 +57,14 @@ impl SpikeFilter {
                 let secs = time_secs - then;
                 let jumped = (place - before).norm() > fastest * secs.max(1e-3);
                 if jumped && secs < LONGEST_SECS {
-                    out.set(role, Vec3::repeat(f64::NAN));
+                    let cleaned = cleaned.get_or_insert(*pose);
+                    cleaned.set(role, Vec3::repeat(f64::NAN));
                     continue;
                 }
             }
             *slot = Some((time_secs, place));
         }
-        out
+        cleaned
     }
 
     /// The place that others are relative to.
@@ -95,8 +99,9 @@ mod tests {
     fn a_jump_and_back_is_unseen_and_what_stays_is_believed() {
         let mut filter = SpikeFilter::new(Profile::Body);
         let mut seen = |frame: usize, x: f64| {
-            let cleaned = filter.clean(frame as f64 / 30.0, &hand(x), Some(0.85));
-            cleaned.get(Role::LeftHand).is_some()
+            let pose = hand(x);
+            let cleaned = filter.clean(frame as f64 / 30.0, &pose, Some(0.85));
+            cleaned.unwrap_or(pose).get(Role::LeftHand).is_some()
         };
         assert!(seen(0, 0.3));
         assert!(!seen(1, 1.5), "36 m/s");
@@ -118,7 +123,7 @@ mod tests {
                 pose.set(Role::Hips, Vec3::repeat(f64::NAN));
             }
             let cleaned = filter.clean(frame as f64 / 30.0, &pose, Some(0.85));
-            cleaned.get(Role::LeftHand).is_some()
+            cleaned.unwrap_or(pose).get(Role::LeftHand).is_some()
         };
         assert!(seen(0, 0.3, false));
         assert!(!seen(1, 1.5, false), "36 m/s");
@@ -134,7 +139,7 @@ mod tests {
         for frame in 0..60 {
             let x = 0.6 * (frame as f64 / 120.0 * 30.0).sin();
             let cleaned = filter.clean(frame as f64 / 120.0, &hand(x), Some(0.85));
-            assert!(cleaned.get(Role::LeftHand).is_some(), "18 m/s");
+            assert!(cleaned.is_none(), "18 m/s");
         }
     }
 }

@@ -129,10 +129,11 @@ impl FeatureStream {
             _ => None,
         };
         let pose = image.as_ref().unwrap_or(pose);
-        let pose = self
+        let cleaned = self
             .spikes
             .clean(time_secs, pose, self.observer.unit_length());
-        let Some(observation) = self.observer.observe(&pose) else {
+        let pose = cleaned.as_ref().unwrap_or(pose);
+        let Some(observation) = self.observer.observe(pose) else {
             return Pushed::NoHips;
         };
         self.grid.push(time_secs, observation);

@@ -26,10 +26,15 @@ impl KeyPose {
     /// The role joints of a posed skeleton.
     pub fn of(pose: &WorldPose, roles: &RoleMap) -> Self {
         let mut key = Self::default();
-        for (role, joint) in roles.played() {
-            key.set(role, pose.positions[joint]);
-        }
+        key.update(pose, roles.played());
         key
+    }
+
+    /// Puts the roles of `played` where their joints are in `pose`; the others stay.
+    pub fn update(&mut self, pose: &WorldPose, played: impl IntoIterator<Item = (Role, usize)>) {
+        for (role, joint) in played {
+            self.set(role, pose.positions[joint]);
+        }
     }
 
     /// Position of `role`, if the source knows it.

@@ -1,20 +1,25 @@
 //! The poses of a clip, and the bones that it shows.
 
 use crate::clip::{Clip, Span};
-use crate::kinematics::{WorldPose, for_each_world_pose};
+use crate::kinematics::{PartialSkeleton, WorldPose};
 use crate::roles::{Role, RoleMap};
 
 use super::{BoneSet, KeyPose, Profile};
 
-/// Calls `each` with the time and pose of every frame of `clip` in turn, as [`for_each_world_pose`] shows them.
+/// Calls `each` with the time and pose of every frame of `clip` in turn, as
+/// [`for_each_world_pose`](crate::kinematics::for_each_world_pose) shows them.
 pub fn for_each_pose(
     clip: &Clip,
     roles: &RoleMap,
     rest: &Span,
     mut each: impl FnMut(f64, &KeyPose),
 ) {
-    for_each_world_pose(clip, rest, |time_secs, world| {
-        each(time_secs, &KeyPose::of(world, roles))
+    let played: Vec<_> = roles.played().collect();
+    let part = PartialSkeleton::of(clip, played.iter().map(|(_, joint)| *joint));
+    let mut key = KeyPose::default();
+    part.for_each_world_pose(rest, |time_secs, world| {
+        key.update(world, played.iter().copied());
+        each(time_secs, &key);
     });
 }
 

@@ -47,7 +47,7 @@ fn quat() -> impl Strategy<Value = Quat> {
     prop_oneof![5 => any, 1 => locked]
 }
 
-fn clip() -> impl Strategy<Value = Clip> {
+pub fn clip() -> impl Strategy<Value = Clip> {
     let rate = prop_oneof![
         Just(30.0),
         Just(120.0),

@@ -9,6 +9,7 @@ mod bvh_traps;
 mod for_ever;
 #[path = "../../../morec/tests/it/layers.rs"]
 mod layers;
+mod partial_skeleton;
 mod smooth_real;
 #[path = "../../../morec/tests/testing/mod.rs"]
 mod testing;

@@ -76,9 +76,9 @@ pub(super) fn recognize_with(
     }
     let mut reader = reader(model, clip, roles)?;
     recognizer.push_each(&mut found, |push| {
-        for_each_world_pose(clip, rest, |time_secs, world| {
-            push(time_secs, reader.read(world))
-        });
+        reader
+            .part_of(clip)
+            .for_each_world_pose(rest, |time_secs, world| push(time_secs, reader.read(world)));
     });
     found.extend_from_slice(recognizer.finish());
     Ok(found)

@@ -1,10 +1,10 @@
 //! One instant of a stream, as recognition takes it.
 
-use crate::clip::Skeleton;
-use crate::features::KeyPose;
-use crate::kinematics::WorldPose;
+use crate::clip::{Clip, Skeleton};
+use crate::features::{BoneSet, KeyPose};
+use crate::kinematics::{PartialSkeleton, WorldPose};
 use crate::pivots::{PivotMap, PivotPose};
-use crate::roles::RoleMap;
+use crate::roles::{Role, RoleMap};
 
 use super::{Model, StartError};
 
@@ -26,7 +26,8 @@ impl<'p> From<&'p KeyPose> for RecognizerInput<'p> {
 /// Takes from a posed skeleton what a model's recogniser needs.
 #[derive(Debug, Clone)]
 pub struct PoseExtractor {
-    roles: RoleMap,
+    /// The roles that the model looks at, with their joints.
+    played: Vec<(Role, usize)>,
     pivots: Option<PivotMap>,
     joints: usize,
     key: KeyPose,
@@ -43,13 +44,24 @@ impl PoseExtractor {
         let pivots = model.pivots();
         let pivots = pivots.map(|set| PivotMap::resolve(set, skeleton, roles));
         let (key, pivot) = (KeyPose::default(), PivotPose::default());
+        let shows_hands = !model.bones().and(BoneSet::HANDS).is_empty();
+        let looked_at = |role: Role| shows_hands || pivots.is_some() || !role.is_of_hand();
+        let played = roles.played().filter(|(role, _)| looked_at(*role));
         Ok(Self {
-            roles: roles.clone(),
+            played: played.collect(),
             pivots: pivots.transpose()?,
             joints: skeleton.len(),
             key,
             pivot,
         })
+    }
+
+    /// The part of `clip`'s skeleton whose poses are read.
+    pub(super) fn part_of<'c>(&self, clip: &'c Clip) -> PartialSkeleton<'c> {
+        match self.pivots {
+            Some(_) => PartialSkeleton::of(clip, 0..self.joints),
+            None => PartialSkeleton::of(clip, self.played.iter().map(|(_, joint)| *joint)),
+        }
     }
 
     /// Names of the pivots that the skeleton lacks.
@@ -69,7 +81,7 @@ impl PoseExtractor {
 
     /// The pose, valid until the next is read. No allocation.
     pub fn read(&mut self, world: &WorldPose) -> RecognizerInput<'_> {
-        self.key = KeyPose::of(world, &self.roles);
+        self.key.update(world, self.played.iter().copied());
         let turned = self.pivots(world).is_some();
         RecognizerInput {
             key: &self.key,
