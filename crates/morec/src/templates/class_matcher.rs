@@ -80,8 +80,7 @@ impl ClassMatcher {
     pub fn advance(&mut self, rows: &[f32]) {
         let dim = self.metric.dim();
         let mapped = &mut self.mapped[..rows.len()];
-        let places = mapped.chunks_exact_mut(dim);
-        (rows.chunks_exact(dim).zip(places)).for_each(|(row, to)| self.metric.apply(row, to));
+        self.metric.apply_each(rows, mapped);
         self.matcher.advance(mapped.chunks_exact(dim));
         self.negatives.advance(mapped.chunks_exact(dim));
     }

@@ -230,80 +230,104 @@ pub fn squared_distances(rows: &[Lanes], z: &[f32], out: &mut [Lanes]) {
     }
 }
 
-/// `out = Σ row[k] · lines[k]`, the lines one after the other and as long as `out`.
-#[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
-pub fn combination(lines: &[f32], row: &[f32], out: &mut [f32]) {
-    const NARROW: usize = 16;
-    let dim = out.len();
-    let mut from = 0;
-    while dim - from >= LANES {
-        place(lines, row, out, from, [0.0; LANES]);
-        from += LANES;
-    }
-    if dim < NARROW {
-        return (from..dim).for_each(|at| place(lines, row, out, at, [0.0; 1]));
-    }
-    while from < dim {
-        // The last places overlap those before them: summing twice changes nothing.
-        let start = from.min(dim - NARROW);
-        place(lines, row, out, start, [0.0; NARROW]);
-        from = start + NARROW;
-    }
-}
+/// Places of the columns that [`combinations`] sums side by side.
+pub const COLUMNS: usize = 16;
 
-/// The places of `out` from `from` on, as many as `sums`, which stay in registers while the lines go by.
-#[inline(always)]
-fn place<const WIDE: usize>(
-    lines: &[f32],
-    row: &[f32],
-    out: &mut [f32],
-    from: usize,
-    mut sums: [f32; WIDE],
-) {
-    for (line, value) in lines.chunks_exact(out.len()).zip(row) {
-        for (sum, a) in sums.iter_mut().zip(&line[from..from + WIDE]) {
-            *sum += a * value;
+/// For each of the `ROWS` rows of `rows`, one after the other, `Σ row[k] · lines[k]`: the lines one after the other and padded to a multiple of
+/// [`COLUMNS`], `out` not padded. Each sum is in the order of `k`.
+#[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
+pub fn combinations<const ROWS: usize>(lines: &[f32], rows: &[f32], out: &mut [f32]) {
+    let (dim, places) = (rows.len() / ROWS, out.len() / ROWS);
+    let blocks = places.div_ceil(COLUMNS);
+    let (blocks_of_lines, _) = lines.as_chunks::<COLUMNS>();
+    for block in 0..blocks {
+        let mut sums = [[0.0; COLUMNS]; ROWS];
+        for k in 0..dim {
+            let line = &blocks_of_lines[k * blocks + block];
+            for (row, sum) in sums.iter_mut().enumerate() {
+                let value = rows[row * dim + k];
+                for lane in 0..COLUMNS {
+                    sum[lane] += line[lane] * value;
+                }
+            }
+        }
+        let from = block * COLUMNS;
+        for (row, sum) in sums.iter().enumerate() {
+            let to = &mut out[row * places..][from..places.min(from + COLUMNS)];
+            to.copy_from_slice(&sum[..to.len()]);
         }
     }
-    out[from..from + WIDE].copy_from_slice(&sums);
 }
 
-/// Numbers whose squares are summed side by side, each place in a sum of its own.
-const SUMS: usize = 8;
+/// Numbers whose squares are summed side by side, each place in a sum of its own. Rows are padded with zeros to whole blocks.
+pub const SUMS: usize = 8;
+pub type Sums = [f64; SUMS];
 
-/// `|m|²` of the mean `m = (end − start) · share`, in [`SUMS`] partial sums.
+/// `row` in blocks.
+pub fn blocks(row: &[f32]) -> impl Iterator<Item = [f32; SUMS]> {
+    row.chunks(SUMS).map(|part| {
+        let mut block = [0.0; SUMS];
+        block[..part.len()].copy_from_slice(part);
+        block
+    })
+}
+
+/// `to = from + row`; returns `|row|²`.
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
-pub fn square_of_mean(end: &[f64], start: &[f64], share: f64) -> f64 {
-    let mut sums = [0.0; SUMS];
-    let (mut ends, mut starts) = (end.chunks_exact(SUMS), start.chunks_exact(SUMS));
-    for (end, start) in ends.by_ref().zip(starts.by_ref()) {
+pub fn add_row(from: &[Sums], row: &[f32], to: &mut [Sums]) -> f64 {
+    let mut squares = [0.0; SUMS];
+    for ((to, from), row) in to.iter_mut().zip(from).zip(blocks(row)) {
+        for lane in 0..SUMS {
+            let value = f64::from(row[lane]);
+            to[lane] = from[lane] + value;
+            squares[lane] += value * value;
+        }
+    }
+    squares.iter().sum()
+}
+
+/// `|Σ weights[k] · lines[k]|²`.
+#[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
+pub fn square_of_combination(lines: &[&[Sums]; 6], weights: &[f64; 6]) -> f64 {
+    let mut squares = [0.0; SUMS];
+    for block in 0..lines[0].len() {
+        let mut values = [0.0; SUMS];
+        for (line, weight) in lines.iter().zip(weights) {
+            for lane in 0..SUMS {
+                values[lane] += weight * line[block][lane];
+            }
+        }
+        for lane in 0..SUMS {
+            squares[lane] += values[lane] * values[lane];
+        }
+    }
+    squares.iter().sum()
+}
+
+/// `|m|²` of the mean `m = (end − start) · share`.
+#[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
+pub fn square_of_mean(end: &[Sums], start: &[Sums], share: f64) -> f64 {
+    let mut squares = [0.0; SUMS];
+    for (end, start) in end.iter().zip(start) {
         for lane in 0..SUMS {
             let value = (end[lane] - start[lane]) * share;
-            sums[lane] += value * value;
+            squares[lane] += value * value;
         }
     }
-    let rest = ends.remainder().iter().zip(starts.remainder());
-    let rest = rest.map(|(end, start)| (end - start) * share);
-    sums.iter().sum::<f64>() + rest.map(|value| value * value).sum::<f64>()
+    squares.iter().sum()
 }
 
-/// `|m − point|²` of the mean `m = (end − start) · share`, in [`SUMS`] partial sums.
+/// `|m − point|²` of the mean `m = (end − start) · share`.
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
-pub fn offset_of_mean(end: &[f64], start: &[f64], share: f64, point: &[f32]) -> f64 {
-    let mut sums = [0.0; SUMS];
-    let (mut ends, mut starts) = (end.chunks_exact(SUMS), start.chunks_exact(SUMS));
-    let mut points = point.chunks_exact(SUMS);
-    for ((end, start), point) in ends.by_ref().zip(starts.by_ref()).zip(points.by_ref()) {
+pub fn offset_of_mean(end: &[Sums], start: &[Sums], share: f64, point: &[[f32; SUMS]]) -> f64 {
+    let mut squares = [0.0; SUMS];
+    for ((end, start), point) in end.iter().zip(start).zip(point) {
         for lane in 0..SUMS {
             let value = (end[lane] - start[lane]) * share - f64::from(point[lane]);
-            sums[lane] += value * value;
+            squares[lane] += value * value;
         }
     }
-    let rest = ends.remainder().iter().zip(starts.remainder());
-    let rest = rest
-        .zip(points.remainder())
-        .map(|((end, start), point)| (end - start) * share - f64::from(*point));
-    sums.iter().sum::<f64>() + rest.map(|value| value * value).sum::<f64>()
+    squares.iter().sum()
 }
 
 /// The place of the smallest `total[i] / (rows + i)`, the first of equals, and that quotient; infinite of nothing.
@@ -381,29 +405,49 @@ mod tests {
         }
 
         #[test]
-        fn means_are_apart_by_partial_sums(values in values(3 * 23), dim in 0usize..23, share in 0.01f64..1.0) {
-            let of = |part: usize| -> Vec<f64> { values[23 * part..][..dim].iter().map(|v| f64::from(*v) * 1.7).collect() };
-            let (end, start, point) = (of(0), of(1), &values[46..46 + dim]);
-            let sum = |term: &dyn Fn(usize) -> f64| {
-                let mut sums = [0.0f64; SUMS];
-                let whole = dim - dim % SUMS;
-                (0..whole).for_each(|i| sums[i % SUMS] += term(i) * term(i));
-                sums.iter().sum::<f64>() + (whole..dim).map(|i| term(i) * term(i)).sum::<f64>()
+        fn sums_of_rows_are_those_of_one_value_after_the_other(
+            values in values(6 * 23), dim in 1usize..23, share in 0.01f64..1.0,
+        ) {
+            let row = |part: usize| &values[23 * part..][..dim];
+            let rows = [0, 1, 2, 3, 4, 5].map(|part| -> Vec<Sums> { blocks(row(part)).map(|b| b.map(|v| f64::from(v) * 1.7)).collect() });
+            let [start, end, ..] = &rows;
+            let at = |part: usize, i: usize| rows[part][i / SUMS][i % SUMS];
+            let near = |sum: f64, term: &dyn Fn(usize) -> f64| {
+                let plain: f64 = (0..dim).map(|i| term(i) * term(i)).sum();
+                (sum - plain).abs() <= 1e-12 * plain
             };
-            let mean = |i: usize| (end[i] - start[i]) * share;
-            let square = square_of_mean(&end, &start, share);
-            prop_assert_eq!(square.to_bits(), sum(&mean).to_bits());
-            let offset = offset_of_mean(&end, &start, share, point);
-            prop_assert_eq!(offset.to_bits(), sum(&|i| mean(i) - f64::from(point[i])).to_bits());
+            let mean = |i: usize| (at(1, i) - at(0, i)) * share;
+            prop_assert!(near(square_of_mean(end, start, share), &mean));
+            let point: Vec<_> = blocks(row(2)).collect();
+            let apart = |i: usize| mean(i) - f64::from(row(2)[i]);
+            prop_assert!(near(offset_of_mean(end, start, share, &point), &apart));
+            let weights = [1.0, -5.0, 10.0, -10.0, 5.0, share];
+            let lines = [0, 1, 2, 3, 4, 5].map(|part: usize| &rows[part][..]);
+            let combined = |i: usize| (0..6).map(|part| weights[part] * at(part, i)).sum();
+            prop_assert!(near(square_of_combination(&lines, &weights), &combined));
+            let mut to = vec![[f64::NAN; SUMS]; start.len()];
+            prop_assert!(near(add_row(start, row(2), &mut to), &|i| f64::from(row(2)[i])));
+            for (i, value) in row(2).iter().enumerate() {
+                prop_assert_eq!(to[i / SUMS][i % SUMS].to_bits(), (at(0, i) + f64::from(*value)).to_bits());
+            }
         }
 
         #[test]
-        fn a_combination_adds_line_after_line(dim in 1usize..150, lines in values(9 * 150), row in values(9)) {
-            let lines = &lines[..9 * dim];
-            let mut out = vec![f32::NAN; dim];
-            combination(lines, &row, &mut out);
-            let sum = |k: usize| lines.chunks_exact(dim).zip(&row).fold(0.0, |s, (line, v)| s + line[k] * v);
-            prop_assert_eq!(bits(&out), bits(&(0..dim).map(sum).collect::<Vec<f32>>()));
+        fn combinations_add_line_after_line(dim in 1usize..100, lines in values(9 * 100), rows in values(4 * 9)) {
+            let lines: Vec<&[f32]> = lines.chunks_exact(100).map(|line| &line[..dim]).collect();
+            let mut padded = vec![0.0; 9 * dim.next_multiple_of(COLUMNS)];
+            for (to, line) in padded.chunks_exact_mut(dim.next_multiple_of(COLUMNS)).zip(&lines) {
+                to[..dim].copy_from_slice(line);
+            }
+            let mut out = vec![f32::NAN; 4 * dim];
+            combinations::<4>(&padded, &rows, &mut out);
+            for (row, out) in rows.chunks_exact(9).zip(out.chunks_exact(dim)) {
+                let sum = |k: usize| lines.iter().zip(row).fold(0.0, |s, (line, v)| s + line[k] * v);
+                prop_assert_eq!(bits(out), bits(&(0..dim).map(sum).collect::<Vec<f32>>()));
+                let mut alone = vec![f32::NAN; dim];
+                combinations::<1>(&padded, row, &mut alone);
+                prop_assert_eq!(bits(&alone), bits(out));
+            }
         }
 
         #[test]

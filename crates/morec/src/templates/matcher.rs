@@ -6,6 +6,7 @@ use crate::decode::{DecodeParams, FAR};
 use crate::features::Rows;
 
 use super::bank::{Match, PartialMatch, TemplateBank};
+use super::kernel::{self, SUMS};
 use super::spread_norm::{self, NormBound, SpreadNorm};
 use super::stretches::Stretches;
 use super::units::Units;
@@ -42,8 +43,8 @@ pub struct Matcher {
     noises: Arc<[f32]>,
     noise_share: f32,
     norm_bounds: Arc<[NormBound]>,
-    /// `m_T` of each template.
-    means: Arc<Rows>,
+    /// `m_T` of each template, in [blocks](kernel::blocks).
+    means: Arc<[Vec<[f32; SUMS]>]>,
     found: Found,
 }
 
@@ -133,11 +134,11 @@ impl Matcher {
             exponent: decode.spread_exponent,
             typical: decode.typical_spread,
         };
-        let mut means = Rows::new(dim);
+        let mut means = Vec::with_capacity(templates.len());
         let mut spreads = Vec::with_capacity(templates.len());
         for template in templates {
             let (mean, spread) = mean_and_spread(template, dim);
-            means.push(&mean);
+            means.push(kernel::blocks(&mean).collect());
             spreads.push(spread);
         }
         Self {
@@ -150,7 +151,7 @@ impl Matcher {
             spreads: spreads.into(),
             noises: templates.iter().map(Stretches::noise_of).collect(),
             noise_share: decode.noise_share,
-            means: Arc::new(means),
+            means: means.into(),
             found: Found {
                 distances: vec![FAR; templates.len()],
                 ages: vec![0; templates.len()],
@@ -346,7 +347,7 @@ impl Matcher {
         if distance >= FAR {
             return near;
         }
-        let offset = stretches.mean_offset(near.age, self.means.row(index));
+        let offset = stretches.mean_offset(near.age, &self.means[index]);
         let other = self.spreads[index] + offset + self.rest_spread * near.spread;
         NormalizedMatch {
             rest_share: distance / other.max(f32::MIN_POSITIVE),

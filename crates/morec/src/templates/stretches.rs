@@ -2,7 +2,7 @@
 
 use crate::features::{Rows, USUAL_NOISE_GAIN};
 
-use super::kernel;
+use super::kernel::{self, SUMS, Sums};
 
 /// Noise is measured at every fourth tick, over the last 64 times: eight seconds, of which motion fills less than half.
 const NOISE_STEP: usize = 4;
@@ -22,11 +22,13 @@ const DIFFERENCE: [f64; 6] = [1.0, -5.0, 10.0, -10.0, 5.0, -1.0];
 /// Nothing is allocated after construction.
 #[derive(Debug, Clone)]
 pub struct Stretches {
-    /// Values of a row and one more, for the sum of squared lengths.
+    /// Blocks of a row.
     width: usize,
     mask: usize,
     /// Of rows `0..tick`, at slot `tick & mask`.
-    sums: Vec<f64>,
+    sums: Vec<Sums>,
+    /// Of their squared lengths.
+    squares: Vec<f64>,
     ticks: usize,
     /// Spread of the stretch of each age, and the tick at which it was computed: many templates' matches begin at the
     /// same tick.
@@ -48,10 +50,12 @@ impl Stretches {
     /// For rows of `dim` values and stretches of at most `longest` ticks.
     pub fn new(dim: usize, longest: usize) -> Self {
         let capacity = (longest + 2).max(DIFFERENCE.len()).next_power_of_two();
+        let width = dim.div_ceil(SUMS);
         Self {
-            width: dim + 1,
+            width,
             mask: capacity - 1,
-            sums: vec![0.0; (dim + 1) * capacity],
+            sums: vec![[0.0; SUMS]; width * capacity],
+            squares: vec![0.0; capacity],
             ticks: 0,
             spreads: vec![(0, 0.0); capacity],
             noise_gain: USUAL_NOISE_GAIN,
@@ -64,24 +68,25 @@ impl Stretches {
     /// Forgets the stream so far.
     pub fn reset(&mut self) {
         self.ticks = 0;
-        self.sums[..self.width].fill(0.0);
+        self.sums[..self.width].fill([0.0; SUMS]);
+        self.squares[0] = 0.0;
         self.spreads.fill((0, 0.0));
         (self.times, self.noise) = (0, 0.0);
     }
 
     /// Takes the next row. O(d).
     pub fn push(&mut self, row: &[f32]) {
-        let from = (self.ticks & self.mask) * self.width;
+        let from = self.ticks & self.mask;
         self.ticks += 1;
-        let to = (self.ticks & self.mask) * self.width;
-        let mut square = 0.0;
-        for (i, value) in row.iter().enumerate() {
-            let value = f64::from(*value);
-            self.sums[to + i] = self.sums[from + i] + value;
-            square += value * value;
-        }
-        let last = self.width - 1;
-        self.sums[to + last] = self.sums[from + last] + square;
+        let to = self.ticks & self.mask;
+        // Neighbours in the ring, or its last and its first.
+        let (before, after) = self.sums.split_at_mut(from.max(to) * self.width);
+        let (from_sums, to_sums) = match from < to {
+            true => (&before[from * self.width..], &mut after[..self.width]),
+            false => (&after[..], &mut before[..self.width]),
+        };
+        let square = kernel::add_row(from_sums, row, to_sums);
+        self.squares[to] = self.squares[from] + square;
         self.measure_noise();
     }
 
@@ -106,11 +111,8 @@ impl Stretches {
         if self.ticks + 1 < DIFFERENCE.len() {
             return None;
         }
-        let dim = self.width - 1;
-        let at = |back: usize| &self.sums[((self.ticks - back) & self.mask) * self.width..][..dim];
-        let sums = [0, 1, 2, 3, 4, 5].map(at);
-        let fourth = |i: usize| -> f64 { DIFFERENCE.iter().zip(sums).map(|(w, s)| w * s[i]).sum() };
-        Some((0..dim).map(|i| fourth(i).powi(2)).sum::<f64>() as f32)
+        let sums = [0, 1, 2, 3, 4, 5].map(|back| self.sums_at(self.ticks - back));
+        Some(kernel::square_of_combination(&sums, &DIFFERENCE) as f32)
     }
 
     /// The squared fourth difference that noise of variance 1 leaves in the rows that come:
@@ -148,26 +150,28 @@ impl Stretches {
     }
 
     fn compute_spread(&self, age: usize) -> f32 {
-        let (end, start, share) = self.of(age);
-        let last = self.width - 1;
-        let square = (end[last] - start[last]) * share;
-        let mean = kernel::square_of_mean(&end[..last], &start[..last], share);
+        let ([start, end], share) = self.of(age);
+        let squares = [start, end].map(|tick| self.squares[tick & self.mask]);
+        let square = (squares[1] - squares[0]) * share;
+        let mean = kernel::square_of_mean(self.sums_at(end), self.sums_at(start), share);
         (square - mean).max(0.0) as f32
     }
 
-    /// Squared distance from `point` to the mean of the last `age + 1` rows. O(d).
-    pub fn mean_offset(&self, age: usize, point: &[f32]) -> f32 {
-        let (end, start, share) = self.of(age);
-        let dim = self.width - 1;
-        kernel::offset_of_mean(&end[..dim], &start[..dim], share, point) as f32
+    /// Squared distance from `point`, in [blocks](kernel::blocks), to the mean of the last `age + 1` rows. O(d).
+    pub(super) fn mean_offset(&self, age: usize, point: &[[f32; SUMS]]) -> f32 {
+        let ([start, end], share) = self.of(age);
+        kernel::offset_of_mean(self.sums_at(end), self.sums_at(start), share, point) as f32
     }
 
-    /// Sums at the end and before the start of the last `age + 1` rows, and one over their number.
-    fn of(&self, age: usize) -> (&[f64], &[f64], f64) {
-        let at = |tick: usize| &self.sums[(tick & self.mask) * self.width..][..self.width];
+    /// Tick before the last `age + 1` rows and behind them, and one over their number.
+    fn of(&self, age: usize) -> ([usize; 2], f64) {
         let start = self.ticks.saturating_sub(age + 1);
         let share = 1.0 / (self.ticks - start).max(1) as f64;
-        (at(self.ticks), at(start), share)
+        ([start, self.ticks], share)
+    }
+
+    fn sums_at(&self, tick: usize) -> &[Sums] {
+        &self.sums[(tick & self.mask) * self.width..][..self.width]
     }
 }
 

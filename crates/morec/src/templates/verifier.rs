@@ -273,14 +273,7 @@ impl CandidateScorer {
             .score(&evidence.ratios(self.threshold));
         if let Some(place) = self.verifier.classes.iter().position(|c| c.class == class) {
             shape_of(len, row, &mut self.shape);
-            let dim = metric.dim();
-            for (raw, mapped) in self
-                .shape
-                .chunks_exact(dim)
-                .zip(self.mapped.chunks_exact_mut(dim))
-            {
-                metric.apply(raw, mapped);
-            }
+            metric.apply_each(&self.shape, &mut self.mapped);
             let beside = evidence.beside_shape(self.threshold).map(|v| v as f32);
             kernel::squared_distances(&self.shapes[place], &self.mapped, &mut self.apart);
             score += kernel_sum(
