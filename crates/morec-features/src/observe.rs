@@ -1,6 +1,6 @@
 //! From joint positions to bone directions as the performer sees them.
 
-use mocap::math::{Vec3, portable, slerp_direction};
+use mocap::math::{DirectionSlerp, Vec3, portable};
 use mocap::roles::{ARMS, Role};
 
 use crate::{ALL_BONES, Bone, BoneKind, BoneSet, Hand, HeadingLine, KeyPose, PalmFrame, Profile};
@@ -59,11 +59,12 @@ impl Observation {
             return self.clone_from(if t <= 0.0 { a } else { b });
         }
         let first = bones.span().start;
+        let slerp = DirectionSlerp::new(t);
         for bone in bones.indices() {
             let (from, to) = (&a.directions[bone - first], &b.directions[bone - first]);
             self.directions[bone - first] = match ALL_BONES[bone].kind {
                 BoneKind::Direction | BoneKind::PalmForward(_) | BoneKind::PalmNormal(_) => {
-                    slerp_direction(from, to, t)
+                    slerp.between(from, to)
                 }
                 BoneKind::Offset | BoneKind::Palms | BoneKind::Finger(_) => from.lerp(to, t),
             };
