@@ -230,57 +230,60 @@ pub fn squared_distances(rows: &[Lanes], z: &[f32], out: &mut [Lanes]) {
     }
 }
 
-/// Columns whose sums stand side by side.
+/// Columns whose sums stand side by side at least.
 pub const COLUMNS: usize = 16;
 
 /// For each of the `ROWS` rows of `rows`, one after the other, `Σ row[k] · lines[k]`: the lines one after the other and padded to a multiple of
-/// [`COLUMNS`], `out` not padded. `BLOCKS` times as many columns go side by side while there are so many. Each sum is in the order of `k`.
+/// [`COLUMNS`], `out` not padded. `WIDE` columns go side by side while there are so many. Each sum is in the order of `k`.
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
-pub fn combinations<const ROWS: usize, const BLOCKS: usize>(
+pub fn combinations<const ROWS: usize, const WIDE: usize>(
     lines: &[f32],
     rows: &[f32],
     out: &mut [f32],
 ) {
-    let (dim, places) = (rows.len() / ROWS, out.len() / ROWS);
+    let (dim, padded) = (
+        rows.len() / ROWS,
+        (out.len() / ROWS).next_multiple_of(COLUMNS),
+    );
     let rows: [&[f32]; ROWS] = std::array::from_fn(|row| &rows[row * dim..][..dim]);
-    let lines = (lines.as_chunks().0, places.div_ceil(COLUMNS));
-    let mut block = 0;
-    while block < lines.1 {
-        if block + BLOCKS <= lines.1 {
-            combine::<ROWS, BLOCKS>(lines, block, rows, out);
-            block += BLOCKS;
+    let mut from = 0;
+    while from < padded {
+        if from + WIDE <= padded {
+            combine::<ROWS, WIDE>((lines, padded), from, rows, out);
+            from += WIDE;
         } else {
-            combine::<ROWS, 1>(lines, block, rows, out);
-            block += 1;
+            combine::<ROWS, COLUMNS>((lines, padded), from, rows, out);
+            from += COLUMNS;
         }
     }
 }
 
-/// The same of `BLOCKS` blocks from `block` on, of lines that have as many as said.
+/// The same of `WIDE` columns from `from` on, of lines of `padded` columns.
 #[inline(always)]
-fn combine<const ROWS: usize, const BLOCKS: usize>(
-    (lines, blocks): (&[[f32; COLUMNS]], usize),
-    block: usize,
+fn combine<const ROWS: usize, const WIDE: usize>(
+    (lines, padded): (&[f32], usize),
+    from: usize,
     rows: [&[f32]; ROWS],
     out: &mut [f32],
 ) {
     let (dim, places) = (rows[0].len(), out.len() / ROWS);
     let rows = rows.map(|row| &row[..dim]);
-    let mut sums = [[[0.0; COLUMNS]; BLOCKS]; ROWS];
+    let mut sums = [[0.0; WIDE]; ROWS];
     for k in 0..dim {
-        let line = &lines[k * blocks + block..][..BLOCKS];
+        let Some(line) = lines[k * padded + from..].first_chunk::<WIDE>() else {
+            break;
+        };
         for (sums, row) in sums.iter_mut().zip(rows) {
-            for (sum, line) in sums.iter_mut().zip(line) {
-                for lane in 0..COLUMNS {
-                    sum[lane] += line[lane] * row[k];
-                }
+            let value = row[k];
+            for lane in 0..WIDE {
+                sums[lane] += line[lane] * value;
             }
         }
     }
     for (out, sums) in out.chunks_exact_mut(places).zip(&sums) {
-        let to = &mut out[block * COLUMNS..];
-        let count = to.len().min(BLOCKS * COLUMNS);
-        to[..count].copy_from_slice(&sums.as_flattened()[..count]);
+        let to = &mut out[from..];
+        let count = to.len().min(WIDE);
+        to[..count].copy_from_slice(&sums[..count]);
     }
 }
 
@@ -465,12 +468,12 @@ mod tests {
                 to[..dim].copy_from_slice(line);
             }
             let mut out = vec![f32::NAN; 4 * dim];
-            combinations::<4, 1>(&padded, &rows, &mut out);
+            combinations::<4, 16>(&padded, &rows, &mut out);
             for (row, out) in rows.chunks_exact(9).zip(out.chunks_exact(dim)) {
                 let sum = |k: usize| lines.iter().zip(row).fold(0.0, |s, (line, v)| s + line[k] * v);
                 prop_assert_eq!(bits(out), bits(&(0..dim).map(sum).collect::<Vec<f32>>()));
                 let mut alone = vec![f32::NAN; dim];
-                combinations::<1, 4>(&padded, row, &mut alone);
+                combinations::<1, 64>(&padded, row, &mut alone);
                 prop_assert_eq!(bits(&alone), bits(out));
             }
         }

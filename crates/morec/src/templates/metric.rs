@@ -128,11 +128,11 @@ impl Metric {
             out.chunks_exact_mut(TOGETHER * dim),
         );
         for (rows, out) in rows.by_ref().zip(outs.by_ref()) {
-            kernel::combinations::<TOGETHER, 1>(&self.map, rows, out);
+            kernel::combinations::<TOGETHER, 16>(&self.map, rows, out);
         }
         let outs = outs.into_remainder().chunks_exact_mut(dim);
         for (row, out) in rows.remainder().chunks_exact(dim).zip(outs) {
-            kernel::combinations::<1, TOGETHER>(&self.map, row, out);
+            kernel::combinations::<1, 64>(&self.map, row, out);
         }
     }
 
