@@ -132,7 +132,7 @@ pub(crate) fn list(conn: &Connection, filter: &ClipFilter) -> Result<Vec<ClipInf
     Ok(clips)
 }
 
-fn find(conn: &Connection, name: &str) -> Result<ClipInfo, DbError> {
+pub(crate) fn find(conn: &Connection, name: &str) -> Result<ClipInfo, DbError> {
     let sql = format!("SELECT {COLUMNS} WHERE c.name = ?1");
     let find = |name: &str| conn.query_row(&sql, params![name], info).optional();
     if let Some(found) = find(name)? {

@@ -13,7 +13,7 @@ use morec::segment::{
 use rayon::prelude::*;
 
 use crate::rows::{ClipRows, rows_of};
-use crate::{ClipId, ClipInfo, DbError, MotionDb, Segment, SegmentKind, StoredClip};
+use crate::{ClipId, ClipInfo, DbError, MotionDb, Segment, SegmentKind, StoredClip, segments};
 
 /// The method of cuts that somebody has put into place, as [`MotionDb::cut_methods`] names it.
 pub const BY_HAND: &str = "hand";
@@ -160,22 +160,31 @@ impl MotionDb {
         }
         let mut cuts = cuts_secs.to_vec();
         cuts.sort_by(f64::total_cmp);
-        let before = self.segments_of(clip.id)?;
-        let mut segments = match before.is_empty() {
-            false => before,
-            true => {
-                let (bones, rows) = rows_of(&self.clip(clip.id)?, &FeatureParams::default());
-                let rows = ClipRows {
-                    clip: clip.id,
-                    bones,
-                    rows,
-                };
-                stretches(clip, &rows, Vec::new()).1
-            }
-        };
-        segments.retain(|s| s.kind != SegmentKind::Motion);
-        segments.extend(motions(clip, &cuts));
-        self.set_segments(BY_HAND, &[clip.id], &segments)
+        let mut found = None;
+        if self.segments_of(clip.id)?.is_empty() {
+            let (bones, rows) = rows_of(&self.clip(clip.id)?, &FeatureParams::default());
+            let rows = ClipRows {
+                clip: clip.id,
+                bones,
+                rows,
+            };
+            found = Some(stretches(clip, &rows, Vec::new()).1);
+        }
+        self.edit(&format!("cut {} by hand", clip.name), |conn| {
+            // Read where nobody else writes: what another program made of the stillness stays.
+            let before = segments::of_clip(conn, clip.id)?;
+            let mut segments = match (before.is_empty(), found) {
+                (false, _) => before,
+                (true, Some(found)) => found,
+                (true, None) => {
+                    let why = "another program removed its cuts meanwhile: nothing was done";
+                    return Err(DbError::Invalid(format!("{}: {why}", clip.name)));
+                }
+            };
+            segments.retain(|s| s.kind != SegmentKind::Motion);
+            segments.extend(motions(clip, &cuts));
+            segments::put(conn, BY_HAND, &[clip.id], &segments)
+        })
     }
 
     /// Segments of each clip, or the reason why there are none.
@@ -307,5 +316,40 @@ mod tests {
                 Err(DbError::Invalid(_))
             ));
         }
+    }
+
+    /// One program changes what is still while another cuts: the first finds each of its changes again.
+    #[test]
+    fn cuts_take_back_nothing_that_another_program_changes_meanwhile() {
+        let (folder, mut db) = database_of_waves(1);
+        let clip = db.clips(&ClipFilter::default()).unwrap().remove(0);
+        db.cut_by_hand(&clip, &[1.0]).unwrap();
+        let mut other = MotionDb::open(&folder.path().join("test.mdb")).unwrap();
+        let done = std::sync::atomic::AtomicBool::new(false);
+        std::thread::scope(|scope| {
+            let cutting = scope.spawn(|| {
+                while !done.load(Ordering::Relaxed) {
+                    other.cut_by_hand(&clip, &[1.5]).unwrap();
+                }
+            });
+            for change in 1..60 {
+                let still = Segment {
+                    clip: clip.id,
+                    kind: SegmentKind::Still,
+                    span: TimeSpan::new(0.0, 0.01 * f64::from(change)),
+                };
+                let still = [still];
+                db.set_segments("test", &[clip.id], &still).unwrap();
+                std::thread::yield_now();
+                let mut now = db.segments_of(clip.id).unwrap();
+                now.retain(|s| s.kind == SegmentKind::Still);
+                if now != still {
+                    done.store(true, Ordering::Relaxed);
+                }
+                assert_eq!(now, still);
+            }
+            done.store(true, Ordering::Relaxed);
+            cutting.join().unwrap();
+        });
     }
 }

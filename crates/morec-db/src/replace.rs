@@ -8,7 +8,7 @@ use rusqlite::{Connection, params};
 use crate::import::{PreparedFile, insert_file, make, skeleton_of};
 use crate::kept::KeptClip;
 use crate::labels::{self, DbSample, SampleFilter};
-use crate::{ClipId, ClipUpdate, DbError, MotionDb, rows};
+use crate::{ClipId, ClipUpdate, DbError, MotionDb, clips, rows};
 
 /// Result of replacing the file of a clip.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -41,7 +41,7 @@ impl MotionDb {
         path: &Path,
         reader: &FileReader,
     ) -> Result<Replaced, DbError> {
-        let old = self.find_clip(name)?;
+        self.find_clip(name)?;
         let refuse = |why: String| Err(DbError::Invalid(format!("{}: {why}", path.display())));
         let known = self.known_hashes()?;
         let clip = match make(path, reader, &ClipUpdate::default(), &known) {
@@ -65,14 +65,16 @@ impl MotionDb {
             }
         };
         let after_secs = clip.frames as f64 / clip.rate_hz;
-        let filter = SampleFilter {
-            clip: Some(old.id),
-            ..SampleFilter::default()
-        };
         // Half a frame is no difference.
         let end = after_secs + 0.5 / clip.rate_hz;
-        let what = format!("replace the file of clip {}", old.name);
-        let (kept, removed, cuts) = self.edit(&what, |conn| {
+        let what = format!("replace the file of clip {name}");
+        let (old, kept, removed, cuts) = self.edit(&what, |conn| {
+            // Again, where nobody else writes: another program may have removed the clip while the file was read.
+            let old = clips::find(conn, name)?;
+            let filter = SampleFilter {
+                clip: Some(old.id),
+                ..SampleFilter::default()
+            };
             let samples = labels::list(conn, &filter)?.into_iter();
             let (kept, removed): (Vec<DbSample>, Vec<DbSample>) =
                 samples.partition(|sample| sample.whole_clip || sample.stop_secs <= end);
@@ -86,7 +88,7 @@ impl MotionDb {
             conn.execute(sql, params![old.id.0, after_secs])?;
             let sql = "DELETE FROM segments WHERE clip = ?1";
             let cuts = conn.execute(sql, params![old.id.0])?;
-            Ok((kept, removed, cuts))
+            Ok((old, kept, removed, cuts))
         })?;
         Ok(Replaced {
             clip: old.name.clone(),

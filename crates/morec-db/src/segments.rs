@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use morec::TimeSpan;
-use rusqlite::params;
+use rusqlite::{Connection, params};
 
 use crate::{ClipId, DbError, MotionDb};
 
@@ -52,24 +52,7 @@ impl MotionDb {
         segments: &[Segment],
     ) -> Result<(), DbError> {
         let what = format!("cut {} clips by {method}", clips.len());
-        self.edit(&what, |conn| {
-            let mut forget = conn.prepare("DELETE FROM segments WHERE clip = ?1")?;
-            for clip in clips {
-                forget.execute(params![clip.0])?;
-            }
-            let sql = "INSERT INTO segments (clip, method, kind, start_secs, stop_secs) VALUES (?1, ?2, ?3, ?4, ?5)";
-            let mut keep = conn.prepare(sql)?;
-            for s in segments {
-                keep.execute(params![
-                    s.clip.0,
-                    method,
-                    s.kind.name(),
-                    s.span.start_secs,
-                    s.span.stop_secs
-                ])?;
-            }
-            Ok(())
-        })
+        self.edit(&what, |conn| put(conn, method, clips, segments))
     }
 
     /// Method by which each clip was cut; clips that were not cut are not in it.
@@ -84,11 +67,7 @@ impl MotionDb {
 
     /// The segments of a clip, by time.
     pub fn segments_of(&self, clip: ClipId) -> Result<Vec<Segment>, DbError> {
-        let mut statement = self.conn.prepare_cached(
-            "SELECT clip, kind, start_secs, stop_secs FROM segments WHERE clip = ?1 ORDER BY start_secs",
-        )?;
-        let segments = statement.query_map(params![clip.0], segment)?;
-        Ok(segments.collect::<Result<_, _>>()?)
+        of_clip(&self.conn, clip)
     }
 
     /// The segments of all clips, by clip and time.
@@ -112,4 +91,38 @@ fn segment(row: &rusqlite::Row<'_>) -> rusqlite::Result<Segment> {
         },
         span: TimeSpan::new(row.get("start_secs")?, row.get("stop_secs")?),
     })
+}
+
+/// The segments of a clip, by time.
+pub(crate) fn of_clip(conn: &Connection, clip: ClipId) -> Result<Vec<Segment>, DbError> {
+    let mut statement = conn.prepare_cached(
+        "SELECT clip, kind, start_secs, stop_secs FROM segments WHERE clip = ?1 ORDER BY start_secs",
+    )?;
+    let segments = statement.query_map(params![clip.0], segment)?;
+    Ok(segments.collect::<Result<_, _>>()?)
+}
+
+/// Puts `segments`, which `method` found, in the place of those of `clips`.
+pub(crate) fn put(
+    conn: &Connection,
+    method: &str,
+    clips: &[ClipId],
+    segments: &[Segment],
+) -> Result<(), DbError> {
+    let mut forget = conn.prepare("DELETE FROM segments WHERE clip = ?1")?;
+    for clip in clips {
+        forget.execute(params![clip.0])?;
+    }
+    let sql = "INSERT INTO segments (clip, method, kind, start_secs, stop_secs) VALUES (?1, ?2, ?3, ?4, ?5)";
+    let mut keep = conn.prepare(sql)?;
+    for s in segments {
+        keep.execute(params![
+            s.clip.0,
+            method,
+            s.kind.name(),
+            s.span.start_secs,
+            s.span.stop_secs
+        ])?;
+    }
+    Ok(())
 }
