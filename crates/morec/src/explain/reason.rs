@@ -123,6 +123,14 @@ impl Reason {
     }
 }
 
+/// Where `what` is at `multiple` times the distance. What is out of reach of every template has a distance that stands for none.
+fn apart(what: &str, multiple: f64) -> String {
+    match multiple < 100.0 {
+        true => format!("{what} at {multiple:.1} times its distance"),
+        false => format!("{what} out of reach"),
+    }
+}
+
 impl fmt::Display for Reason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -189,8 +197,9 @@ impl fmt::Display for Reason {
                 background,
             } => write!(
                 f,
-                "refused by the verifier (score {score:.2}): other classes at {other:.1} times, background at \
-                 {background:.1} times its distance"
+                "refused by the verifier (score {score:.2}): {}, {}",
+                apart("other classes", *other),
+                apart("background", *background)
             ),
             Self::Neighbour {
                 same,

@@ -286,3 +286,22 @@ fn worse_captures_rank_below_better_ones_whatever_makes_them_worse() {
         assert!(ranked, "{of_kind:?}: {degrees:?}");
     }
 }
+
+#[test]
+fn a_distance_that_nothing_has_is_no_number() {
+    let refused = |other| Reason::Refused {
+        score: -0.1,
+        other,
+        background: 1.25,
+    };
+    let text = refused(3e29).to_string();
+    assert!(
+        text.contains("other classes out of reach, background at 1.2"),
+        "{text}"
+    );
+    assert!(
+        refused(2.0)
+            .to_string()
+            .contains("other classes at 2.0 times")
+    );
+}
