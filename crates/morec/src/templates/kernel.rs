@@ -234,7 +234,7 @@ pub fn squared_distances(rows: &[Lanes], z: &[f32], out: &mut [Lanes]) {
 pub const COLUMNS: usize = 16;
 
 /// For each of the `ROWS` rows of `rows`, one after the other, `Σ row[k] · lines[k]`: the lines one after the other and padded to a multiple of
-/// [`COLUMNS`], `out` not padded. `WIDE` columns go side by side while there are so many. Each sum is in the order of `k`.
+/// [`COLUMNS`], `out` not padded. `WIDE` columns go side by side while as many are left. Each sum is in the order of `k`.
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 pub fn combinations<const ROWS: usize, const WIDE: usize>(
     lines: &[f32],
@@ -289,7 +289,7 @@ fn combine<const ROWS: usize, const WIDE: usize>(
 
 /// Numbers whose squares are summed side by side, each place in a sum of its own. Rows are padded with zeros to whole blocks.
 pub const SUMS: usize = 8;
-pub type Sums = [f64; SUMS];
+pub type SumBlock = [f64; SUMS];
 
 /// `row` in blocks.
 pub fn blocks(row: &[f32]) -> impl Iterator<Item = [f32; SUMS]> {
@@ -302,7 +302,7 @@ pub fn blocks(row: &[f32]) -> impl Iterator<Item = [f32; SUMS]> {
 
 /// `to = from + row`; returns `|row|²`.
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
-pub fn add_row(from: &[Sums], row: &[f32], to: &mut [Sums]) -> f64 {
+pub fn add_row(from: &[SumBlock], row: &[f32], to: &mut [SumBlock]) -> f64 {
     let mut squares = [0.0; SUMS];
     for ((to, from), row) in to.iter_mut().zip(from).zip(blocks(row)) {
         for lane in 0..SUMS {
@@ -316,7 +316,7 @@ pub fn add_row(from: &[Sums], row: &[f32], to: &mut [Sums]) -> f64 {
 
 /// `|Σ weights[k] · lines[k]|²`.
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
-pub fn square_of_combination(lines: &[&[Sums]; 6], weights: &[f64; 6]) -> f64 {
+pub fn square_of_combination(lines: &[&[SumBlock]; 6], weights: &[f64; 6]) -> f64 {
     let mut squares = [0.0; SUMS];
     for block in 0..lines[0].len() {
         let mut values = [0.0; SUMS];
@@ -334,7 +334,7 @@ pub fn square_of_combination(lines: &[&[Sums]; 6], weights: &[f64; 6]) -> f64 {
 
 /// `|m|²` of the mean `m = (end − start) · share`.
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
-pub fn square_of_mean(end: &[Sums], start: &[Sums], share: f64) -> f64 {
+pub fn square_of_mean(end: &[SumBlock], start: &[SumBlock], share: f64) -> f64 {
     let mut squares = [0.0; SUMS];
     for (end, start) in end.iter().zip(start) {
         for lane in 0..SUMS {
@@ -347,7 +347,12 @@ pub fn square_of_mean(end: &[Sums], start: &[Sums], share: f64) -> f64 {
 
 /// `|m − point|²` of the mean `m = (end − start) · share`.
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
-pub fn offset_of_mean(end: &[Sums], start: &[Sums], share: f64, point: &[[f32; SUMS]]) -> f64 {
+pub fn offset_of_mean(
+    end: &[SumBlock],
+    start: &[SumBlock],
+    share: f64,
+    point: &[[f32; SUMS]],
+) -> f64 {
     let mut squares = [0.0; SUMS];
     for ((end, start), point) in end.iter().zip(start).zip(point) {
         for lane in 0..SUMS {
@@ -437,7 +442,7 @@ mod tests {
             values in values(6 * 23), dim in 1usize..23, share in 0.01f64..1.0,
         ) {
             let row = |part: usize| &values[23 * part..][..dim];
-            let rows = [0, 1, 2, 3, 4, 5].map(|part| -> Vec<Sums> { blocks(row(part)).map(|b| b.map(|v| f64::from(v) * 1.7)).collect() });
+            let rows = [0, 1, 2, 3, 4, 5].map(|part| -> Vec<SumBlock> { blocks(row(part)).map(|b| b.map(|v| f64::from(v) * 1.7)).collect() });
             let [start, end, ..] = &rows;
             let at = |part: usize, i: usize| rows[part][i / SUMS][i % SUMS];
             let near = |sum: f64, term: &dyn Fn(usize) -> f64| {

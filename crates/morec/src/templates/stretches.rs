@@ -2,7 +2,7 @@
 
 use crate::features::{Rows, USUAL_NOISE_GAIN};
 
-use super::kernel::{self, SUMS, Sums};
+use super::kernel::{self, SUMS, SumBlock};
 
 /// Noise is measured at every fourth tick, over the last 64 times: eight seconds, of which motion fills less than half.
 const NOISE_STEP: usize = 4;
@@ -12,7 +12,7 @@ const LEAST_NOISE_TIMES: usize = 16;
 /// Weights of sums of rows in the fourth difference of rows, 1 −4 6 −4 1.
 const DIFFERENCE: [f64; 6] = [1.0, -5.0, 10.0, -10.0, 5.0, -1.0];
 
-/// Sums of a stream's rows at each of its last ticks, from which the mean and the spread of any stretch that ends now
+/// SumBlock of a stream's rows at each of its last ticks, from which the mean and the spread of any stretch that ends now
 /// follow. Two sets of templates that are matched against the same stream share one.
 ///
 /// Noise is the median of the squared fourth differences of the last rows, over what noise of variance 1 leaves in them
@@ -26,7 +26,7 @@ pub struct Stretches {
     width: usize,
     mask: usize,
     /// Of rows `0..tick`, at slot `tick & mask`.
-    sums: Vec<Sums>,
+    sums: Vec<SumBlock>,
     /// Of their squared lengths.
     squares: Vec<f64>,
     ticks: usize,
@@ -170,7 +170,7 @@ impl Stretches {
         ([start, self.ticks], share)
     }
 
-    fn sums_at(&self, tick: usize) -> &[Sums] {
+    fn sums_at(&self, tick: usize) -> &[SumBlock] {
         &self.sums[(tick & self.mask) * self.width..][..self.width]
     }
 }
