@@ -45,7 +45,9 @@ impl SpikeFilter {
         pose: &KeyPose,
         unit_length: Option<f64>,
     ) -> Option<KeyPose> {
-        let (unit, origin) = (unit_length?, self.origin(pose)?);
+        // Before the length is known, too: it remembers whether hips were seen.
+        let origin = self.origin(pose);
+        let (unit, origin) = (unit_length?, origin?);
         let mut cleaned: Option<KeyPose> = None;
         let fastest = FASTEST * unit / LEG_METRES;
         for role in pose.roles() {
@@ -131,6 +133,19 @@ mod tests {
         // Hips that come into view later are no jump of all joints.
         assert!(seen(3, 0.35, true));
         assert!(!seen(4, 2.0, true));
+    }
+
+    #[test]
+    fn hips_that_were_seen_before_any_length_keep_the_shoulders_from_counting() {
+        let mut filter = SpikeFilter::new(Profile::Body);
+        let mut pose = hand(0.3);
+        pose.set(Role::LeftArm, Vec3::new(0.2, 1.4, 0.0));
+        pose.set(Role::RightArm, Vec3::new(-0.2, 1.4, 0.0));
+        assert!(filter.clean(0.0, &pose, None).is_none());
+        pose.set(Role::Hips, Vec3::repeat(f64::NAN));
+        assert!(filter.clean(1.0 / 30.0, &pose, Some(0.85)).is_none());
+        pose.set(Role::LeftHand, Vec3::new(1.5, 1.0, 0.0));
+        assert!(filter.clean(2.0 / 30.0, &pose, Some(0.85)).is_none());
     }
 
     #[test]

@@ -128,11 +128,12 @@ impl Metric {
             out.chunks_exact_mut(TOGETHER * dim),
         );
         for (rows, out) in rows.by_ref().zip(outs.by_ref()) {
-            kernel::combinations::<TOGETHER, 16>(&self.map, rows, out);
+            kernel::combinations::<TOGETHER, { kernel::COLUMNS }>(&self.map, rows, out);
         }
         let outs = outs.into_remainder().chunks_exact_mut(dim);
         for (row, out) in rows.remainder().chunks_exact(dim).zip(outs) {
-            kernel::combinations::<1, 64>(&self.map, row, out);
+            // A row alone needs more columns at a time, as each sum waits for its last addition.
+            kernel::combinations::<1, { 4 * kernel::COLUMNS }>(&self.map, row, out);
         }
     }
 

@@ -12,7 +12,7 @@ const LEAST_NOISE_TIMES: usize = 16;
 /// Weights of sums of rows in the fourth difference of rows, 1 −4 6 −4 1.
 const DIFFERENCE: [f64; 6] = [1.0, -5.0, 10.0, -10.0, 5.0, -1.0];
 
-/// SumBlock of a stream's rows at each of its last ticks, from which the mean and the spread of any stretch that ends now
+/// Sums of a stream's rows at each of its last ticks, from which the mean and the spread of any stretch that ends now
 /// follow. Two sets of templates that are matched against the same stream share one.
 ///
 /// Noise is the median of the squared fourth differences of the last rows, over what noise of variance 1 leaves in them
@@ -163,7 +163,7 @@ impl Stretches {
         kernel::offset_of_mean(self.sums_at(end), self.sums_at(start), share, point) as f32
     }
 
-    /// Tick before the last `age + 1` rows and behind them, and one over their number.
+    /// Ticks before and after the last `age + 1` rows, and one over their number.
     fn of(&self, age: usize) -> ([usize; 2], f64) {
         let start = self.ticks.saturating_sub(age + 1);
         let share = 1.0 / (self.ticks - start).max(1) as f64;
