@@ -113,6 +113,12 @@ impl TemplateBank {
         self.extents.is_empty()
     }
 
+    /// Units of its rows.
+    #[cfg(feature = "train")]
+    pub(crate) fn units(&self) -> Units {
+        self.units
+    }
+
     /// Rows of template `index`.
     pub fn template_len(&self, index: usize) -> usize {
         let (first, last) = self.extents[index];
@@ -169,28 +175,35 @@ impl TemplateBank {
     /// # Panics
     /// There are more, or a row has another width than the templates.
     pub(super) fn advance<'r>(&mut self, rows: impl Iterator<Item = &'r [f32]>) -> usize {
-        self.stream.count = 0;
+        let mut stream = std::mem::take(&mut self.stream);
+        stream.count = 0;
         for z in rows {
             assert_eq!(
                 z.len(),
                 self.dim,
                 "a stream row of another width than the templates'"
             );
-            self.stream.push(z, self.units);
+            stream.push(z, self.units);
         }
-        if self.stream.count == 0 {
-            return 0;
+        self.advance_by(&stream);
+        self.stream = stream;
+        self.stream.count
+    }
+
+    /// The same of rows that are in its templates' units already, as banks that share them ask for them once.
+    pub(super) fn advance_by(&mut self, stream: &StreamRows) {
+        if stream.count == 0 {
+            return;
         }
         kernel::step(
             (&self.rows, &self.fixed, self.units.square()),
-            (&self.stream, self.dots),
+            (stream, self.dots),
             self.tick % 2,
             &mut self.cells,
             (&self.extents, &mut self.ends),
         );
-        self.tick += self.stream.count;
-        self.show(self.stream.count - 1);
-        self.stream.count
+        self.tick += stream.count;
+        self.show(stream.count - 1);
     }
 
     /// Shows the matches at tick `at` of those that it last advanced by.

@@ -9,7 +9,7 @@ use super::bank::{Match, PartialMatch, TemplateBank};
 use super::kernel::{self, SUMS};
 use super::spread_norm::{self, NormBound, SpreadNorm};
 use super::stretches::Stretches;
-use super::units::Units;
+use super::units::{StreamRows, Units};
 
 /// A [`TemplateBank`] that also knows how far from each template a motionless body would be.
 ///
@@ -191,14 +191,14 @@ impl Matcher {
         self.bank.show(at);
     }
 
-    /// Advances by the stream's rows, and shows the bank at each of them to `look`. Faster than one by one.
+    /// Advances by the rows of `stream`, in the units of the templates, and gives `take` the matches at each of them.
     #[cfg(feature = "train")]
-    pub(crate) fn step_through<'r>(
-        &mut self,
-        rows: impl Iterator<Item = &'r [f32]>,
-        look: impl FnMut(&TemplateBank),
-    ) {
-        self.bank.step_through(rows, look);
+    pub(crate) fn step_by(&mut self, stream: &StreamRows, mut take: impl FnMut(Match)) {
+        self.bank.advance_by(stream);
+        for at in 0..stream.count {
+            self.bank.show(at);
+            (0..self.bank.len()).for_each(|index| take(self.bank.matched(index)));
+        }
     }
 
     /// Match of template `index` to a stretch that ends with the last tick; `stretches` has taken the same rows.
@@ -229,8 +229,24 @@ impl Matcher {
     /// Normalises the matches of all templates at the tick that the bank shows, for [`nearer`](Self::nearer); `stretches` has taken the
     /// same rows. Distances from `reach` on may stay [`FAR`]. O(templates), and O(d) for each age among them.
     pub fn look(&mut self, reach: f32, stretches: &mut Stretches) {
+        self.look_with(TemplateBank::matched, reach, stretches);
+    }
+
+    /// The same of matches that the bank gave, whatever it has gone on to.
+    #[cfg(feature = "train")]
+    pub(crate) fn look_at(&mut self, matched: &[Match], reach: f32, stretches: &mut Stretches) {
+        self.look_with(|_, index| matched[index], reach, stretches);
+    }
+
+    fn look_with(
+        &mut self,
+        matched: impl Fn(&TemplateBank, usize) -> Match,
+        reach: f32,
+        stretches: &mut Stretches,
+    ) {
         for index in 0..self.bank.len() {
-            let (matched, noise) = self.without_noise(index, self.bank.matched(index), stretches);
+            let matched = matched(&self.bank, index);
+            let (matched, noise) = self.without_noise(index, matched, stretches);
             self.found.distances[index] = matched.distance;
             self.found.ages[index] = matched.age;
             self.found.spreads[index] = (stretches.spread(matched.age) - noise).max(0.0);
@@ -276,24 +292,12 @@ impl Matcher {
         )
     }
 
-    /// The match of template `index` as [`TemplateBank::matched`] gave it, whatever the bank has gone on to, if it passes `gate` and is nearer
-    /// than `distance`. O(1) for most that are not nearer.
-    pub fn nearer_match(
-        &self,
-        index: usize,
-        matched: Match,
-        distance: f32,
-        gate: MatchGate,
-        stretches: &mut Stretches,
-    ) -> Option<NormalizedMatch> {
-        let (matched, noise) = self.without_noise(index, matched, stretches);
-        // Most templates end here, before a power is taken.
-        let bound = self.norm_bounds[index].at(stretches.spread(matched.age));
-        if matched.distance * (1.0 - gate.discount) >= distance * bound {
-            return None;
-        }
-        let near = self.nearness(index, matched, noise, stretches);
-        self.admitted(index, matched.distance, near, distance, gate, stretches)
+    /// Ticks since the match of template `index` began that was [looked at](Self::look), if it is nearer than `reach` and not [`FAR`].
+    #[cfg(feature = "train")]
+    pub(crate) fn age_within(&self, index: usize, reach: f32) -> Option<usize> {
+        let found = &self.found;
+        let is_near = found.distances[index] < FAR && found.normalized[index] < reach;
+        is_near.then_some(found.ages[index])
     }
 
     /// `near`, whose distance was `plain`, if it passes `gate` and is nearer than `distance`.
@@ -449,7 +453,6 @@ mod tests {
                     let all = MatchGate::plain(0.0);
                     matcher.look(f32::INFINITY, &mut stretches);
                     prop_assert!(matcher.nearer(0, f32::INFINITY, all, &stretches).is_none());
-                    prop_assert!(matcher.nearer_match(0, found, f32::INFINITY, all, &mut stretches).is_none());
                     continue;
                 }
                 let stretch = stream.slice(t - found.age..t + 1);
@@ -488,9 +491,6 @@ mod tests {
                 let is_nearer = found.distance < within && found.moves(0.7);
                 matcher.look(within / (1.0 - discount), &mut stretches);
                 let nearer = matcher.nearer(0, within, gate, &stretches);
-                prop_assert_eq!(nearer, is_nearer.then_some(found));
-                let matched = matcher.bank().matched(0);
-                let nearer = matcher.nearer_match(0, matched, within, gate, &mut stretches);
                 prop_assert_eq!(nearer, is_nearer.then_some(found));
             }
         }

@@ -43,7 +43,7 @@ pub use reference::ReferenceRows;
 pub use stretches::Stretches;
 pub use trace::{Nearest, Trace};
 #[cfg(feature = "train")]
-pub(crate) use units::Units;
+pub(crate) use units::{StreamRows, Units};
 pub use verifier::{
     Evidence, Exemplars, LinearScore, SHAPE_ROWS, Verifier, shape_distance, shape_of,
     squared_distance,

@@ -59,7 +59,7 @@ pub fn norm(pairs: &[Pair]) -> i32 {
 }
 
 /// Rows of a stream that are stepped through together.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct StreamRows {
     /// Of each row; all 0 in one that is too long.
     pub pairs: [Vec<Pair>; AT_ONCE],
@@ -72,6 +72,21 @@ pub struct StreamRows {
 }
 
 impl StreamRows {
+    /// `rows`, of `dim` values each, [`AT_ONCE`] of them together.
+    #[cfg(feature = "train")]
+    pub fn of<'r>(rows: impl Iterator<Item = &'r [f32]>, dim: usize, units: Units) -> Vec<Self> {
+        let mut all: Vec<Self> = Vec::new();
+        for row in rows {
+            if all.last().is_none_or(|last| last.count == AT_ONCE) {
+                all.push(Self::new(dim));
+            }
+            if let Some(last) = all.last_mut() {
+                last.push(row, units);
+            }
+        }
+        all
+    }
+
     /// None yet, of rows of `dim` values.
     pub fn new(dim: usize) -> Self {
         let pairs = dim.div_ceil(2);

@@ -34,22 +34,25 @@ pub struct SampleRivals {
 }
 
 impl SampleRivals {
-    /// Nothing near any of the samples of the stream at `place`, but for copies: nobody showed them.
+    /// Nothing near any of the samples of the stream at `place`, but for copies: nobody showed them. Rivals from `farthest` on are not
+    /// asked for.
     pub fn of_stream(
         set: &TrainSet,
         samples: &[TrainSample],
         place: usize,
-        params: &DecodeParams,
+        (params, farthest): (&DecodeParams, f32),
     ) -> Vec<Self> {
         let stream = &set.streams[place];
         let is_original = |s: &&TrainSample| s.stream == place && !s.is_faster && !stream.is_copy;
         let rivals = |sample: &TrainSample| {
             let (around, last) = (params.rival_ticks, sample.ticks.end - 1);
+            let mut nearest = vec![farthest; set.classes.len()];
+            nearest[sample.class.index()] = f32::INFINITY;
             Self {
                 class: sample.class,
                 ticks: sample.ticks.clone(),
                 ends: last.saturating_sub(around)..(last + around + 1).min(stream.rows.len()),
-                nearest: vec![f32::INFINITY; set.classes.len()],
+                nearest,
             }
         };
         samples.iter().filter(is_original).map(rivals).collect()
@@ -63,7 +66,7 @@ impl SampleRivals {
     /// Takes a match of `template` in the sample's stream, which is at `place`.
     pub fn take(
         &mut self,
-        offer: &mut Offer<'_>,
+        offer: &Offer<'_>,
         (template, place): (&TrainSample, usize),
         gate: MatchGate,
         params: &DecodeParams,

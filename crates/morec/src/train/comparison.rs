@@ -89,28 +89,36 @@ impl TrainingContext<'_> {
         streams.map_init(|| matchers.to_vec(), of_stream).collect()
     }
 
-    /// Gives `take` the matches of `matchers` at the `wanted` ticks of a stream.
+    /// Gives `take` the matches of `matchers` nearer than `reach` at the `wanted` ticks of a stream.
     fn matches(
         &self,
         matchers: &mut [Matcher],
         stream: &TrainStream,
-        wanted: &[bool],
-        take: impl FnMut(&mut Offer<'_>),
+        (wanted, reach): (&[bool], f32),
+        take: impl FnMut(&Offer<'_>),
     ) {
         if wanted.contains(&true) {
-            for_each_match(matchers, &self.metric.apply_all(&stream.rows), wanted, take);
+            let rows = self.metric.apply_all(&stream.rows);
+            for_each_match(matchers, &rows, (wanted, reach), take);
         }
     }
 
-    /// What comes near of the templates of `samples`; `verified` is the gate of a verifier that is to be learned.
+    /// What comes near of the templates of `samples`; `verified` is the gate of a verifier that is to be learned. What is farther than
+    /// `most`, the bound of the threshold, is no rival.
     pub fn templates(
         &self,
         samples: &[TrainSample],
         gates: TrainGates,
-        verified: Option<MatchGate>,
+        (verified, most): (Option<MatchGate>, f32),
     ) -> Result<Vec<StreamMatches>, TrainError> {
         let (set, decode) = (self.set, &self.params.decode);
         let matchers = self.matchers(samples.iter().map(|s| &s.rows));
+        // Nothing else asks for what is farther than both bounds; discounts make distances smaller.
+        let discount = gates.wide.map_or(0.0, |gate| gate.discount);
+        let reach = match verified {
+            None => most.max(self.params.negative_below as f32) / (1.0 - discount),
+            Some(_) => FAR,
+        };
         let view = LeaveOneOutView::new(set, samples);
         self.each_stream(&matchers, "comparing clips", |matchers, place, stream| {
             let ticks = stream.rows.len();
@@ -119,7 +127,7 @@ impl TrainingContext<'_> {
                 all: NearestByGate::none(ticks, gates),
                 others: vec![NO_MATCH; ticks],
                 classes,
-                rivals: SampleRivals::of_stream(set, samples, place, decode),
+                rivals: SampleRivals::of_stream(set, samples, place, (decode, most)),
             };
             let mut ends_sample = vec![false; ticks];
             let ends = found.rivals.iter().map(SampleRivals::ends);
@@ -132,11 +140,13 @@ impl TrainingContext<'_> {
                 true => vec![true; ticks],
                 false => ends_sample.clone(),
             };
-            self.matches(matchers, stream, &wanted, |offer| {
+            self.matches(matchers, stream, (&wanted, reach), |offer| {
                 let sample = &samples[offer.template];
-                found.all.take(offer, gates);
-                if sample.group != stream.group {
-                    keep_nearest(&mut found.others[offer.tick], offer, gates.plain);
+                if all {
+                    found.all.take(offer, gates);
+                    if sample.group != stream.group {
+                        keep_nearest(&mut found.others[offer.tick], offer, gates.plain);
+                    }
                 }
                 if let Some(gate) = verified {
                     view.take(&mut found.classes, offer, place, gate);
@@ -174,7 +184,7 @@ impl TrainingContext<'_> {
         let stage = "comparing with near misses";
         self.each_stream(&matchers, stage, |matchers, place, stream| {
             let mut near = NearestByGate::none(stream.rows.len(), gates);
-            self.matches(matchers, stream, &wanted(place, stream), |offer| {
+            self.matches(matchers, stream, (&wanted(place, stream), FAR), |offer| {
                 if streams[negatives[offer.template].stream].group != stream.group {
                     near.take(offer, gates);
                 }
@@ -227,7 +237,7 @@ impl TrainingContext<'_> {
             .for_each(|s| wanted[beginning(s, ticks)].fill(true));
         let mut matchers = self.matchers(shown.iter().map(|c| &copies[*c].rows));
         let mut matches = vec![vec![NO_MATCH; ticks]; shown.len()];
-        self.matches(&mut matchers, stream, &wanted, |offer| {
+        self.matches(&mut matchers, stream, (&wanted, FAR), |offer| {
             if let Some(found) = offer.nearer(FAR, gate) {
                 matches[offer.template][offer.tick] = found;
             }

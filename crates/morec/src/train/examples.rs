@@ -76,7 +76,7 @@ impl<'a> LeaveOneOutView<'a> {
     }
 
     /// Keeps a match in `stream` that is the nearest of its class so far.
-    pub fn take(&self, near: &mut [Match], offer: &mut Offer<'_>, stream: usize, gate: MatchGate) {
+    pub fn take(&self, near: &mut [Match], offer: &Offer<'_>, stream: usize, gate: MatchGate) {
         let sample = &self.samples[offer.template];
         if self.counts(stream, &offer.ticks(), sample) {
             let class = offer.tick * self.set.classes.len() + sample.class.index();

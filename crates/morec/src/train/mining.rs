@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use crate::decode::FAR;
 use crate::features::Rows;
-use crate::templates::{Match, MatchGate, Matcher, Stretches};
+use crate::templates::{Match, MatchGate, Matcher, StreamRows, Stretches};
 
 use super::params::TrainParams;
 use super::set::{StreamKind, TrainStream, overlap_share};
@@ -18,10 +18,9 @@ pub struct Offer<'a> {
     pub template: usize,
     /// Ticks since the match began.
     pub age: usize,
-    found: Match,
     matcher: &'a Matcher,
     index: usize,
-    stretches: &'a mut Stretches,
+    stretches: &'a Stretches,
 }
 
 impl Offer<'_> {
@@ -31,9 +30,8 @@ impl Offer<'_> {
     }
 
     /// The match with its normalised distance, if it passes `gate` and is nearer than `distance`. O(1) for most that are not.
-    pub fn nearer(&mut self, distance: f32, gate: MatchGate) -> Option<Match> {
-        let (matcher, stretches) = (self.matcher, &mut *self.stretches);
-        let found = matcher.nearer_match(self.index, self.found, distance, gate, stretches)?;
+    pub fn nearer(&self, distance: f32, gate: MatchGate) -> Option<Match> {
+        let found = (self.matcher).nearer(self.index, distance, gate, self.stretches)?;
         Some(Match {
             distance: found.distance,
             age: found.age,
@@ -75,7 +73,7 @@ impl NearestByGate {
     }
 
     /// Keeps a match that is the nearest so far.
-    pub fn take(&mut self, offer: &mut Offer<'_>, gates: TrainGates) {
+    pub fn take(&mut self, offer: &Offer<'_>, gates: TrainGates) {
         keep_nearest(&mut self.plain[offer.tick], offer, gates.plain);
         if let Some(wide) = gates.wide {
             keep_nearest(&mut self.wide[offer.tick], offer, wide);
@@ -84,7 +82,7 @@ impl NearestByGate {
 }
 
 /// Lets the match be `best` if it passes `gate` and is nearer.
-pub fn keep_nearest(best: &mut Match, offer: &mut Offer<'_>, gate: MatchGate) {
+pub fn keep_nearest(best: &mut Match, offer: &Offer<'_>, gate: MatchGate) {
     if let Some(nearer) = offer.nearer(best.distance, gate) {
         *best = nearer;
     }
@@ -118,16 +116,19 @@ fn spans(wanted: &[bool], lead: usize) -> Vec<Range<usize>> {
     spans
 }
 
-/// Runs the templates of all `parts`, in their order, over `rows`, which are already in their metric, and gives `take` the matches at the
-/// ticks that are `wanted`, in order of ticks, then of templates; what never matches is left out. Parts of templates whose rows fit
-/// the processor's cache take less time than one of all. O(ticks · template rows · d), of the ticks that are wanted and the longest
-/// match before each.
+/// Runs the templates of all `parts`, in their order and in the same units, over `rows`, which are already in their metric, and gives
+/// `take` the matches at the ticks that are `wanted`, in order of ticks, then of templates; what is not nearer than `reach` is left
+/// out. Parts of templates whose rows fit the processor's cache take less time than one of all. O(ticks · template rows · d), of the
+/// ticks that are wanted and the longest match before each.
 pub fn for_each_match(
     parts: &mut [Matcher],
     rows: &Rows,
-    wanted: &[bool],
-    mut take: impl FnMut(&mut Offer<'_>),
+    (wanted, reach): (&[bool], f32),
+    mut take: impl FnMut(&Offer<'_>),
 ) {
+    let Some(units) = parts.first().map(|part| part.bank().units()) else {
+        return;
+    };
     let longest = parts.iter().map(Matcher::longest_match).max().unwrap_or(0);
     let mut stretches = Stretches::new(rows.dim(), longest);
     let mut matched = vec![Vec::new(); parts.len()];
@@ -137,11 +138,13 @@ pub fn for_each_match(
         parts.iter_mut().for_each(Matcher::reset);
         for first in span.clone().step_by(TICKS_AT_ONCE) {
             let ticks = first..(first + TICKS_AT_ONCE).min(span.end);
+            let of_ticks = ticks.clone().map(|tick| rows.row(tick));
+            let streams = StreamRows::of(of_ticks, rows.dim(), units);
             for (part, matched) in parts.iter_mut().zip(&mut matched) {
                 matched.clear();
-                part.step_through(ticks.clone().map(|tick| rows.row(tick)), |bank| {
-                    matched.extend((0..bank.len()).map(|template| bank.matched(template)));
-                });
+                for stream in &streams {
+                    part.step_by(stream, |found| matched.push(found));
+                }
             }
             for tick in ticks {
                 // Sums run over the whole stream, or they would round otherwise.
@@ -150,10 +153,11 @@ pub fn for_each_match(
                     pushed += 1;
                 }
                 if wanted[tick] {
+                    let place = (tick, tick - first);
                     offer(
-                        parts,
+                        (&mut *parts, reach),
                         &matched,
-                        (tick, tick - first),
+                        place,
                         &mut stretches,
                         &mut take,
                     );
@@ -165,22 +169,22 @@ pub fn for_each_match(
 
 /// Offers the matches at `tick`, the tick at `place` of those that were `matched`.
 fn offer(
-    parts: &[Matcher],
+    (parts, reach): (&mut [Matcher], f32),
     matched: &[Vec<Match>],
     (tick, place): (usize, usize),
     stretches: &mut Stretches,
-    take: &mut impl FnMut(&mut Offer<'_>),
+    take: &mut impl FnMut(&Offer<'_>),
 ) {
     let mut before = 0;
-    for (matcher, matched) in parts.iter().zip(matched) {
+    for (matcher, matched) in parts.iter_mut().zip(matched) {
         let count = matcher.bank().len();
-        let here = matched[place * count..][..count].iter().copied();
-        for (index, found) in here.enumerate().filter(|(_, found)| found.distance < FAR) {
-            take(&mut Offer {
+        matcher.look_at(&matched[place * count..][..count], reach, stretches);
+        let ages = (0..count).filter_map(|index| Some((index, matcher.age_within(index, reach)?)));
+        for (index, age) in ages {
+            take(&Offer {
                 tick,
                 template: before + index,
-                age: found.age,
-                found,
+                age,
                 matcher,
                 index,
                 stretches,
@@ -281,6 +285,7 @@ mod tests {
             wanted in prop::collection::vec(prop::bool::weighted(0.05), 120),
             cut in 0usize..6,
             (discount, rest_share) in (0.0f32..0.5, 0.5f32..1.5),
+            reach in prop_oneof![Just(FAR), 0.0f32..8.0],
         ) {
             let (dim, decode) = (2, DecodeParams::default());
             let gate = MatchGate { discount, rest_share };
@@ -291,15 +296,17 @@ mod tests {
             let mut parts = [before, behind].map(|part| Matcher::in_units(part, dim, &decode, units));
             let count = templates.len();
             let mut found = vec![None; stream.len() * count];
-            for_each_match(&mut parts, &stream, &wanted[..stream.len()], |offer| {
+            for_each_match(&mut parts, &stream, (&wanted[..stream.len()], reach), |offer| {
                 found[offer.tick * count + offer.template] = bits(offer.nearer(FAR, gate));
             });
             for (tick, row) in stream.iter().enumerate() {
                 whole.step(row);
                 stretches.push(row);
                 for template in 0..count {
-                    let plain = whole.compare(template, &mut stretches).discounted(discount);
-                    let counts = wanted[tick] && plain.distance < FAR && plain.moves(rest_share);
+                    let plain = whole.compare(template, &mut stretches);
+                    let is_near = wanted[tick] && plain.distance < reach;
+                    let plain = plain.discounted(discount);
+                    let counts = is_near && plain.moves(rest_share);
                     let plain = Match { distance: plain.distance, age: plain.age };
                     prop_assert_eq!(found[tick * count + template], bits(counts.then_some(plain)));
                 }

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use rayon::prelude::*;
 
 use crate::classes::ClassInfo;
-use crate::decode::TYPICAL_SPREAD;
+use crate::decode::{FAR, TYPICAL_SPREAD};
 use crate::features::{BoneSet, Profile, Rows};
 use crate::math::portable;
 use crate::progress::Progress;
@@ -120,7 +120,9 @@ pub fn train(
     let wide = wide_gate(set, &samples, params).filter(|_| !verifies);
     let gates = TrainGates { plain, wide };
     let gate_of_verifier = verified.filter(|_| verifies).map(MatchGate::plain);
-    let matches = step.templates(&samples, gates, gate_of_verifier)?;
+    let most = step.largest_threshold();
+    let farthest = if most > 0.0 { most as f32 } else { FAR };
+    let matches = step.templates(&samples, gates, (gate_of_verifier, farthest))?;
     let near: Vec<&NearestByGate> = matches.iter().map(|m| &m.all).collect();
     let near_enough = step.operating(&near, None, |near| &near.plain);
     let negatives = negatives_of(
@@ -138,7 +140,7 @@ pub fn train(
             ..gate
         }),
     };
-    let rule = (verifies, step.largest_threshold());
+    let rule = (verifies, most);
     let near_negatives = step.negatives((&negatives, &rows), &matches, all, rule)?;
     let seen: Vec<&NearestByGate> = near_negatives.iter().collect();
     let stranger = wide.map(|gate| {
