@@ -9,7 +9,9 @@ use super::bank::{Match, PartialMatch, TemplateBank};
 use super::kernel::{self, SUMS};
 use super::spread_norm::{self, NormBound, SpreadNorm};
 use super::stretches::Stretches;
-use super::units::{StreamRows, Units};
+#[cfg(feature = "train")]
+use super::units::StreamRows;
+use super::units::Units;
 
 /// A [`TemplateBank`] that also knows how far from each template a motionless body would be.
 ///

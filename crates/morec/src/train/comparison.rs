@@ -9,7 +9,6 @@ use crate::features::{BoneSet, Rows};
 use crate::progress::Progress;
 use crate::templates::{Match, MatchGate, Matcher, Metric, Units};
 
-use super::alike::SampleRivals;
 use super::error::TrainError;
 use super::examples::LeaveOneOutView;
 use super::faster::{beginning, faster_copies, is_early, matches_beginning};
@@ -41,35 +40,58 @@ pub struct StreamMatches {
     pub others: Vec<Match>,
     /// For each tick the nearest match of every class, by [`LeaveOneOutView`]; empty where nothing is verified.
     pub classes: Vec<Match>,
-    /// What the classes come to at its samples.
-    pub rivals: Vec<SampleRivals>,
 }
 
 /// Values of templates' rows that are matched together, 192 kB of them: a core's own cache has room for twice that and more.
 const VALUES_OF_PART: usize = 48 << 10;
 
+/// Templates in the metric, and the units of all of them.
+pub struct MappedTemplates {
+    rows: Vec<Rows>,
+    units: Units,
+}
+
 impl TrainingContext<'_> {
-    /// Lays out templates that are not mapped yet, in parts whose rows fit the processor's cache.
-    fn matchers<'r>(&self, rows: impl Iterator<Item = &'r Rows>) -> Vec<Matcher> {
-        let mapped: Vec<Rows> = rows.map(|r| self.metric.apply_all(r)).collect();
-        let (dim, units) = (self.metric.dim(), Units::of(&mapped));
+    /// Maps templates.
+    pub fn mapped<'r>(&self, rows: impl Iterator<Item = &'r Rows>) -> MappedTemplates {
+        let rows: Vec<Rows> = rows.map(|r| self.metric.apply_all(r)).collect();
+        let units = Units::of(&rows);
+        MappedTemplates { rows, units }
+    }
+
+    /// Lays out the templates at `places` together.
+    pub fn matcher(&self, mapped: &MappedTemplates, places: &[usize]) -> Matcher {
+        let rows: Vec<Rows> = places.iter().map(|p| mapped.rows[*p].clone()).collect();
+        let (dim, decode) = (self.metric.dim(), &self.params.decode);
+        Matcher::in_units(&rows, dim, decode, mapped.units)
+    }
+
+    /// Lays out the templates at `places`, in parts whose rows fit the processor's cache.
+    pub fn parts(&self, mapped: &MappedTemplates, places: &[usize]) -> Vec<Matcher> {
         let mut parts = Vec::new();
-        let mut rest = mapped.as_slice();
+        let mut rest = places;
         while !rest.is_empty() {
             let mut values = 0;
-            let fitting = rest.iter().take_while(|rows| {
-                values += rows.values().len();
+            let fitting = rest.iter().take_while(|place| {
+                values += mapped.rows[**place].values().len();
                 values <= VALUES_OF_PART
             });
             let (part, others) = rest.split_at(fitting.count().max(1));
-            parts.push(Matcher::in_units(part, dim, &self.params.decode, units));
+            parts.push(self.matcher(mapped, part));
             rest = others;
         }
         parts
     }
 
+    /// Lays out templates that are not mapped yet, in such parts.
+    fn matchers<'r>(&self, rows: impl Iterator<Item = &'r Rows>) -> Vec<Matcher> {
+        let mapped = self.mapped(rows);
+        let all: Vec<usize> = (0..mapped.rows.len()).collect();
+        self.parts(&mapped, &all)
+    }
+
     /// What `compare` makes of each stream, in parallel, in the order of the set. `compare` has copies of `matchers` for its own.
-    fn each_stream<T: Send>(
+    pub fn each_stream<T: Send>(
         &self,
         matchers: &[Matcher],
         stage: &str,
@@ -90,7 +112,7 @@ impl TrainingContext<'_> {
     }
 
     /// Gives `take` the matches of `matchers` nearer than `reach` at the `wanted` ticks of a stream.
-    fn matches(
+    pub fn matches(
         &self,
         matchers: &mut [Matcher],
         stream: &TrainStream,
@@ -103,15 +125,14 @@ impl TrainingContext<'_> {
         }
     }
 
-    /// What comes near of the templates of `samples`; `verified` is the gate of a verifier that is to be learned. What is farther than
-    /// `most`, the bound of the threshold, is no rival.
+    /// What comes near of the templates of `samples` in background, and in all streams for a verifier that is to be learned, whose gate is
+    /// `verified`. Without one, nothing farther than `most`, the bound of the threshold, is looked for.
     pub fn templates(
         &self,
         samples: &[TrainSample],
         gates: TrainGates,
         (verified, most): (Option<MatchGate>, f32),
     ) -> Result<Vec<StreamMatches>, TrainError> {
-        let (set, decode) = (self.set, &self.params.decode);
         let matchers = self.matchers(samples.iter().map(|s| &s.rows));
         // Nothing else asks for what is farther than both bounds; discounts make distances smaller.
         let discount = gates.wide.map_or(0.0, |gate| gate.discount);
@@ -119,7 +140,7 @@ impl TrainingContext<'_> {
             None => most.max(self.params.negative_below as f32) / (1.0 - discount),
             Some(_) => FAR,
         };
-        let view = LeaveOneOutView::new(set, samples);
+        let view = LeaveOneOutView::new(self.set, samples);
         self.each_stream(&matchers, "comparing clips", |matchers, place, stream| {
             let ticks = stream.rows.len();
             let classes = verified.map_or_else(Vec::new, |_| view.none(place));
@@ -127,34 +148,18 @@ impl TrainingContext<'_> {
                 all: NearestByGate::none(ticks, gates),
                 others: vec![NO_MATCH; ticks],
                 classes,
-                rivals: SampleRivals::of_stream(set, samples, place, (decode, most)),
             };
-            let mut ends_sample = vec![false; ticks];
-            let ends = found.rivals.iter().map(SampleRivals::ends);
-            ends.for_each(|ends| ends_sample[ends].fill(true));
-            let all = verified.is_some()
+            let is_asked_for = verified.is_some()
                 || stream.source != StreamKind::Labelled
                 || stream.rest_is_background;
-            // Else matches are asked for where a sample ends alone.
-            let wanted = match all {
-                true => vec![true; ticks],
-                false => ends_sample.clone(),
-            };
+            let wanted = vec![is_asked_for; ticks];
             self.matches(matchers, stream, (&wanted, reach), |offer| {
-                let sample = &samples[offer.template];
-                if all {
-                    found.all.take(offer, gates);
-                    if sample.group != stream.group {
-                        keep_nearest(&mut found.others[offer.tick], offer, gates.plain);
-                    }
+                found.all.take(offer, gates);
+                if samples[offer.template].group != stream.group {
+                    keep_nearest(&mut found.others[offer.tick], offer, gates.plain);
                 }
                 if let Some(gate) = verified {
                     view.take(&mut found.classes, offer, place, gate);
-                }
-                if ends_sample[offer.tick] {
-                    for rivals in &mut found.rivals {
-                        rivals.take(offer, (sample, place), gates.plain, decode);
-                    }
                 }
             });
             found

@@ -15,7 +15,7 @@ use crate::templates::{
 };
 
 use super::activities;
-use super::alike::{AlikeClasses, alike_classes};
+use super::alike::AlikeClasses;
 use super::comparison::{StreamMatches, TrainingContext};
 use super::error::TrainError;
 use super::examples::{self, CandidateFinder, NearStream, VerifierExample};
@@ -158,10 +158,7 @@ pub fn train(
         }
     }
     let alike = match verifier {
-        None => {
-            let rivals = matches.iter().flat_map(|m| &m.rivals);
-            alike_classes(set, rivals, threshold, params)
-        }
+        None => step.alike(&samples, plain, threshold)?,
         Some(_) => Vec::new(),
     };
     let calibration = match verifier {
