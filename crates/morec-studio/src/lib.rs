@@ -13,6 +13,7 @@ mod dialogs;
 mod format;
 mod jobs;
 mod keys;
+#[cfg(feature = "measure")]
 pub mod measure;
 mod name_pattern;
 mod panels;

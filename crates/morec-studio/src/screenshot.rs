@@ -1,19 +1,16 @@
 //! Pictures of panels in files: `--screenshot FILE.png --panel NAME --at SECS`.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use egui::{ColorImage, Pos2, RawInput, Rect, Vec2};
 
 use crate::app::Studio;
-use crate::jobs::load::ClipMotion;
 use crate::raster::{self, Textures};
 use crate::state::{
     ClassCommand, Command, CompareCommand, LibraryCommand, LiveCommand, Panel, PlayCommand,
-    SimilarCommand, State, TimelineCommand, TrainCommand,
+    SimilarCommand, TimelineCommand, TrainCommand,
 };
-use crate::store::Store;
 use crate::stretch::Stretch;
 use crate::theme::Colours;
 use crate::unsaved::OwnFolder;
@@ -100,10 +97,16 @@ impl Headless {
     }
 
     /// With a database and a clip that are at hand.
-    pub fn of(store: Store, motion: Arc<ClipMotion>, size: [usize; 2]) -> Self {
+    #[cfg(feature = "measure")]
+    pub fn of(
+        store: crate::store::Store,
+        motion: std::sync::Arc<crate::jobs::load::ClipMotion>,
+        size: [usize; 2],
+    ) -> Self {
         let ctx = egui::Context::default();
         crate::theme::install(&ctx);
-        let mut state = State::new(Arc::new(|| {}), std::env::temp_dir());
+        let wake = std::sync::Arc::new(|| {});
+        let mut state = crate::state::State::new(wake, std::env::temp_dir());
         state.store = Some(store);
         state.player.show(motion);
         let secs = state.player.secs();
@@ -120,6 +123,7 @@ impl Headless {
     }
 
     /// One frame down to its triangles.
+    #[cfg(feature = "measure")]
     pub fn tessellated(&mut self) -> usize {
         let output = self.frame(1.0 / RATE_HZ);
         self.ctx.tessellate(output.shapes, 1.0).len()

@@ -78,15 +78,12 @@ pub fn material(path: &Path, classes: &[String]) -> Result<TrainingData, DbError
     })
 }
 
-/// Everyday motion, made once: it is the same for every index.
+/// Everyday motion, once it is made: it is the same for every index.
+pub static EVERYDAY: OnceLock<Vec<TrainClip>> = OnceLock::new();
+
+/// The same, made when first asked for.
 pub fn everyday() -> &'static [TrainClip] {
-    static CLIPS: OnceLock<Vec<TrainClip>> = OnceLock::new();
-    CLIPS.get_or_init(|| {
-        let mut clips = everyday_clips(EVERYDAY_SEED);
-        // Tests have ten minutes for everything.
-        clips.truncate(if cfg!(test) { 12 } else { usize::MAX });
-        clips
-    })
+    EVERYDAY.get_or_init(|| everyday_clips(EVERYDAY_SEED))
 }
 
 /// Options of training: those of `morec train`, with everyday motion that is among the clips already.

@@ -54,6 +54,7 @@ impl Store {
     }
 
     /// A database that is never written, for measuring how long drawing takes.
+    #[cfg(feature = "measure")]
     pub fn of(snapshot: Snapshot) -> Self {
         let (requests, _) = std::sync::mpsc::channel();
         let (_, replies) = std::sync::mpsc::channel();

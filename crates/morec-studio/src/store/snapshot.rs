@@ -104,6 +104,7 @@ impl Snapshot {
         })
     }
 
+    #[cfg(feature = "measure")]
     pub fn of(clips: Vec<ClipInfo>, classes: Vec<ClassCount>, samples: Vec<DbSample>) -> Self {
         let mut snapshot = Self {
             classes,
