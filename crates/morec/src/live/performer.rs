@@ -21,10 +21,11 @@ use super::{
 pub struct Performer {
     model: Model,
     rig: Option<Arc<Rig>>,
-    recognizer: Option<Recognizer>,
+    /// Made with the first pose, as `reader` is with the first skeleton: a performer that never comes takes little memory.
+    recognizer: Option<Box<Recognizer>>,
     shown: ShownBones,
     /// Reads what a model asks for beyond places of joints.
-    reader: Option<PoseExtractor>,
+    reader: Option<Box<PoseExtractor>>,
     early: EarlyTracker,
     tracker: EventTracker,
     wall_secs: f64,
@@ -71,7 +72,8 @@ impl Performer {
         self.recognizer = None;
         self.shown.reset();
         self.diagnoser = Some(Box::new(Diagnoser::live()));
-        self.reader = PoseExtractor::new(&self.model, &rig.skeleton, &rig.roles).ok();
+        let reader = PoseExtractor::new(&self.model, &rig.skeleton, &rig.roles);
+        self.reader = reader.ok().map(Box::new);
         self.rig = Some(rig);
     }
 
@@ -103,7 +105,7 @@ impl Performer {
         if let Some(new) = bones.and_then(make) {
             self.end(out);
             self.dropped = self.dropped();
-            self.recognizer = Some(new);
+            self.recognizer = Some(Box::new(new));
         }
         let Some(recognizer) = &mut self.recognizer else {
             self.unusable += 1;
@@ -163,7 +165,7 @@ impl Performer {
 
     /// Detections that were lost because one frame settled more than a recogniser keeps.
     pub fn dropped(&self) -> u64 {
-        self.dropped + self.recognizer.as_ref().map_or(0, Recognizer::dropped)
+        self.dropped + self.recognizer.as_ref().map_or(0, |r| r.dropped())
     }
 
     /// Motions that were not reported because of [`EventOptions::refractory_secs`].
@@ -186,7 +188,7 @@ impl Performer {
     /// See [`Recognizer::admits_strangers`].
     pub fn admits_strangers(&self) -> bool {
         let recognizer = self.recognizer.as_ref();
-        recognizer.is_some_and(Recognizer::admits_strangers)
+        recognizer.is_some_and(|recognizer| recognizer.admits_strangers())
     }
 
     /// The motion that seems to be under way.
