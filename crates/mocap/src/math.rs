@@ -269,7 +269,9 @@ mod tests {
                 let [from, to] = [0.0, angle].map(|angle| a * (Axis::Z.rotation(angle) * Vec3::x()));
                 let expected = a * (Axis::Z.rotation(t * angle) * Vec3::x());
                 let found = DirectionSlerp::new(t).between(&from, &to);
-                prop_assert!((found - expected).norm() < 1e-13, "{}", (found - expected).norm());
+                // Towards opposite directions rounding grows with the inverse square of the sine.
+                let allowed = 1e-13 + 1e-15 / (1.0 + angle.cos());
+                prop_assert!((found - expected).norm() < allowed, "{}", (found - expected).norm());
             }
         }
     }
