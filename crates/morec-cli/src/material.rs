@@ -4,22 +4,14 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, anyhow, bail};
-use clap::{Args, ValueEnum};
-use morec::features::BoneSet;
+use clap::Args;
 use morec::formats::Warning;
 use morec::import::{ImportOptions, Take};
-use morec::labels::{Extent, Label, Labels, read_people};
-use morec::reproduce;
-use morec::train::thesis::SvrdmOptions;
-use morec::train::{
-    DataError, Everyday, Mirror, Recipe, StreamKind, TrainClip, TrainOptions, TrainParams,
-    TrainingData,
-};
-use morec_db::labels::{DbSample, SampleFilter, SampleState};
+use morec::labels::{Label, Labels, read_people};
+use morec::train::{DataError, StreamKind, TrainClip, TrainingData};
 use morec_db::{BACKGROUND, ClipFilter, ClipInfo, MotionDb, hint};
+use morec_ops::{TrainSettings, accepted_labels, clips_to_train};
 use rayon::prelude::*;
-use serde::Serialize;
-use serde::de::DeserializeOwned;
 
 use crate::database;
 use crate::files::{ReadArgs, expand, mapping, read, some_of, takes};
@@ -39,9 +31,6 @@ pub struct MaterialArgs {
     /// stop exclusive) or start_secs, stop_secs, or neither: then the whole clip is one sample, its still ends trimmed
     #[arg(long, value_name = "FILE|DIR", required_unless_present = "db")]
     pub labels: Option<PathBuf>,
-    /// Learn only these classes, separated by commas [default: every class of the labels]
-    #[arg(long, value_delimiter = ',', value_name = "CLASSES")]
-    pub classes: Vec<String>,
     /// Leave these clips out, by file stem, separated by commas
     #[arg(long, value_delimiter = ',', value_name = "CLIPS")]
     pub exclude: Vec<String>,
@@ -52,176 +41,13 @@ pub struct MaterialArgs {
     /// the classes in them sets how near is near enough
     #[arg(long, value_name = "DIR|CLIP", num_args = 1..)]
     pub background: Vec<PathBuf>,
-    /// The method of recognition
-    #[arg(long, value_enum, default_value = "auto")]
-    pub method: Method,
-    /// With --method auto: classes that are activities whatever their samples say, separated by commas
-    #[arg(long, value_delimiter = ',', value_name = "CLASSES")]
-    pub activities: Vec<String>,
-    /// With --method auto: classes that are gestures whatever their samples say, separated by commas
-    #[arg(long, value_delimiter = ',', value_name = "CLASSES")]
-    pub gestures: Vec<String>,
-    /// With --method svrdm: the thesis' parameters, or parameters tuned to accept what was not seen
-    #[arg(long, value_enum, default_value = "tuned")]
-    pub svrdm: ThesisSetting,
-    /// Use of the unlabelled parts of labelled clips: motion that is none of the classes, or nothing to go by
-    #[arg(long, value_enum, default_value = "background")]
-    pub unlabelled: Unlabelled,
-    /// Synthetic everyday motion as background, too (not with --method svrdm); auto: if --background holds less than a
-    /// minute
-    #[arg(long, value_enum, default_value = "always")]
-    pub everyday: EverydayArg,
-    /// Training on mirrored copies of samples, too (not with --method svrdm). yes: every class is the same on both sides; auto:
-    /// only classes named as two sides of one motion, as wave_left and wave_right, teach each other
-    #[arg(long, value_enum, default_value = "auto")]
-    pub mirror: MirrorArg,
-    /// With --mirror yes: classes whose mirror image is another motion, separated by commas; it then teaches what the
-    /// class is not
-    #[arg(long, value_delimiter = ',', value_name = "CLASSES")]
-    pub one_sided: Vec<String>,
-    /// Parts that count (not with --method svrdm): all (of clips without a body: their hands), upper (nothing below the hips: for
-    /// seated performers), arms, hand (left ones as in a mirror), left_hand, hands, body_and_hands, points3 (head and hands
-    /// as tracked points), or names of bones, separated by commas, as the report of training lists them
-    #[arg(long, value_name = "PARTS", default_value = "all")]
-    pub bones: BoneSet,
     /// Roles of joints, where inference fails: lines of `role<TAB>joint name`
     #[arg(long, value_name = "FILE")]
     pub roles: Option<PathBuf>,
-    /// Set a parameter of the method by its path, as `rho=0.4`, `decode.lag_ticks=2`, `stages.scaling=unit_range`; may be
-    /// given several times
-    #[arg(long = "param", value_name = "NAME=VALUE")]
-    pub params: Vec<String>,
+    #[command(flatten)]
+    pub settings: TrainSettings,
     #[command(flatten)]
     pub read: ReadArgs,
-}
-
-/// Use of the unlabelled parts of labelled clips.
-#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Unlabelled {
-    /// None of the classes.
-    Background,
-    /// Unknown: used for nothing.
-    Ignore,
-}
-
-/// `params` with those that `settings` name set.
-fn with_settings<P: Serialize + DeserializeOwned>(params: P, settings: &[String]) -> Result<P> {
-    let mut tree = serde_json::to_value(&params)?;
-    for setting in settings {
-        let (name, value) = setting
-            .split_once('=')
-            .context(format!("--param {setting}: expected NAME=VALUE"))?;
-        let known = paths(&tree);
-        if !known.iter().any(|path| path == name) {
-            let hint = nearest(name, &known);
-            bail!("--param {setting}: there is no parameter {name}{hint}");
-        }
-        let pointer = format!("/{}", name.replace('.', "/"));
-        let Some(parameter) = tree.pointer_mut(&pointer) else {
-            bail!("--param {setting}: {name} is not set");
-        };
-        let before = parameter.clone();
-        // What is no JSON is the name of a choice.
-        let named = || serde_json::Value::String(value.to_owned());
-        *parameter = serde_json::from_str(value).unwrap_or_else(|_| named());
-        if let Err(error) = serde_json::from_value::<P>(tree.clone()) {
-            bail!("--param {setting}: {error} (it is {before})");
-        }
-    }
-    serde_json::from_value(tree).context("--param")
-}
-
-/// The paths of all parameters in a tree of them: `decode.lag_ticks`.
-fn paths(tree: &serde_json::Value) -> Vec<String> {
-    let serde_json::Value::Object(branches) = tree else {
-        return Vec::new();
-    };
-    let mut all = Vec::new();
-    for (name, branch) in branches {
-        let below = paths(branch);
-        match below.is_empty() {
-            true => all.push(name.clone()),
-            false => all.extend(below.into_iter().map(|path| format!("{name}.{path}"))),
-        }
-    }
-    all
-}
-
-/// The parameters that may have been meant by `name`: those near it as a whole, or near its last word.
-fn nearest(name: &str, known: &[String]) -> String {
-    let last = |path: &str| path.rsplit('.').next().unwrap_or_default().to_owned();
-    let below: Vec<String> = known
-        .iter()
-        .filter(|path| path.starts_with(&format!("{name}.")) || last(path) == last(name))
-        .cloned()
-        .collect();
-    match below.as_slice() {
-        [] => hint(name, known),
-        [only] => format!("; did you mean `{only}`?"),
-        several => format!("; there are {}", several.join(", ")),
-    }
-}
-
-/// Methods of recognition.
-#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Method {
-    /// Each class as its samples say: gestures matched elastically, activities (which go on for longer, like walking) by what a
-    /// window of them shows
-    Auto,
-    /// Every class as a gesture
-    Templates,
-    /// The method of the thesis of 2009: support vector machines over the directions of motion, in a tree
-    Svrdm,
-}
-
-/// Settings of the thesis's method.
-#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ThesisSetting {
-    /// The thesis's own figures: rejects nearly all it has not seen
-    Faithful,
-    /// The same method, made to accept what it has not seen
-    Tuned,
-}
-
-impl From<ThesisSetting> for reproduce::Setting {
-    fn from(setting: ThesisSetting) -> Self {
-        match setting {
-            ThesisSetting::Faithful => reproduce::Setting::Faithful,
-            ThesisSetting::Tuned => reproduce::Setting::Tuned,
-        }
-    }
-}
-
-/// Condition for synthetic everyday motion as background.
-#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
-pub enum EverydayArg {
-    /// If the clips named as background hold less than a minute.
-    Auto,
-    /// In any case.
-    Always,
-    /// Not at all.
-    Never,
-}
-
-/// Training on mirrored copies.
-#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
-pub enum MirrorArg {
-    /// Between classes that are named as two sides of one motion.
-    Auto,
-    /// Every class is the same on both sides, but for those of --one-sided.
-    Yes,
-    /// Not at all.
-    No,
-}
-
-impl From<MirrorArg> for Mirror {
-    fn from(mirror: MirrorArg) -> Self {
-        match mirror {
-            MirrorArg::Auto => Mirror::Auto,
-            MirrorArg::Yes => Mirror::Yes,
-            MirrorArg::No => Mirror::No,
-        }
-    }
 }
 
 /// Everything loaded.
@@ -235,60 +61,6 @@ pub struct ClipMaterial {
 }
 
 impl MaterialArgs {
-    /// The method of training and its parameters.
-    pub fn recipe(&self) -> Result<Recipe> {
-        let unlabelled_is_background = self.unlabelled == Unlabelled::Background;
-        let names_kinds = !self.activities.is_empty() || !self.gestures.is_empty();
-        if names_kinds && self.method != Method::Auto {
-            bail!("--activities and --gestures are for --method auto");
-        }
-        match self.method {
-            Method::Auto | Method::Templates => {
-                Ok(self.template_options(unlabelled_is_background)?.into())
-            }
-            Method::Svrdm => {
-                let params =
-                    with_settings(reproduce::Setting::from(self.svrdm).params(), &self.params)?;
-                Ok(SvrdmOptions {
-                    params,
-                    unlabelled_is_background,
-                }
-                .into())
-            }
-        }
-    }
-
-    /// Options of training for the thesis's evaluation: figures that were typed are those of the tuned setting.
-    pub fn svrdm_options(&self, setting: reproduce::Setting) -> Result<SvrdmOptions> {
-        let params = match setting {
-            reproduce::Setting::Faithful => setting.params(),
-            reproduce::Setting::Tuned => with_settings(setting.params(), &self.params)?,
-        };
-        Ok(SvrdmOptions {
-            params,
-            unlabelled_is_background: self.unlabelled == Unlabelled::Background,
-        })
-    }
-
-    fn template_options(&self, unlabelled_is_background: bool) -> Result<TrainOptions> {
-        let everyday = match self.everyday {
-            EverydayArg::Auto => Everyday::Auto,
-            EverydayArg::Always => Everyday::Always,
-            EverydayArg::Never => Everyday::Never,
-        };
-        let mut params = with_settings(TrainParams::default(), &self.params)?;
-        params.activities &= self.method == Method::Auto;
-        params.set_kinds(&self.activities, &self.gestures);
-        Ok(TrainOptions {
-            unlabelled_is_background,
-            everyday,
-            mirror: self.mirror.into(),
-            one_sided: self.one_sided.clone(),
-            bones: self.bones,
-            params,
-        })
-    }
-
     /// Origin of the labels.
     pub fn label_source(&self) -> String {
         self.db
@@ -318,7 +90,7 @@ impl MaterialArgs {
         sort_out(
             clips,
             &labels,
-            &self.classes,
+            &self.settings.classes,
             &set_of(&background),
             &set_of(&unknown),
         )
@@ -371,41 +143,34 @@ impl MaterialArgs {
             background.insert(PathBuf::from(&name));
             names.insert(name);
         }
-        let labels = database_labels(&db)?;
+        let labels = accepted_labels(&db)?;
         names.extend(labels.rows.iter().map(|row| row.clip.clone()));
-        let excluded = |name: &String| self.exclude.contains(name);
-        let mut clips: Vec<LoadedClip> = Vec::new();
-        for info in infos
-            .iter()
-            .filter(|info| names.contains(&info.name) && !excluded(&info.name))
-        {
-            let stored = db.clip(info.id)?;
-            let clip = TrainClip {
-                name: info.name.clone(),
-                clip: stored.clip,
-                roles: stored.roles,
-                rest: stored.rest,
-                source: StreamKind::Labelled,
-                person: info.subject.clone(),
-            };
-            let file_bytes = std::fs::metadata(&info.path).map_or(0, |m| m.len());
-            clips.push(LoadedClip {
-                clip,
-                path: PathBuf::from(&info.name),
-                file_bytes,
-            });
-        }
+        let wanted =
+            |info: &ClipInfo| names.contains(&info.name) && !self.exclude.contains(&info.name);
+        let loaded = |(info, clip): (ClipInfo, TrainClip)| LoadedClip {
+            path: PathBuf::from(&info.name),
+            file_bytes: std::fs::metadata(&info.path).map_or(0, |m| m.len()),
+            clip,
+        };
+        let stored = clips_to_train(&db, wanted)?;
+        let mut clips: Vec<LoadedClip> = stored.into_iter().map(loaded).collect();
         if !files.is_empty() {
             clips.extend(load_clips(&files, &self.read, &self.import_options()?)?);
         }
-        sort_out(clips, &labels, &self.classes, &background, &unknown)
+        sort_out(
+            clips,
+            &labels,
+            &self.settings.classes,
+            &background,
+            &unknown,
+        )
     }
 
     /// Names of the clips of a database that are marked as background. Those that hold samples of the classes are said on
     /// standard error and left out.
     fn marked(&self, db: &MotionDb) -> Result<Vec<String>> {
         let name = |info: ClipInfo| info.name;
-        let marked = db.background(&self.classes)?;
+        let marked = db.background(&self.settings.classes)?;
         if !marked.labelled.is_empty() {
             let names: Vec<String> = marked.labelled.into_iter().map(name).collect();
             eprintln!(
@@ -463,35 +228,6 @@ impl MaterialArgs {
         }
         Ok(paths)
     }
-}
-
-/// The accepted samples of a database as a table of labels.
-fn database_labels(db: &MotionDb) -> Result<Labels> {
-    let filter = SampleFilter {
-        state: Some(SampleState::Accepted),
-        ..SampleFilter::default()
-    };
-    let label = |(s, line): (DbSample, u64)| Label {
-        extent: if s.whole_clip {
-            Extent::WholeClip
-        } else {
-            Extent::Secs(s.span())
-        },
-        clip: s.clip_name,
-        class: s.class,
-        person: s.subject,
-        line,
-    };
-    let rows = db
-        .samples(&filter)?
-        .into_iter()
-        .zip(1..)
-        .map(label)
-        .collect();
-    Ok(Labels {
-        rows,
-        warnings: Vec::new(),
-    })
 }
 
 /// A clip and the file it came from.

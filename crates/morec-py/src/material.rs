@@ -4,11 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use morec::TimeSpan;
 use morec::labels::{ClipLength, Extent, Label, Labels, People, read_people};
-use morec::reproduce::Setting;
-use morec::train::thesis::SvrdmOptions;
-use morec::train::{
-    Everyday, Mirror, Recipe, StreamKind, TrainClip, TrainOptions, TrainParams, TrainingData,
-};
+use morec::train::{StreamKind, TrainClip, TrainingData};
+use morec_ops::OperationError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use serde::Serialize;
@@ -148,102 +145,22 @@ impl TrainingInput {
     }
 }
 
-/// Options of training, from the words of the command.
+/// Settings of an operation from JSON: an object with those that are not as usual.
 ///
 /// # Errors
-/// A word that is none of them, a parameter that there is not.
-pub fn recipe(given: &Bound<'_, PyDict>) -> PyResult<Recipe> {
-    let word = |name: &str| -> PyResult<String> {
-        let value = given
-            .get_item(name)?
-            .ok_or_else(|| value_error(format!("{name}: which?")))?;
-        value.extract()
-    };
-    let wrong = |name: &str, known: &[&str], found: &str| {
-        let known: Vec<String> = known.iter().map(|word| format!("{word:?}")).collect();
-        value_error(format!(
-            "{name}: expected {}, found {found:?}",
-            known.join(" or ")
-        ))
-    };
-    let unlabelled_is_background = match word("unlabelled")?.as_str() {
-        "background" => true,
-        "ignore" => false,
-        other => return Err(wrong("unlabelled", &["background", "ignore"], other)),
-    };
-    let params: Vec<(String, String)> = match given.get_item("params")? {
-        Some(params) => params.extract()?,
-        None => Vec::new(),
-    };
-    let setting = match word("svrdm")?.as_str() {
-        "tuned" => Setting::Tuned,
-        "faithful" => Setting::Faithful,
-        other => return Err(wrong("svrdm", &["tuned", "faithful"], other)),
-    };
-    let everyday = match word("everyday")?.as_str() {
-        "auto" => Everyday::Auto,
-        "always" => Everyday::Always,
-        "never" => Everyday::Never,
-        other => return Err(wrong("everyday", &["auto", "always", "never"], other)),
-    };
-    let mirror = match word("mirror")?.as_str() {
-        "auto" => Mirror::Auto,
-        "yes" => Mirror::Yes,
-        "no" => Mirror::No,
-        other => return Err(wrong("mirror", &["auto", "yes", "no"], other)),
-    };
-    let names = |option: &str| -> PyResult<Vec<String>> {
-        match given.get_item(option)? {
-            Some(classes) => classes.extract(),
-            None => Ok(Vec::new()),
-        }
-    };
-    let method = word("method")?;
-    let kinds = (names("activities")?, names("gestures")?);
-    if method != "auto" && !(kinds.0.is_empty() && kinds.1.is_empty()) {
-        return Err(value_error(
-            "activities and gestures are for method \"auto\"",
-        ));
-    }
-    match method.as_str() {
-        "auto" | "templates" => Ok(TrainOptions {
-            unlabelled_is_background,
-            everyday,
-            mirror,
-            one_sided: names("one_sided")?,
-            bones: word("bones")?
-                .parse()
-                .map_err(|error| value_error(format!("bones: {error}")))?,
-            params: {
-                let mut params = with_parameters(TrainParams::default(), &params)?;
-                params.activities &= method == "auto";
-                params.set_kinds(&kinds.0, &kinds.1);
-                params
-            },
-        }
-        .into()),
-        "svrdm" => Ok(SvrdmOptions {
-            params: with_parameters(setting.params(), &params)?,
-            unlabelled_is_background,
-        }
-        .into()),
-        other => Err(wrong("method", &["auto", "templates", "svrdm"], other)),
-    }
+/// A setting that there is not, or a value that it cannot have.
+pub fn settings<S: Serialize + DeserializeOwned + Default>(given: &str) -> PyResult<S> {
+    let fields: BTreeMap<String, serde_json::Value> =
+        serde_json::from_str(given).map_err(value_error)?;
+    morec_ops::from_fields(fields).map_err(value_error)
 }
 
-/// `params` with values replaced, each named by its path.
-fn with_parameters<P: Serialize + DeserializeOwned>(
-    params: P,
-    settings: &[(String, String)],
-) -> PyResult<P> {
-    let mut tree = serde_json::to_value(&params).map_err(value_error)?;
-    for (name, value) in settings {
-        let parameter = tree.pointer_mut(&format!("/{}", name.replace('.', "/")));
-        let parameter = parameter
-            .ok_or_else(|| value_error(format!("params: no parameter is called {name}")))?;
-        *parameter = serde_json::from_str(value).map_err(value_error)?;
+/// Settings that make no sense are the caller's, other errors morec's.
+pub fn operation_error(error: OperationError) -> PyErr {
+    match error {
+        OperationError::Param(_) | OperationError::Settings(_) => value_error(error),
+        error => morec_error(error),
     }
-    serde_json::from_value(tree).map_err(|error| value_error(format!("params: {error}")))
 }
 
 /// The rows of a table of labels.

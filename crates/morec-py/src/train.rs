@@ -2,30 +2,29 @@
 
 use std::sync::Arc;
 
-use morec::train::train_index;
+use morec_ops::TrainSettings;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::errors::{morec_error, warn};
+use crate::errors::warn;
 use crate::index::PyIndex;
 use crate::job;
-use crate::material::{TrainingInput, recipe};
+use crate::material::{TrainingInput, operation_error, settings};
 
 /// Trains an index from material as `morec._learn` lays it out.
 #[pyfunction]
 pub fn train(
     py: Python<'_>,
     material: &Bound<'_, PyDict>,
-    classes: Vec<String>,
-    how: &Bound<'_, PyDict>,
+    settings: &str,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<PyIndex> {
-    let recipe = recipe(how)?;
-    let given = TrainingInput::new(material, &classes)?;
+    let settings: TrainSettings = self::settings(settings)?;
+    let given = TrainingInput::new(material, &settings.classes)?;
     let trained = job::run(py, progress, |progress| {
-        train_index(&given.data, &recipe, progress)
+        settings.train(&given.data, progress)
     })?;
-    let (index, report) = trained.map_err(morec_error)?;
+    let (index, report) = trained.map_err(operation_error)?;
     warn(py, &report.notes)?;
     Ok(PyIndex {
         index: Arc::new(index),

@@ -1,5 +1,7 @@
 //! The bones whose directions describe a pose, and which of them a skeleton offers.
 
+use std::fmt;
+
 use crate::math::Vec3;
 use crate::roles::{Role, RoleMap};
 
@@ -306,6 +308,16 @@ impl BoneSet {
         (0..BONES)
             .filter(|&b| is_known(&ALL_BONES[b]) && holds(&ALL_BONES[b]))
             .fold(Self::NONE, BoneSet::with)
+    }
+}
+
+impl fmt::Display for BoneSet {
+    /// Its name in [`NAMED`](Self::NAMED), or those of its bones, as text is read.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match Self::NAMED.iter().find(|(_, bones)| bones == self) {
+            Some((name, _)) => f.write_str(name),
+            None => f.write_str(&Vec::<String>::from(*self).join(",")),
+        }
     }
 }
 

@@ -4,14 +4,13 @@ use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::ValueEnum;
-use morec::crossval::Tested;
-use morec::crossval::{CrossvalData, CrossvalOptions, CrossvalOutcome, FoldBy, Tests, crossval};
+use morec::crossval::{CrossvalData, FoldReport, Tests};
 use morec::eval::{Evaluation, MEASURED_OVERLAP, timelines};
 use morec::explain::Miss;
 use morec::perturb::Perturbation;
 use morec::report::{Report, TrainedClass};
 use morec::templates::ALARM_RATES;
+use morec_ops::{CrossvalSettings, LeftOut};
 
 use crate::database;
 use crate::figures;
@@ -37,30 +36,14 @@ use crate::table::TextTable;
 pub struct Args {
     #[command(flatten)]
     material: MaterialArgs,
-    /// Part that is left out of training in turn
-    #[arg(long, value_enum)]
-    by: SplitArg,
+    #[command(flatten)]
+    settings: CrossvalSettings,
     /// Other clips to test on, each in the fold of its person; what --clips and --labels name then only teaches
     #[arg(long, value_name = "DIR|CLIP", num_args = 1.., requires = "test_labels")]
     test: Vec<PathBuf>,
     /// Labels of --test, with a column person
     #[arg(long, value_name = "FILE|DIR", requires = "test")]
     test_labels: Option<PathBuf>,
-    /// Let at most N samples of each class teach, from its people in turn
-    #[arg(long, value_name = "N")]
-    samples: Option<usize>,
-    /// Also test copies that are worse in one way each, separated by commas: white:METRES, slow:METRES, const:METRES,
-    /// tilt:DEGREES, speed:FACTOR (of durations), drop:SHARE, repeat:SHARE, spikes:SHARE, occlude:SHARE, cam:FACTOR,
-    /// rate:HZ, mirror
-    #[arg(long, value_delimiter = ',', value_name = "KIND:SIZE")]
-    perturb: Vec<Perturbation>,
-    /// Also test at these rates of false alarms a minute (see `morec recognize --sensitivity`), separated by commas
-    /// [default with --report: 0.03 to 2]
-    #[arg(long, value_delimiter = ',', value_name = "RATE")]
-    sensitivities: Vec<f64>,
-    /// Seed of the shuffle that halves the samples
-    #[arg(long, default_value_t = 1, value_name = "N")]
-    seed: u64,
     /// Clips or folders that hold none of the classes, also by file stem: what is recognised in them is a false
     /// alarm
     #[arg(long, value_name = "DIR|CLIP", num_args = 1..)]
@@ -73,25 +56,12 @@ pub struct Args {
     report: Option<PathBuf>,
 }
 
-/// Part that is left out.
-#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
-enum SplitArg {
-    /// Half of each class's samples
-    Half,
-    /// One clip after the other
-    Clip,
-    /// One person after the other
-    Person,
-    /// Nothing: each person teaches alone and is tested in their own clips of --test
-    Own,
-}
-
 /// Runs the command.
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     if let Some(path) = &args.report {
         output::check_ending(path, "a page of HTML", &["html", "htm"])?;
     }
-    if args.by == SplitArg::Own && args.test.is_empty() {
+    if args.settings.by == LeftOut::Own && args.test.is_empty() {
         anyhow::bail!(
             "--by own tests each person in other clips: name them with --test and --test-labels"
         );
@@ -115,22 +85,18 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
             samples: &tests.data.samples,
         }),
     };
-    let outcome = crossval(
-        &of,
-        &args.options(),
-        &args.material.recipe()?,
-        &StageBar::new(),
-    )?;
-    let tested = &outcome.tested;
-    let evaluation = Evaluation::of(&tested.streams, &tested.truths, &tested.founds)?;
-    let perturbed = measured(&outcome.perturbed)?;
-    let sensitivities = measured(&outcome.sensitivities)?;
+    let mut settings = args.settings.clone();
+    if settings.sensitivities.is_empty() && args.report.is_some() {
+        settings.sensitivities = ALARM_RATES.to_vec();
+    }
+    let measures = settings.crossval(&of, &args.material.settings, &StageBar::new())?;
+    let (tested, evaluation) = (&measures.tested, &measures.evaluation);
     // Before anything is printed: whoever stops reading still gets the report.
     if let Some(path) = &args.report {
         let timelines = timelines(&tested.streams, &tested.truths, &tested.founds)?;
         let about = [
             ("labels".to_owned(), args.material.label_source()),
-            ("left out".to_owned(), format!("{:?}", args.options().by)),
+            ("left out".to_owned(), settings.by.said().to_owned()),
         ];
         let mut motion = ReportMotion::of(&timelines);
         match &args.material.db {
@@ -142,13 +108,13 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         let report = Report {
             title: "Cross-validation",
             about: &about,
-            evaluation: &evaluation,
+            evaluation,
             timelines: &timelines,
             training: &TrainedClass::count(&material.data.samples, &material.data.classes),
             misses: &tested.misses,
             performances: &[],
-            sensitivities: &sensitivities,
-            perturbed: &perturbed,
+            sensitivities: &measures.sensitivities,
+            perturbed: &measures.perturbed,
             motion: reel.as_ref(),
         };
         figures::write_report(path, &report)?;
@@ -163,48 +129,27 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
             alarms_per_minute: s.0,
             evaluation: s.1.clone(),
         };
-        let all = CrossvalMeasures {
-            evaluation: &evaluation,
+        let all = CrossvalJson {
+            evaluation,
             missed: &tested.misses,
-            perturbed: perturbed.iter().map(named).collect(),
-            sensitivities: sensitivities.iter().map(at_rate).collect(),
+            perturbed: measures.perturbed.iter().map(named).collect(),
+            sensitivities: measures.sensitivities.iter().map(at_rate).collect(),
         };
         json::write_json(&mut out, &all)?;
     } else {
-        figures::write_tables(&mut out, &evaluation)?;
+        figures::write_tables(&mut out, evaluation)?;
         figures::write_misses(&mut out, &tested.misses)?;
-        write_sensitivities(&mut out, &sensitivities)?;
-        write_perturbed(&mut out, &evaluation, &perturbed)?;
-        write_folds(&mut out, &outcome)?;
+        write_sensitivities(&mut out, &measures.sensitivities)?;
+        write_perturbed(&mut out, evaluation, &measures.perturbed)?;
+        write_folds(&mut out, &measures.folds)?;
     }
     out.flush()?;
     Ok(ExitCode::SUCCESS)
 }
 
-impl Args {
-    fn options(&self) -> CrossvalOptions {
-        let by = match self.by {
-            SplitArg::Half => FoldBy::Half { seed: self.seed },
-            SplitArg::Clip => FoldBy::Clip,
-            SplitArg::Person => FoldBy::Person,
-            SplitArg::Own => FoldBy::Own,
-        };
-        CrossvalOptions {
-            by,
-            samples_per_class: self.samples,
-            perturbations: self.perturb.clone(),
-            sensitivities: if self.sensitivities.is_empty() && self.report.is_some() {
-                ALARM_RATES.to_vec()
-            } else {
-                self.sensitivities.clone()
-            },
-        }
-    }
-}
-
 /// Everything measured, for JSON.
 #[derive(serde::Serialize)]
-struct CrossvalMeasures<'a> {
+struct CrossvalJson<'a> {
     #[serde(flatten)]
     evaluation: &'a Evaluation,
     missed: &'a [Miss],
@@ -226,14 +171,6 @@ struct SensitivityFigures {
 struct PerturbedFigures {
     perturbation: String,
     evaluation: Evaluation,
-}
-
-fn measured<K: Copy>(results: &[(K, Tested)]) -> anyhow::Result<Vec<(K, Evaluation)>> {
-    let of = results.iter().map(|(key, tested)| {
-        let evaluation = Evaluation::of(&tested.streams, &tested.truths, &tested.founds)?;
-        Ok((*key, evaluation))
-    });
-    of.collect()
 }
 
 fn write_sensitivities(
@@ -301,9 +238,9 @@ fn write_perturbed(
     write!(out, "{table}")
 }
 
-fn write_folds(out: &mut impl Write, outcome: &CrossvalOutcome) -> std::io::Result<()> {
+fn write_folds(out: &mut impl Write, folds: &[FoldReport]) -> std::io::Result<()> {
     writeln!(out, "\nTraining, by what was left out")?;
-    for fold in &outcome.folds {
+    for fold in folds {
         let training = &fold.training;
         let negatives: usize = training.negatives.values().sum();
         let accepted = match (training.threshold, &training.svrdm) {

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, Result};
-use morec::reproduce::{Reproduction, Setting, Study, page, reproduce};
+use morec::reproduce::{Reproduction, Study, page, reproduce};
 
 use crate::material::MaterialArgs;
 use crate::output;
@@ -40,12 +40,7 @@ pub struct Args {
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
     let material = args.material.load(&args.unknown)?;
-    let settings = [Setting::Faithful, Setting::Tuned];
-    let settings: Result<Vec<_>> = settings
-        .into_iter()
-        .map(|s| Ok((s, args.material.svrdm_options(s)?)))
-        .collect();
-    let settings = settings?;
+    let settings = args.material.settings.both_svrdm()?;
     let study = Study {
         clips: &material.data.clips,
         samples: &material.data.samples,

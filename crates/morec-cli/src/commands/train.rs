@@ -5,8 +5,8 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result};
 use morec::index::MotionIndex;
+use morec::train::TrainingReport;
 use morec::train::thesis::SvrdmReport;
-use morec::train::{TrainingReport, train_index};
 
 use crate::database;
 use crate::json::write_json;
@@ -43,7 +43,7 @@ pub fn trained(
     let material = args.load(&[])?;
     // Before the work, not after it, and when it is known what is read.
     output::check_index(output)?;
-    let (index, report) = train_index(&material.data, &args.recipe()?, &StageBar::new())?;
+    let (index, report) = args.settings.train(&material.data, &StageBar::new())?;
     Ok((index, report, material))
 }
 

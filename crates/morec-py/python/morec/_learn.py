@@ -46,30 +46,22 @@ def _material(
     }
 
 
-def _recipe(
-    method: str,
-    svrdm: str,
-    unlabelled: str,
-    everyday: str,
-    mirror: str,
+def _settings(
+    classes: Sequence[str],
     one_sided: Sequence[str],
     activities: Sequence[str],
     gestures: Sequence[str],
     bones: str | Sequence[str],
     params: Mapping[str, Any] | None,
-) -> dict[str, Any]:
-    return {
-        "method": method,
-        "svrdm": svrdm,
-        "unlabelled": unlabelled,
-        "everyday": everyday,
-        "mirror": mirror,
-        "one_sided": list(one_sided),
-        "activities": list(activities),
-        "gestures": list(gestures),
+    **words: str,
+) -> str:
+    lists = {"classes": classes, "one_sided": one_sided, "activities": activities, "gestures": gestures}
+    return json.dumps({
+        **words,
+        **{name: list(values) for name, values in lists.items()},
         "bones": bones if isinstance(bones, str) else ",".join(bones),
-        "params": [(name, json.dumps(value)) for name, value in (params or {}).items()],
-    }
+        "params": dict(params or {}),
+    })
 
 
 def train(
@@ -151,8 +143,11 @@ def train(
         For labels that were cut or left out, and clips that are not used.
     """
     material = _material(clips, labels, people, background, exclude)
-    recipe = _recipe(method, svrdm, unlabelled, everyday, mirror, one_sided, activities, gestures, bones, params)
-    return _morec.train(material, list(classes), recipe, listener(progress))
+    settings = _settings(
+        classes, one_sided, activities, gestures, bones, params,
+        method=method, svrdm=svrdm, unlabelled=unlabelled, everyday=everyday, mirror=mirror,
+    )  # fmt: skip
+    return _morec.train(material, settings, listener(progress))
 
 
 def crossval(
@@ -206,15 +201,18 @@ def crossval(
     """
     material = _material(clips, labels, people, background, exclude)
     material["unknown"] = _aside(unknown, material["clips"])
-    recipe = _recipe(method, svrdm, unlabelled, everyday, mirror, one_sided, activities, gestures, bones, params)
-    how: dict[str, Any] = {
+    settings = _settings(
+        classes, one_sided, activities, gestures, bones, params,
+        method=method, svrdm=svrdm, unlabelled=unlabelled, everyday=everyday, mirror=mirror,
+    )  # fmt: skip
+    how = {
         "by": by,
         "samples": samples,
         "perturb": list(perturb),
         "sensitivities": list(sensitivities),
         "seed": seed,
     }
-    return _morec.crossval(material, list(classes), recipe, how, listener(progress))
+    return _morec.crossval(material, settings, json.dumps(how), listener(progress))
 
 
 def evaluate(

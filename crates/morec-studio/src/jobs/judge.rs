@@ -4,17 +4,18 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use morec::TimeSpan;
-use morec::crossval::{CrossvalData, CrossvalError, CrossvalOptions, FoldBy, Tested, crossval};
+use morec::crossval::{CrossvalData, Tested};
 use morec::eval::{
     ClipDetection, DetectionVerdict, Evaluation, GroundTruth, GroundTruthVerdict, Timeline,
     timelines,
 };
 use morec::explain::Miss;
 use morec::labels::Sample;
-use morec::train::{Recipe, TrainClip, TrainError};
+use morec::train::TrainClip;
+use morec_ops::{CrossvalSettings, LeftOut, Method, OperationError, TrainSettings};
 
 use super::progress::{JobError, JobProgress};
-use super::train;
+use super::train::material;
 
 /// Result of a cross-validation.
 pub struct CrossvalResult {
@@ -30,58 +31,11 @@ pub struct CrossvalResult {
     pub untested: Vec<String>,
 }
 
-/// The part of the labels that a cross-validation leaves out in turn.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum LeftOut {
-    Person,
-    Clip,
-    Half,
-}
-
-impl LeftOut {
-    /// Each person if labels show several, else each clip if there are several, else half of the labels.
-    pub fn of<'a>(people: impl Iterator<Item = &'a str>, clips: usize) -> Self {
-        match people.collect::<BTreeSet<_>>().len() {
-            2.. => LeftOut::Person,
-            _ if clips >= 2 => LeftOut::Clip,
-            _ => LeftOut::Half,
-        }
-    }
-
-    /// Its name in a sentence.
-    pub fn said(self) -> &'static str {
-        match self {
-            LeftOut::Person => "each person in turn",
-            LeftOut::Clip => "each clip in turn",
-            LeftOut::Half => "half of the labels",
-        }
-    }
-
-    /// What holds all of a class that cannot be tested: "one person".
-    pub fn one(self) -> &'static str {
-        match self {
-            LeftOut::Person => "one person",
-            LeftOut::Clip | LeftOut::Half => "one clip",
-        }
-    }
-
-    /// Its name for `morec crossval --by`.
-    pub fn option(self) -> &'static str {
-        match self {
-            LeftOut::Person => "person",
-            LeftOut::Clip => "clip",
-            LeftOut::Half => "half",
-        }
-    }
-}
-
-impl From<LeftOut> for FoldBy {
-    fn from(part: LeftOut) -> Self {
-        match part {
-            LeftOut::Person => FoldBy::Person,
-            LeftOut::Clip => FoldBy::Clip,
-            LeftOut::Half => FoldBy::Half { seed: 1 },
-        }
+/// What holds all of a class that cannot be tested: "one person".
+pub fn only_part(by: LeftOut) -> &'static str {
+    match by {
+        LeftOut::Person | LeftOut::Own => "one person",
+        LeftOut::Clip | LeftOut::Half => "one clip",
     }
 }
 
@@ -199,48 +153,38 @@ fn clip_of(stream: &str) -> String {
 /// Trains and tests every fold of the database at `path`.
 pub fn judge(
     path: &Path,
-    classes: &[String],
-    recipe: &Recipe,
+    train: &TrainSettings,
+    by: LeftOut,
     progress: &JobProgress,
 ) -> Result<Box<CrossvalResult>, JobError> {
-    let material = train::material(path, classes).map_err(|e| JobError::Failed(e.to_string()))?;
-    let people = material.samples.iter().filter_map(|s| s.person.as_deref());
-    let by = LeftOut::of(people, material.labelled().count());
-    let mut clips = material.clips;
-    clips.extend_from_slice(train::everyday());
-    let tested = CrossvalData {
-        clips: &clips,
-        samples: &material.samples,
-        classes: &material.classes,
-        unknown: &[],
-        tests: None,
+    let judged = || -> Result<_, OperationError> {
+        let data = material(path, &train.classes)?;
+        let tested = CrossvalData {
+            clips: &data.clips,
+            samples: &data.samples,
+            classes: &data.classes,
+            unknown: &[],
+            tests: None,
+        };
+        let how = CrossvalSettings {
+            by,
+            ..CrossvalSettings::default()
+        };
+        let tested = how.crossval(&tested, train, progress)?.tested;
+        let untested = untested(by, &data.clips, &data.samples);
+        let tested = without(tested, &untested);
+        let (streams, truths, founds) = (&tested.streams, &tested.truths, &tested.founds);
+        Ok(CrossvalResult {
+            thesis: train.method == Method::Svrdm,
+            untested,
+            evaluation: Evaluation::of(streams, truths, founds)?,
+            timelines: timelines(streams, truths, founds)?,
+            misses: tested.misses,
+            by,
+        })
     };
-    let outcome = crossval(
-        &tested,
-        &CrossvalOptions::from(FoldBy::from(by)),
-        recipe,
-        progress,
-    )
-    .map_err(|e| match e {
-        CrossvalError::Train {
-            source: TrainError::Cancelled,
-            ..
-        } => JobError::Cancelled,
-        other => JobError::Failed(format!("Not judged: {other}")),
-    })?
-    .tested;
-    let untested = untested(by, &clips, &material.samples);
-    let outcome = without(outcome, &untested);
-    let (streams, truths, founds) = (&outcome.streams, &outcome.truths, &outcome.founds);
-    let said = |e: morec::eval::EvalError| JobError::Failed(format!("Not judged: {e}"));
-    Ok(Box::new(CrossvalResult {
-        misses: outcome.misses.clone(),
-        thesis: matches!(recipe, Recipe::Svrdm(_)),
-        untested,
-        evaluation: Evaluation::of(streams, truths, founds).map_err(said)?,
-        timelines: timelines(streams, truths, founds).map_err(said)?,
-        by,
-    }))
+    let judged = judged().map_err(|error| JobError::of_operation("Not judged", &error))?;
+    Ok(Box::new(judged))
 }
 
 /// The classes that only one part shows: without it there is nothing that could teach them.
@@ -253,7 +197,7 @@ fn untested(by: LeftOut, clips: &[TrainClip], samples: &[Sample]) -> Vec<String>
     for sample in samples {
         let clip = sample.clip.as_str();
         let part = match by {
-            LeftOut::Person => person(clip).unwrap_or(clip),
+            LeftOut::Person | LeftOut::Own => person(clip).unwrap_or(clip),
             LeftOut::Clip => clip,
             LeftOut::Half => return Vec::new(),
         };
@@ -372,13 +316,5 @@ mod tests {
         // Most of it lies outside of the label that it is the only match of.
         let moments = moments(&[truth("wave", 5.0, 6.0)], &[found("bow", 4.9, 9.0)]);
         assert_eq!(pairs(&moments), [(Some("wave"), Some("bow"))]);
-    }
-
-    #[test]
-    fn what_is_left_out_follows_from_people_and_clips() {
-        let of = |people: &[&'static str], clips| LeftOut::of(people.iter().copied(), clips);
-        assert_eq!(of(&["ada", "ben", "ada"], 3), LeftOut::Person);
-        assert_eq!(of(&["ada", "ada"], 2), LeftOut::Clip);
-        assert_eq!(of(&[], 1), LeftOut::Half);
     }
 }

@@ -4,7 +4,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 use morec::progress::Progress;
+use morec::train::DataError;
 use morec_db::DbError;
+use morec_ops::OperationError;
 
 use crate::store::Wake;
 
@@ -75,6 +77,17 @@ pub enum JobError {
 }
 
 impl JobError {
+    /// Of an error of an operation, with what that means before it.
+    pub(super) fn of_operation(what: &str, error: &OperationError) -> Self {
+        match error {
+            error if error.is_cancelled() => Self::Cancelled,
+            OperationError::Data(DataError::NoSample) => {
+                Self::Failed("Nothing to learn from: label a few motions first".to_owned())
+            }
+            error => Self::Failed(format!("{what}: {error}")),
+        }
+    }
+
     /// Of an error of the database, with what that means before it.
     pub(super) fn of_db(what: &str, error: &DbError) -> Self {
         match error {

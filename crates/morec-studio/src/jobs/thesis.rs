@@ -9,6 +9,7 @@ use morec::svrdm::{Branch, Node, SampleClassifier, SvrdmEngine, SvrdmModel};
 use morec::train::thesis::{SvrdmOptions, SvrdmTrainParams, train_svrdm};
 use morec::train::{LabelSet, TrainError};
 use morec_db::ClipId;
+use morec_ops::OperationError;
 
 use super::load::ClipMotion;
 use super::progress::{JobError, JobProgress};
@@ -68,10 +69,7 @@ pub fn run(
     progress: &JobProgress,
 ) -> Result<Arc<Thesis>, JobError> {
     let trained = trained(path, classes, params, progress).map(Arc::new);
-    trained.map_err(|why| match why {
-        None => JobError::Cancelled,
-        Some(why) => JobError::Failed(format!("The method of 2009 was not trained: {why}")),
-    })
+    trained.map_err(|error| JobError::of_operation("The method of 2009 was not trained", &error))
 }
 
 fn trained(
@@ -79,8 +77,8 @@ fn trained(
     classes: &[String],
     params: SvrdmTrainParams,
     progress: &JobProgress,
-) -> Result<Thesis, Option<String>> {
-    let data = train::material(path, classes).map_err(|e| Some(e.to_string()))?;
+) -> Result<Thesis, OperationError> {
+    let data = train::material(path, classes)?;
     let labelling = LabelSet {
         samples: &data.samples,
         held_back: &[],
@@ -91,13 +89,9 @@ fn trained(
         params,
         ..SvrdmOptions::default()
     };
-    let (model, _) =
-        train_svrdm(&data.clips, &labelling, &options, progress).map_err(|e| match e {
-            TrainError::Cancelled => None,
-            other => Some(other.to_string()),
-        })?;
+    let (model, _) = train_svrdm(&data.clips, &labelling, &options, progress)?;
     let model = Arc::new(model);
-    let mut classifier = SampleClassifier::new(&model).map_err(|e| Some(e.to_string()))?;
+    let mut classifier = SampleClassifier::new(&model).map_err(TrainError::from)?;
     let (mut samples, mut vectors) = (Vec::new(), Vec::new());
     for clip in data.labelled() {
         let Ok(map) = PivotMap::of_clip(&model.pivots, &clip.clip, &clip.roles) else {

@@ -15,8 +15,8 @@ fn words(kind: ClassKind) -> (&'static str, &'static str) {
 }
 
 /// The kind of `class` with its reason, and a menu for another.
-pub fn choose(ui: &mut Ui, state: &State, class: &str, out: Out) {
-    let chosen = state.train.kinds.get(class).copied();
+pub fn choose(ui: &mut Ui, state: &State, class: &String, out: Out) {
+    let chosen = state.train.kind(class);
     let snapshot = state.store.as_ref().map(|store| &store.snapshot);
     let labels = snapshot.and_then(|snapshot| snapshot.labels().get(class));
     let labels = labels.copied().unwrap_or_default();

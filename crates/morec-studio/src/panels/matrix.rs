@@ -4,6 +4,7 @@ use egui::{Align2, FontId, Rect, ScrollArea, Sense, Ui, Vec2, WidgetType, pos2};
 
 use super::{Out, widgets};
 use crate::format;
+use crate::jobs::judge::only_part;
 use crate::state::{Command, State, TrainCommand};
 use crate::theme::Colours;
 
@@ -46,7 +47,7 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
         let text = format!(
             "Not tested: {}. All labels of it are of {}, without which nothing teaches it.",
             judged.untested.join(", "),
-            judged.by.one()
+            only_part(judged.by)
         );
         ui.colored_label(c.warn, text);
     }

@@ -9,6 +9,7 @@ use morec::features::BoneSet;
 use morec::train::TrainingReport;
 
 use crate::format;
+use crate::jobs::judge::only_part;
 use crate::state::{Command, CrossvalView, FileCommand, State, TrainCommand};
 use crate::theme::Colours;
 
@@ -109,15 +110,15 @@ fn choose(ui: &mut Ui, state: &State, out: Out) {
 
 /// The parts of the body that count.
 fn parts(ui: &mut Ui, state: &State, out: Out) {
-    let chosen = state.train.parts;
+    let chosen = state.train.settings.bones;
     ui.horizontal(|ui| {
         ui.label("Parts");
-        let name = |at: usize| BoneSet::NAMED[at].0.replace('_', " ");
+        let name = |bones: BoneSet| bones.to_string().replace('_', " ");
         let combo = ComboBox::from_id_salt("parts").selected_text(name(chosen));
         let combo = combo.show_ui(ui, |ui| {
-            for at in 0..BoneSet::NAMED.len() {
-                if ui.selectable_label(at == chosen, name(at)).clicked() {
-                    out.push(Command::Train(TrainCommand::Parts(at)));
+            for (_, bones) in BoneSet::NAMED {
+                if ui.selectable_label(bones == chosen, name(bones)).clicked() {
+                    out.push(Command::Train(TrainCommand::Parts(bones)));
                 }
             }
         });
@@ -157,7 +158,7 @@ fn teach_next(ui: &mut Ui, state: &State) {
         for class in &judged.untested {
             hints.push(format!(
                 "{class}: of {} only, add some of another",
-                judged.by.one()
+                only_part(judged.by)
             ));
         }
         if let Some(hint) = unlabelled(judged) {

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use morec::features::BoneSet;
 use morec::roles::Role;
 use morec::smooth::ChannelKind;
 use morec::train::ClassKind;
@@ -312,8 +313,8 @@ pub enum TrainCommand {
         class: String,
         kind: Option<ClassKind>,
     },
-    /// The parts that count, by their place among the named sets.
-    Parts(usize),
+    /// The parts that count.
+    Parts(BoneSet),
     Train,
     Judge,
     /// Lists the moments of a cell of the confusion matrix and goes to the first; `None` lists the mistakes.

@@ -1,8 +1,9 @@
 //! A cross-validation as it is shown: the confusion matrix, the list of mistakes, the moment that was chosen.
 
 use morec::eval::Evaluation;
+use morec_ops::LeftOut;
 
-use crate::jobs::judge::{CrossvalResult, LeftOut, Moment};
+use crate::jobs::judge::{CrossvalResult, Moment};
 
 /// A cross-validation, ready to be shown.
 ///

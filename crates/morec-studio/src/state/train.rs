@@ -1,12 +1,12 @@
 //! Training: the classes that are learned, the index, cross-validation, the method of 2009.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use morec::features::BoneSet;
 use morec::index::MotionIndex;
 use morec::train::thesis::SvrdmTrainParams;
 use morec::train::{ClassKind, TrainingReport};
+use morec_ops::TrainSettings;
 
 use super::crossval::CrossvalView;
 use crate::jobs::thesis::{Map, Thesis};
@@ -17,10 +17,8 @@ use crate::store::Snapshot;
 pub struct Train {
     /// Classes that are left out.
     pub without: BTreeSet<String>,
-    /// Classes that are gestures, or activities, whatever their labels say.
-    pub kinds: BTreeMap<String, ClassKind>,
-    /// The parts that count, by their place in [`BoneSet::NAMED`].
-    pub parts: usize,
+    /// How an index is trained; its classes are those of the labels that are not left out.
+    pub settings: TrainSettings,
     pub index: Option<Arc<MotionIndex>>,
     pub bytes: Vec<u8>,
     pub report: Option<TrainingReport>,
@@ -45,9 +43,33 @@ pub struct Train {
 }
 
 impl Train {
-    /// Name and bones of the parts that count.
-    pub fn parts(&self) -> (&'static str, BoneSet) {
-        BoneSet::NAMED[self.parts.min(BoneSet::NAMED.len() - 1)]
+    /// The kind that was chosen for a class.
+    pub fn kind(&self, class: &String) -> Option<ClassKind> {
+        let TrainSettings {
+            activities,
+            gestures,
+            ..
+        } = &self.settings;
+        match (activities.contains(class), gestures.contains(class)) {
+            (true, _) => Some(ClassKind::Activity),
+            (_, true) => Some(ClassKind::Gesture),
+            _ => None,
+        }
+    }
+
+    pub(super) fn set_kind(&mut self, class: String, kind: Option<ClassKind>) {
+        let TrainSettings {
+            activities,
+            gestures,
+            ..
+        } = &mut self.settings;
+        activities.retain(|other| *other != class);
+        gestures.retain(|other| *other != class);
+        match kind {
+            Some(ClassKind::Activity) => activities.push(class),
+            Some(ClassKind::Gesture) => gestures.push(class),
+            None => {}
+        }
     }
 
     /// True if labels or background have changed since the index was trained.

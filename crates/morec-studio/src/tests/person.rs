@@ -9,11 +9,9 @@ use std::time::{Duration, Instant};
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use morec::train::{EVERYDAY_SEED, everyday_clips};
 
 use crate::app::Studio;
 use crate::dialogs::{Chooser, Dialog, Dialogs};
-use crate::jobs::train::EVERYDAY;
 use crate::state::{Command, Panel, State};
 
 /// Seconds that pass with every frame.
@@ -59,8 +57,6 @@ impl Person {
 
     /// Before a window that finds what earlier ones left in a folder.
     pub fn again(paths: &[PathBuf], unsaved: Arc<tempfile::TempDir>) -> Self {
-        // A part of the everyday motion, or training would be half of the tests' time.
-        EVERYDAY.get_or_init(|| everyday_clips(EVERYDAY_SEED).into_iter().take(12).collect());
         let (ctx, paths) = (egui::Context::default(), paths.to_vec());
         let mut studio = Studio::new(&ctx, &paths, unsaved.path().to_owned());
         let answers = Arc::new(Answers::default());

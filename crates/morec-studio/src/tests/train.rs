@@ -4,7 +4,6 @@ use super::{Person, made};
 use crate::jobs::thesis::{GRID, TreeNodeView};
 use crate::state::{Command, LibraryCommand, Panel, TimelineCommand, TrainCommand};
 use crate::store::Edit;
-use morec::train::ClassKind;
 use morec::train::thesis::SvrdmTrainParams;
 
 #[test]
@@ -83,7 +82,7 @@ fn classes_are_chosen_and_changed_labels_are_said() {
     assert!(line.contains("--classes bow,wave"), "{line}");
     person.click("Cross-validate");
     let line = person.state().command_line.clone();
-    assert!(line.ends_with("--by person --classes bow,wave"), "{line}");
+    assert!(line.ends_with(".mdb --classes bow,wave"), "{line}");
     person.settle();
     assert!(person.state().train.judged.is_some());
     // Changed labels are said, and the index is trained again by a click.
@@ -251,7 +250,7 @@ fn the_method_of_2009_has_a_confusion_matrix() {
     person.goes_to(Panel::Train);
     person.click("Cross-validate it");
     let line = person.state().command_line.clone();
-    assert!(line.ends_with("--by person --method svrdm"), "{line}");
+    assert!(line.ends_with(".mdb --method svrdm"), "{line}");
     person.settle();
     assert!(person.sees("CROSS-VALIDATION OF THE METHOD OF 2009, WITHOUT EACH PERSON IN TURN"));
     let judged = person.state().train.judged.as_ref().unwrap();
@@ -273,7 +272,7 @@ fn a_class_is_a_gesture_or_an_activity_and_it_can_be_said() {
         "wave is a gesture: its longest label lasts {longest:.1} s"
     ));
     person.click("Always an activity");
-    assert_eq!(person.state().train.kinds["wave"], ClassKind::Activity);
+    assert_eq!(person.state().train.settings.activities, ["wave"]);
     assert!(person.sees("wave is an activity: so it was chosen"));
     person.click("Start training");
     person.settle();

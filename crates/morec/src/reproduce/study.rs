@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::crossval::CrossvalError;
 use crate::eval::EvalError;
@@ -32,12 +32,13 @@ pub struct Study<'a> {
 }
 
 /// The two settings.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Setting {
     /// The thesis's own parameters.
     Faithful,
     /// Made to accept what was not seen.
+    #[default]
     Tuned,
 }
 

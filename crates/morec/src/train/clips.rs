@@ -1,17 +1,19 @@
 //! Training from clips, all in one.
 
-use crate::features::BoneSet;
+use std::sync::{Mutex, PoisonError};
+
+use crate::features::{BoneSet, FeatureParams};
 use crate::progress::Progress;
 use crate::roles::RoleMap;
 use crate::synth;
 use crate::templates::TemplateModel;
 
 use super::error::TrainError;
-use super::from_clips::{LabelSet, TrainClip, build_train_set};
+use super::from_clips::{LabelSet, TrainClip, background_streams, build_train_set};
 use super::mirror::add_mirrored;
 use super::options::{ENOUGH_BACKGROUND_SECS, EVERYDAY_SEED, Everyday, TrainOptions};
 use super::report::TrainingReport;
-use super::set::StreamKind;
+use super::set::{StreamKind, TrainStream};
 use super::templates::train;
 
 /// Trains on labelled and background clips, and on everyday motion as the options say.
@@ -27,13 +29,15 @@ pub fn train_clips(
     options
         .check_names(labelling.classes)
         .map_err(TrainError::Params)?;
-    let mut all = clips.to_vec();
-    if adds_everyday(clips, options.everyday) {
-        all.extend(everyday_clips(EVERYDAY_SEED));
-    }
-    let mut prepared = build_train_set(&all, labelling, options.bones, &options.params.features);
+    let mut prepared = build_train_set(clips, labelling, options.bones, &options.params.features);
     if prepared.bones == BoneSet::NONE {
         return Err(prepared.no_bone(options.bones));
+    }
+    if adds_everyday(clips, options.everyday) {
+        // Behind the clips; stretches of them that became background by themselves come last.
+        let at = clips.len() - prepared.lacking.len();
+        let made = everyday_streams(prepared.bones, &prepared.features, progress);
+        prepared.set.streams.splice(at..at, made);
     }
     let (mirror, bones) = (options.mirror, prepared.bones);
     add_mirrored(&mut prepared.set, bones, mirror, &options.one_sided);
@@ -54,8 +58,28 @@ fn adds_everyday(clips: &[TrainClip], everyday: Everyday) -> bool {
     }
 }
 
+/// Rows of the everyday motion. Those made last are kept: they are the same for every index of the same bones and parameters, and
+/// making them takes as long as a small training does.
+fn everyday_streams(
+    bones: BoneSet,
+    params: &FeatureParams,
+    progress: &dyn Progress,
+) -> Vec<TrainStream> {
+    static MADE: Mutex<Option<(BoneSet, FeatureParams, Vec<TrainStream>)>> = Mutex::new(None);
+    let kept = || MADE.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some((of, with, streams)) = &*kept()
+        && (*of, with) == (bones, params)
+    {
+        return streams.clone();
+    }
+    progress.report("everyday motion", 0, 0);
+    let streams = background_streams(&everyday_clips(EVERYDAY_SEED), bones, params);
+    *kept() = Some((bones, params.clone(), streams.clone()));
+    streams
+}
+
 /// The clips of [`synth::everyday`] to train from.
-pub fn everyday_clips(seed: u64) -> Vec<TrainClip> {
+fn everyday_clips(seed: u64) -> Vec<TrainClip> {
     let made = synth::everyday(seed).into_iter();
     made.map(|clip| TrainClip {
         name: clip.name.clone(),

@@ -189,6 +189,22 @@ pub fn build_train_set(
     }
 }
 
+/// Streams of clips that hold no class, as rows of `bones`; clips that do not show them all are left out.
+pub(super) fn background_streams(
+    clips: &[TrainClip],
+    bones: BoneSet,
+    params: &FeatureParams,
+) -> Vec<TrainStream> {
+    let (labelling, none) = (LabelSet::default(), ByClip::new());
+    let serves = |clip: &&TrainClip| {
+        all_bones_of_clip(&clip.clip, &clip.roles, &clip.rest).and(bones) == bones
+    };
+    let usable = clips.par_iter().filter(serves);
+    usable
+        .map(|clip| stream(clip, bones, params, &labelling, &none, &none))
+        .collect()
+}
+
 /// The clips with the fingers of their skeletons, if `wanted` asks for hands.
 fn with_fingers(clips: &[TrainClip], wanted: BoneSet) -> Cow<'_, [TrainClip]> {
     if wanted.and(BoneSet::HANDS).is_empty() {

@@ -6,7 +6,8 @@ use crate::features::{BoneSet, mirrored_rows};
 use super::set::{LabelledSpan, StreamKind, TrainSet, TrainStream};
 
 /// Use of mirrored copies of samples in training.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Mirror {
     /// Between classes that are named as the two sides of one motion (`wave_left`, `wave_right`): each also teaches the
     /// other.
@@ -31,7 +32,7 @@ enum Image {
 
 /// Adds mirrored copies of the samples of `set`, whose rows hold `bones`, as streams of their own, as
 /// [`train_clips`](super::train_clips) does. Returns how many.
-pub fn add_mirrored(
+pub(super) fn add_mirrored(
     set: &mut TrainSet,
     bones: BoneSet,
     mirror: Mirror,

@@ -32,12 +32,12 @@ mod verifier;
 
 pub use align::align;
 pub use alike::AlikeClasses;
-pub use clips::{everyday_clips, train_clips};
+pub use clips::train_clips;
 pub use data::{DataError, TrainingData};
 pub use error::TrainError;
 pub use from_clips::{LabelSet, Prepared, TrainClip, build_train_set};
 pub use kind::{ClassKind, ClassLabels};
-pub use mirror::{Mirror, add_mirrored};
+pub use mirror::Mirror;
 pub use morec_svrdm::train_tree as svrdm;
 pub(crate) use notes::class_notes;
 pub use options::{ENOUGH_BACKGROUND_SECS, EVERYDAY_SEED, Everyday, TrainOptions};

@@ -6,12 +6,14 @@ use super::mirror::Mirror;
 use super::params::TrainParams;
 
 /// When made everyday motion is background too.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Everyday {
     /// If clips named as background hold less than [`ENOUGH_BACKGROUND_SECS`]: real motion says more about what
     /// will be met than made motion does, and on referee clips the two together were worse than the real alone.
     Auto,
     /// In any case.
+    #[default]
     Always,
     /// Not at all.
     Never,
@@ -39,7 +41,7 @@ impl Default for TrainOptions {
         Self {
             params: TrainParams::default(),
             unlabelled_is_background: true,
-            everyday: Everyday::Always,
+            everyday: Everyday::default(),
             mirror: Mirror::default(),
             one_sided: Vec::new(),
             bones: BoneSet::BODY,

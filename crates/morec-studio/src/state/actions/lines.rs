@@ -5,6 +5,8 @@ use std::path::Path;
 use morec::roles::Role;
 use morec_db::labels::{NewSample, SampleId, WholeClip};
 use morec_db::{ClipId, ClipUpdate};
+use morec_ops::TrainSettings;
+use serde::Serialize;
 
 use crate::state::State;
 use crate::store::{Edit, Snapshot};
@@ -51,6 +53,12 @@ impl ShownCommand {
         }
     }
 
+    /// Adds the options of an operation's settings that are not as usual.
+    pub fn settings<S: Serialize + Default>(self, settings: &S) -> Self {
+        let options = morec_ops::arguments(settings).into_iter();
+        options.fold(self, |line, [option, value]| line.with(&option, value))
+    }
+
     /// Adds an option without a value, if `on`.
     pub fn flag(mut self, option: &str, on: bool) -> Self {
         if on {
@@ -82,6 +90,16 @@ fn quoted(value: &Path) -> String {
 
 fn numbers(ids: impl IntoIterator<Item = SampleId>) -> Vec<String> {
     ids.into_iter().map(|id| id.0.to_string()).collect()
+}
+
+/// The command that trains an index.
+pub(super) fn train_line(
+    db: &Path,
+    settings: &TrainSettings,
+    output: impl AsRef<Path>,
+) -> ShownCommand {
+    let line = ShownCommand::new("morec train").with("--db", db);
+    line.settings(settings).with("-o", output)
 }
 
 /// The command that sets a label.
@@ -238,9 +256,7 @@ impl State {
                 each_clip(db, snapshot, clips.iter().copied(), remove)?
             }
             Edit::KeepIndex { name, .. } => {
-                let line = ShownCommand::new("morec train").with("--db", db);
-                line.list("--classes", &self.chosen())
-                    .with("-o", format!("{name}.index"))
+                train_line(db, &self.train_settings(), format!("{name}.index"))
             }
             Edit::Undo(None) => morec("db undo"),
             Edit::Undo(Some(step)) => morec("db undo").word(step.to_string()),

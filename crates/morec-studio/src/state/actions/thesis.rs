@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use morec::train::thesis::SvrdmTrainParams;
+use morec_ops::TrainSettings;
 
-use super::lines::ShownCommand;
+use super::lines::train_line;
 use crate::jobs::JobOutcome;
 use crate::jobs::load::ClipMotion;
 use crate::jobs::thesis::{self, Thesis};
@@ -23,9 +23,7 @@ impl State {
             return;
         }
         let (db, classes) = (store.path().to_owned(), self.chosen());
-        let line = ShownCommand::new("morec train").with("--db", &db);
-        let line = self.with_thesis(line);
-        self.show_line(line.map(|l| l.list("--classes", &classes).with("-o", "2009.index")));
+        self.show_line(train_line(&db, &self.thesis_settings(), "2009.index"));
         let params = self.train.thesis_params.clone();
         self.jobs.start(
             THESIS,
@@ -36,15 +34,12 @@ impl State {
         );
     }
 
-    /// The options of the command with which it trains the method of 2009 likewise; it knows no figures but those of the
-    /// two settings.
-    pub(super) fn with_thesis(&self, line: ShownCommand) -> Option<ShownCommand> {
-        let line = line.with("--method", "svrdm");
-        let params = &self.train.thesis_params;
-        if *params == SvrdmTrainParams::default() {
-            return Some(line);
+    /// The settings that train the method of 2009 with the figures that are chosen.
+    pub(super) fn thesis_settings(&self) -> TrainSettings {
+        TrainSettings {
+            classes: self.chosen(),
+            ..TrainSettings::of_svrdm(&self.train.thesis_params)
         }
-        (*params == SvrdmTrainParams::faithful()).then(|| line.with("--svrdm", "faithful"))
     }
 
     pub(in crate::state) fn thesis_trained(&mut self, thesis: Arc<Thesis>) {

@@ -4,17 +4,14 @@ use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;
 
-use morec::features::BoneSet;
 use morec::index::MotionIndex;
-use morec::train::thesis::SvrdmOptions;
-use morec::train::{ClassKind, Recipe, TrainOptions};
 use morec_db::labels::DbSample;
+use morec_ops::{CrossvalSettings, LeftOut, TrainSettings};
 
-use super::lines::ShownCommand;
+use super::lines::{ShownCommand, train_line};
 use crate::jobs::export::write_whole;
-use crate::jobs::judge::{self, LeftOut};
 use crate::jobs::load::ClipMotion;
-use crate::jobs::{JobOutcome, recognise, train};
+use crate::jobs::{JobOutcome, judge, recognise, train};
 use crate::state::{Panel, State, TrainCommand};
 use crate::store::Edit;
 
@@ -22,35 +19,6 @@ use crate::store::Edit;
 pub const INDEX: &str = "studio";
 const TRAINING: &str = "Training";
 const JUDGING: &str = "Judging";
-
-/// The command that trains an index.
-fn train_line(
-    db: &Path,
-    classes: &[String],
-    options: &TrainOptions,
-    output: impl AsRef<Path>,
-) -> ShownCommand {
-    let line = ShownCommand::new("morec train").with("--db", db);
-    let line = with_options(line.list("--classes", classes), options);
-    line.with("-o", output.as_ref())
-}
-
-/// The options for the kinds of classes and the parts that count, where they are not the defaults.
-fn with_options(line: ShownCommand, options: &TrainOptions) -> ShownCommand {
-    let of_kind = |kind: ClassKind| -> Vec<&String> {
-        let named = options.params.kinds.iter().filter(|(_, k)| **k == kind);
-        named.map(|(name, _)| name).collect()
-    };
-    let line = line.list("--activities", &of_kind(ClassKind::Activity));
-    let line = line.list("--gestures", &of_kind(ClassKind::Gesture));
-    let parts = BoneSet::NAMED
-        .iter()
-        .find(|(_, bones)| *bones == options.bones);
-    match parts.filter(|(name, _)| *name != BoneSet::NAMED[0].0) {
-        Some((name, _)) => line.with("--bones", name),
-        None => line,
-    }
-}
 
 impl State {
     pub(in crate::state) fn apply_train(&mut self, command: TrainCommand) {
@@ -62,14 +30,11 @@ impl State {
                 };
             }
             TrainCommand::Kind { class, kind } => {
-                match kind {
-                    Some(kind) => self.train.kinds.insert(class, kind),
-                    None => self.train.kinds.remove(&class),
-                };
+                self.train.set_kind(class, kind);
             }
-            TrainCommand::Parts(parts) => self.train.parts = parts,
+            TrainCommand::Parts(bones) => self.train.settings.bones = bones,
             TrainCommand::Train => self.start_training(),
-            TrainCommand::Judge => self.start_judging(self.train_options().into()),
+            TrainCommand::Judge => self.start_judging(self.train_settings()),
             TrainCommand::Cell(cell) => self.show_cell(cell),
             TrainCommand::Moment(at) => self.go_to_moment(at),
             TrainCommand::Keep(name) => {
@@ -81,13 +46,7 @@ impl State {
             TrainCommand::UseIndex(name) => self.use_index(&name),
             TrainCommand::ThesisParams(params) => self.train.thesis_params = *params,
             TrainCommand::Thesis => self.train_thesis(),
-            TrainCommand::JudgeThesis => {
-                let options = SvrdmOptions {
-                    params: self.train.thesis_params.clone(),
-                    ..SvrdmOptions::default()
-                };
-                self.start_judging(Recipe::Svrdm(Box::new(options)));
-            }
+            TrainCommand::JudgeThesis => self.start_judging(self.thesis_settings()),
             TrainCommand::Branch(node) => self.train.branch = node,
             TrainCommand::Sample(at) => self.play_taught(at),
         }
@@ -108,16 +67,22 @@ impl State {
             .collect()
     }
 
-    /// The options of training as they are chosen, for the classes that are learned.
-    fn train_options(&self) -> TrainOptions {
-        let mut options = train::options(self.train.parts().1);
+    /// The settings of training as they are chosen, for the classes that are learned.
+    pub(super) fn train_settings(&self) -> TrainSettings {
         let snapshot = self.store.as_ref().map(|store| &store.snapshot);
         let classes = snapshot.iter().flat_map(|s| &s.classes);
-        let learned = classes.filter(|class| !self.train.without.contains(&class.name));
-        let kinds = &self.train.kinds;
-        let kind = |name: &String| Some((name.clone(), *kinds.get(name)?));
-        options.params.kinds = learned.filter_map(|class| kind(&class.name)).collect();
-        options
+        let learned = |named: &String| {
+            classes.clone().any(|class| class.name == *named) && !self.train.without.contains(named)
+        };
+        let settings = &self.train.settings;
+        let of_learned =
+            |named: &[String]| named.iter().filter(|name| learned(name)).cloned().collect();
+        TrainSettings {
+            classes: self.chosen(),
+            activities: of_learned(&settings.activities),
+            gestures: of_learned(&settings.gestures),
+            ..settings.clone()
+        }
     }
 
     /// Trains with what is labelled now; a training that is under way starts again.
@@ -130,47 +95,41 @@ impl State {
         for job in self.jobs.running.iter().filter(|j| j.name == TRAINING) {
             job.cancel();
         }
-        let (db, classes) = (store.path().to_owned(), self.chosen());
-        let options = self.train_options();
+        let (db, settings) = (store.path().to_owned(), self.train_settings());
         self.train.taught = self.train.now;
-        self.show_line(train_line(
-            &db,
-            &classes,
-            &options,
-            format!("{INDEX}.index"),
-        ));
+        self.show_line(train_line(&db, &settings, format!("{INDEX}.index")));
         self.jobs.start(
             TRAINING,
             true,
             &self.wake,
             JobOutcome::Trained,
-            move |progress| train::run(&db, &classes, options, progress),
+            move |progress| train::run(&db, &settings, progress),
         );
     }
 
-    fn start_judging(&mut self, recipe: Recipe) {
+    fn start_judging(&mut self, settings: TrainSettings) {
         let Some(store) = &self.store else { return };
-        let (db, classes) = (store.path().to_owned(), self.chosen());
+        let db = store.path().to_owned();
         let accepted = store.snapshot.accepted();
+        let classes = &settings.classes;
         let taught: Vec<&DbSample> = accepted
             .filter(|s| classes.is_empty() || classes.contains(&s.class))
             .collect();
-        let people = taught.iter().filter_map(|s| s.subject.as_deref());
+        let people: BTreeSet<_> = taught.iter().filter_map(|s| s.subject.as_ref()).collect();
         let clips: BTreeSet<_> = taught.iter().map(|s| s.clip).collect();
-        let by = LeftOut::of(people, clips.len());
-        let line = ShownCommand::new("morec crossval").with("--db", &db);
-        let line = line.with("--by", by.option());
-        let line = match &recipe {
-            Recipe::Svrdm(_) => self.with_thesis(line),
-            Recipe::Templates(_) => Some(with_options(line, &self.train_options())),
+        let by = LeftOut::usual(people.len(), clips.len());
+        let how = CrossvalSettings {
+            by,
+            ..CrossvalSettings::default()
         };
-        self.show_line(line.map(|line| line.list("--classes", &classes)));
+        let line = ShownCommand::new("morec crossval").with("--db", &db);
+        self.show_line(line.settings(&how).settings(&settings));
         self.jobs.start(
             JUDGING,
             true,
             &self.wake,
             JobOutcome::Judged,
-            move |progress| judge::judge(&db, &classes, &recipe, progress),
+            move |progress| judge::judge(&db, &settings, by, progress),
         );
     }
 
@@ -291,7 +250,7 @@ impl State {
             Err(why) => self.complain(format!("{name}: not written: {why}")),
         }
         if let Some(store) = &self.store {
-            let line = train_line(store.path(), &self.chosen(), &self.train_options(), path);
+            let line = train_line(store.path(), &self.train_settings(), path);
             self.show_line(line);
         }
     }

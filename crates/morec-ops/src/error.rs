@@ -1,0 +1,52 @@
+//! Why an operation failed.
+
+use morec::crossval::CrossvalError;
+use morec::eval::EvalError;
+use morec::index::IndexError;
+use morec::train::{DataError, TrainError};
+use morec_db::DbError;
+
+use crate::ParamError;
+
+/// Why an operation failed.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum OperationError {
+    /// A parameter of the method that there is not, or a value that it cannot have.
+    #[error(transparent)]
+    Param(#[from] ParamError),
+    /// Settings that contradict each other.
+    #[error("{0}")]
+    Settings(&'static str),
+    /// Clips and labels that do not fit together.
+    #[error(transparent)]
+    Data(#[from] DataError),
+    /// Training failed.
+    #[error(transparent)]
+    Train(#[from] TrainError),
+    /// Cross-validation failed.
+    #[error(transparent)]
+    Crossval(#[from] CrossvalError),
+    /// What was recognised cannot be measured.
+    #[error(transparent)]
+    Measure(#[from] EvalError),
+    /// The index cannot be written.
+    #[error(transparent)]
+    Index(#[from] IndexError),
+    /// The database cannot be read.
+    #[error(transparent)]
+    Database(#[from] DbError),
+}
+
+impl OperationError {
+    /// True if the receiver of progress cancelled.
+    pub fn is_cancelled(&self) -> bool {
+        match self {
+            OperationError::Train(error) => *error == TrainError::Cancelled,
+            OperationError::Crossval(CrossvalError::Train { source, .. }) => {
+                *source == TrainError::Cancelled
+            }
+            _ => false,
+        }
+    }
+}

@@ -1,0 +1,20 @@
+//! Operations of morec as values: what the command `morec`, the studio and the Python package do alike.
+//!
+//! The settings of an operation are one struct. Its fields are the options of the command line (`clap::Args`), the keywords of the
+//! Python function and what the studio's panel sets (serde), and [`arguments`] writes them as the command line that does the
+//! same. The operation is a method of them: material in, progress on the way, a report out.
+
+mod arguments;
+mod crossval;
+mod error;
+mod material;
+mod params;
+mod text;
+mod train;
+
+pub use arguments::arguments;
+pub use crossval::{CrossvalMeasures, CrossvalSettings, LeftOut};
+pub use error::OperationError;
+pub use material::{accepted_labels, clips_to_train, training_data};
+pub use params::{Param, ParamError, from_fields};
+pub use train::{Method, TrainSettings, Unlabelled};

@@ -1,0 +1,210 @@
+//! Training an index.
+
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use morec::features::BoneSet;
+use morec::index::MotionIndex;
+use morec::progress::Progress;
+use morec::reproduce::Setting;
+use morec::train::thesis::{SvrdmOptions, SvrdmTrainParams};
+use morec::train::{
+    Everyday, Mirror, Recipe, TrainOptions, TrainParams, TrainingData, TrainingReport, train_index,
+};
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use crate::params::{self, Param, ParamError};
+use crate::{OperationError, text};
+
+/// How an index is trained.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, clap::Args)]
+#[serde(default, deny_unknown_fields)]
+pub struct TrainSettings {
+    /// Learn only these classes, separated by commas [default: every class of the labels]
+    #[arg(long, value_delimiter = ',', value_name = "CLASSES")]
+    pub classes: Vec<String>,
+    /// The method of recognition
+    #[arg(long, value_enum, default_value = "auto")]
+    pub method: Method,
+    /// With --method auto: classes that are activities whatever their samples say, separated by commas
+    #[arg(long, value_delimiter = ',', value_name = "CLASSES")]
+    pub activities: Vec<String>,
+    /// With --method auto: classes that are gestures whatever their samples say, separated by commas
+    #[arg(long, value_delimiter = ',', value_name = "CLASSES")]
+    pub gestures: Vec<String>,
+    /// With --method svrdm: the thesis' parameters, or parameters tuned to accept what was not seen
+    #[arg(long, default_value = "tuned", value_parser = choices::<Setting>([
+        ("faithful", "The thesis's own figures: rejects nearly all it has not seen"),
+        ("tuned", "The same method, made to accept what it has not seen"),
+    ]))]
+    pub svrdm: Setting,
+    /// Use of the unlabelled parts of labelled clips: motion that is none of the classes, or nothing to go by
+    #[arg(long, value_enum, default_value = "background")]
+    pub unlabelled: Unlabelled,
+    /// Synthetic everyday motion as background, too (not with --method svrdm); auto: if --background holds less than a
+    /// minute
+    #[arg(long, default_value = "always", value_parser = choices::<Everyday>([
+        ("auto", "If the clips named as background hold less than a minute"),
+        ("always", "In any case"),
+        ("never", "Not at all"),
+    ]))]
+    pub everyday: Everyday,
+    /// Training on mirrored copies of samples, too (not with --method svrdm). yes: every class is the same on both sides; auto:
+    /// only classes named as two sides of one motion, as wave_left and wave_right, teach each other
+    #[arg(long, default_value = "auto", value_parser = choices::<Mirror>([
+        ("auto", "Between classes that are named as two sides of one motion"),
+        ("yes", "Every class is the same on both sides, but for those of --one-sided"),
+        ("no", "Not at all"),
+    ]))]
+    pub mirror: Mirror,
+    /// With --mirror yes: classes whose mirror image is another motion, separated by commas; it then teaches what the
+    /// class is not
+    #[arg(long, value_delimiter = ',', value_name = "CLASSES")]
+    pub one_sided: Vec<String>,
+    /// Parts that count (not with --method svrdm): all (of clips without a body: their hands), upper (nothing below the hips: for
+    /// seated performers), arms, hand (left ones as in a mirror), left_hand, hands, body_and_hands, points3 (head and hands
+    /// as tracked points), or names of bones, separated by commas, as the report of training lists them
+    #[arg(long, value_name = "PARTS", default_value = "all")]
+    #[serde(with = "text")]
+    pub bones: BoneSet,
+    /// Set a parameter of the method by its path, as `rho=0.4`, `decode.lag_ticks=2`, `stages.scaling=unit_range`; may be
+    /// given several times
+    #[arg(long = "param", value_name = "NAME=VALUE")]
+    #[serde(
+        serialize_with = "params::to_table",
+        deserialize_with = "params::from_table"
+    )]
+    pub params: Vec<Param>,
+}
+
+impl Default for TrainSettings {
+    fn default() -> Self {
+        Self {
+            classes: Vec::new(),
+            method: Method::default(),
+            activities: Vec::new(),
+            gestures: Vec::new(),
+            svrdm: Setting::default(),
+            unlabelled: Unlabelled::default(),
+            everyday: Everyday::default(),
+            mirror: Mirror::default(),
+            one_sided: Vec::new(),
+            bones: BoneSet::BODY,
+            params: Vec::new(),
+        }
+    }
+}
+
+/// Methods of recognition.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, clap::ValueEnum)]
+#[serde(rename_all = "snake_case")]
+pub enum Method {
+    /// Each class as its samples say: gestures matched elastically, activities (which go on for longer, like walking) by what a
+    /// window of them shows
+    #[default]
+    Auto,
+    /// Every class as a gesture
+    Templates,
+    /// The method of the thesis of 2009: support vector machines over the directions of motion, in a tree
+    Svrdm,
+}
+
+/// Use of the unlabelled parts of labelled clips.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, clap::ValueEnum)]
+#[serde(rename_all = "snake_case")]
+pub enum Unlabelled {
+    /// None of the classes
+    #[default]
+    Background,
+    /// Unknown: used for nothing
+    Ignore,
+}
+
+/// A parser of the words of a library's enumeration, which knows nothing of command lines, with help for each word.
+fn choices<T: DeserializeOwned + Clone + Send + Sync + 'static>(
+    words: impl IntoIterator<Item = (&'static str, &'static str)>,
+) -> impl TypedValueParser<Value = T> {
+    let word = |(word, help)| PossibleValue::new(word).help(help);
+    let words: Vec<PossibleValue> = words.into_iter().map(word).collect();
+    PossibleValuesParser::new(words)
+        .try_map(|word| serde_json::from_value::<T>(Value::String(word)))
+}
+
+impl TrainSettings {
+    /// Settings that train the method of 2009 with `params`.
+    pub fn of_svrdm(params: &SvrdmTrainParams) -> Self {
+        let of = |svrdm: Setting| (svrdm, params::changed(params, &svrdm.params()));
+        let (tuned, faithful) = (of(Setting::Tuned), of(Setting::Faithful));
+        let (svrdm, params) = match faithful.1.len() < tuned.1.len() {
+            true => faithful,
+            false => tuned,
+        };
+        Self {
+            method: Method::Svrdm,
+            svrdm,
+            params,
+            ..Self::default()
+        }
+    }
+
+    /// The method and its options.
+    ///
+    /// # Errors
+    /// A parameter that the method does not have, or settings that are for another method.
+    pub fn recipe(&self) -> Result<Recipe, OperationError> {
+        let names_kinds = !self.activities.is_empty() || !self.gestures.is_empty();
+        if names_kinds && self.method != Method::Auto {
+            return Err(OperationError::Settings(
+                "--activities and --gestures are for --method auto",
+            ));
+        }
+        Ok(match self.method {
+            Method::Auto | Method::Templates => self.template_options()?.into(),
+            Method::Svrdm => self.svrdm_options(self.svrdm, &self.params)?.into(),
+        })
+    }
+
+    fn template_options(&self) -> Result<TrainOptions, ParamError> {
+        let mut params = params::with(TrainParams::default(), &self.params)?;
+        params.activities &= self.method == Method::Auto;
+        params.set_kinds(&self.activities, &self.gestures);
+        Ok(TrainOptions {
+            unlabelled_is_background: self.unlabelled == Unlabelled::Background,
+            everyday: self.everyday,
+            mirror: self.mirror,
+            one_sided: self.one_sided.clone(),
+            bones: self.bones,
+            params,
+        })
+    }
+
+    /// Options of both settings of the method of 2009, for the thesis's evaluation; parameters that are set are those of the
+    /// tuned one.
+    ///
+    /// # Errors
+    /// A parameter that the method does not have.
+    pub fn both_svrdm(&self) -> Result<[(Setting, SvrdmOptions); 2], ParamError> {
+        let faithful = self.svrdm_options(Setting::Faithful, &[])?;
+        let tuned = self.svrdm_options(Setting::Tuned, &self.params)?;
+        Ok([(Setting::Faithful, faithful), (Setting::Tuned, tuned)])
+    }
+
+    fn svrdm_options(&self, of: Setting, given: &[Param]) -> Result<SvrdmOptions, ParamError> {
+        Ok(SvrdmOptions {
+            params: params::with(of.params(), given)?,
+            unlabelled_is_background: self.unlabelled == Unlabelled::Background,
+        })
+    }
+
+    /// Trains an index on `data`.
+    ///
+    /// # Errors
+    /// Settings that make no sense, too little to learn from, or `progress` cancels.
+    pub fn train(
+        &self,
+        data: &TrainingData,
+        progress: &dyn Progress,
+    ) -> Result<(MotionIndex, TrainingReport), OperationError> {
+        Ok(train_index(data, &self.recipe()?, progress)?)
+    }
+}
