@@ -6,8 +6,9 @@ use std::io::{Read, Seek};
 use std::path::Path;
 
 use crate::clip::{Clip, Joint};
+use crate::formats::Format;
 use crate::formats::container::{self, Member};
-use crate::formats::probe::{Format, format_of_name, probe};
+use crate::formats::probe::{format_of_name, probe};
 use crate::formats::{Limits, ParseError, Place, Warning, mocopi};
 use crate::math::Vec3;
 
@@ -193,7 +194,7 @@ fn may_be_needed(path: &str) -> bool {
 /// True if a file of an archive is read for itself: by its name, or if its content says so.
 fn is_motion(member: &Member) -> bool {
     match format_of_name(&member.path) {
-        Some(Format::Asf | Format::OpenSimModel) => false,
+        Some(format) if format.is_skeleton() => false,
         // Tables and JSON hold labels and lists, too: what is in them decides.
         Some(Format::Table | Format::Jsonl) => probe(&member.bytes, "").is_ok(),
         Some(_) => true,
@@ -202,7 +203,7 @@ fn is_motion(member: &Member) -> bool {
             let packed = container::is_gzip(bytes) || container::is_zip(bytes);
             packed
                 || mocopi::looks_so(bytes)
-                || probe(bytes, "").is_ok_and(|f| !matches!(f, Format::Asf | Format::OpenSimModel))
+                || probe(bytes, "").is_ok_and(|format| !format.is_skeleton())
         }
     }
 }

@@ -5,7 +5,8 @@ use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
-use crate::formats::probe::{Format, format_of_name, probe};
+use crate::formats::Format;
+use crate::formats::probe::{format_of_name, probe};
 
 use super::sequence::FrameFiles;
 use super::{FileError, FileErrorKind};
@@ -109,7 +110,7 @@ fn kind_of(path: &Path, frames: Option<&FrameFiles>) -> FileKind {
         return FileKind::Clip;
     }
     match format_of_name(&name) {
-        Some(Format::Asf | Format::OpenSimModel) => FileKind::Needed,
+        Some(format) if format.is_skeleton() => FileKind::Needed,
         // Tables and JSON hold labels, too: what is in them decides.
         Some(Format::Table | Format::Jsonl) | None => by_content(path, frames),
         Some(_) => FileKind::Clip,
@@ -126,7 +127,7 @@ fn by_content(path: &Path, frames: Option<&FrameFiles>) -> FileKind {
         Err(error) => return FileKind::NotRead(error.into()),
     };
     match probe(&head, "") {
-        Ok(Format::Asf | Format::OpenSimModel) => FileKind::Needed,
+        Ok(format) if format.is_skeleton() => FileKind::Needed,
         Ok(_) => FileKind::Clip,
         Err(error) if error.found.starts_with("what looks like") && !is_media(&error.found) => {
             FileKind::NotRead(FileErrorKind::NotRead(error.found))

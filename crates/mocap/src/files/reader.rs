@@ -6,14 +6,13 @@ use std::path::{Path, PathBuf};
 use rayon::prelude::*;
 
 use crate::clip::Clip;
-use crate::formats::acclaim::{self, Asf};
 use crate::formats::bvh::{self, BvhOptions, PositionChannels};
 use crate::formats::container::zip_paths;
 #[cfg(feature = "fbx")]
 use crate::formats::fbx;
-use crate::formats::probe::{Format, probe};
-use crate::formats::{Limits, Loaded, ParseError, Place, Warning, mclip};
-use crate::formats::{c3d, jsonl, numpy, read_scene, table, trc};
+use crate::formats::numpy;
+use crate::formats::probe::probe;
+use crate::formats::{Format, FormatInput, Limits, ParseError, Place, Warning};
 #[cfg(feature = "fbx")]
 use crate::import::SignedAxis;
 use crate::import::{ImportOptions, Stated, Take, normalize};
@@ -162,27 +161,11 @@ impl FileReader {
         #[cfg_attr(not(feature = "fbx"), allow(unused_mut))]
         let mut stated = Stated::of(format);
         let (loaded, skeleton) = match format {
-            Format::Bvh => (bvh::read(bytes, &stem, &self.bvh(), &self.limits)?, None),
-            Format::Asf => {
-                let (asf, warnings) = acclaim::read_asf(bytes, &self.limits)?;
-                (
-                    Loaded {
-                        clips: vec![without_frames(&asf, stem)],
-                        warnings,
-                    },
-                    None,
-                )
-            }
             Format::Amc => self.paired(SkeletonKind::Asf, path, bytes, &stem, around)?,
             Format::OpenSimMotion => {
                 self.paired(SkeletonKind::OsimModel, path, bytes, &stem, around)?
             }
             Format::OpenSimModel => return Err(FileErrorKind::OnlyModel),
-            Format::Mclip => (self.mclip(bytes, &stem)?, None),
-            Format::C3d => (c3d::read(bytes, &stem, self.rate_hz, &self.limits)?, None),
-            Format::Trc => (trc::read(bytes, &stem, self.rate_hz, &self.limits)?, None),
-            Format::Table => (table::read(bytes, &stem, self.rate_hz, &self.limits)?, None),
-            Format::Jsonl => (jsonl::read(bytes, &stem, self.rate_hz, &self.limits)?, None),
             #[cfg(feature = "fbx")]
             Format::Fbx => {
                 let (loaded, by_file) = fbx::read_stated(bytes, &stem, self.rate_hz, &self.limits)?;
@@ -195,12 +178,16 @@ impl FileReader {
                 });
                 (loaded, None)
             }
-            scene => {
-                let beside = |name: &str| around.file(path, name);
-                let (rate_hz, limits) = (self.rate_hz, &self.limits);
-                let loaded = read_scene(scene, bytes, &stem, rate_hz, &beside, limits);
-                let none = || ParseError::new(Place::File, "a format that is read", "another");
-                (loaded.ok_or_else(none)??, None)
+            format => {
+                let source = FormatInput {
+                    bytes,
+                    name: &stem,
+                    rate_hz: self.rate_hz,
+                    positions: self.positions,
+                    beside: &|name| around.file(path, name),
+                    limits: &self.limits,
+                };
+                (format.read(&source)?, None)
             }
         };
         Ok(ClipFile {
@@ -214,7 +201,12 @@ impl FileReader {
 
     /// A BVH file of which a piece at a time is held.
     pub(super) fn parse_bvh(&self, path: &Path, file: File) -> Result<ClipFile, FileErrorKind> {
-        let loaded = bvh::read_from(file, &stem(path), &self.bvh(), &self.limits)?;
+        let options = BvhOptions {
+            positions: self.positions,
+            rate_hz: self.rate_hz,
+            ..BvhOptions::default()
+        };
+        let loaded = bvh::read_from(file, &stem(path), &options, &self.limits)?;
         Ok(ClipFile {
             stated: Stated::of(Format::Bvh),
             format: Format::Bvh,
@@ -222,22 +214,6 @@ impl FileReader {
             clips: loaded.clips,
             warnings: loaded.warnings,
         })
-    }
-
-    fn bvh(&self) -> BvhOptions {
-        BvhOptions {
-            positions: self.positions,
-            rate_hz: self.rate_hz,
-            ..BvhOptions::default()
-        }
-    }
-
-    fn mclip(&self, bytes: &[u8], stem: &str) -> Result<Loaded, ParseError> {
-        let mut loaded = mclip::read(bytes, stem, &self.limits)?;
-        for clip in &mut loaded.clips {
-            clip.rate_hz = self.rate_hz.unwrap_or(clip.rate_hz);
-        }
-        Ok(loaded)
     }
 }
 
@@ -250,19 +226,6 @@ fn stem(path: &Path) -> String {
         .unwrap_or_default()
         .to_string_lossy()
         .into_owned()
-}
-
-fn without_frames(asf: &Asf, name: String) -> Clip {
-    Clip {
-        name,
-        skeleton: asf.skeleton(),
-        rate_hz: acclaim::DEFAULT_RATE_HZ,
-        rotations: Vec::new(),
-        tracks: Vec::new(),
-        frames: 0,
-        repaired: Vec::new(),
-        points: None,
-    }
 }
 
 #[cfg(test)]

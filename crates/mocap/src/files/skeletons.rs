@@ -3,8 +3,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::formats::Format;
 use crate::formats::container::Member;
-use crate::formats::probe::{Format, format_of_name};
+use crate::formats::probe::format_of_name;
 
 use super::FileErrorKind;
 

@@ -4,11 +4,22 @@
 //! frame: its number, then x, y and z of every marker. `DROPOUT` stands for a coordinate or a marker that was not seen.
 
 use super::cells::{Decimal, lines, number};
+use super::descriptor::FormatDescriptor;
 use super::points::{Point, UNSEEN, check_size};
 use super::timing::{Clock, TimedPoints};
 use super::{Limits, Loaded, ParseError, Place, Warning};
 use crate::math::Vec3;
 use crate::parse_error::shortened;
+
+pub(super) const FORMAT: FormatDescriptor = FormatDescriptor {
+    name: "csm",
+    title: "CSM",
+    noun: "a CSM recording",
+    endings: &["csm"],
+    looks_so: |h| !h.is_binary() && h.says("$order") && h.says("$points"),
+    up: None,
+    read: |s| Ok(s.at_rate(read(s.bytes, s.name, s.rate_hz, s.limits)?)),
+};
 
 /// Frames a second where the file does not say.
 const ASSUMED_HZ: f64 = 60.0;

@@ -3,12 +3,24 @@
 //! knees and elbows, an angle about Z. The skeleton is not in the file; its lengths are those of the humanoid that all of them
 //! are for, as its published model (URDF) has them.
 
+use super::descriptor::FormatDescriptor;
 use serde_json::Value;
 
 use super::builder::{ClipBuilder, check_size};
 use super::{Limits, Loaded, ParseError, Place, Warning, json};
 use crate::clip::Joint;
 use crate::math::{Axis, Quat, Vec3, rotation_of_xyzw};
+
+pub(super) const FORMAT: FormatDescriptor = FormatDescriptor {
+    name: "deepmimic",
+    title: "DeepMimic motion",
+    noun: "a motion of DeepMimic",
+    // Its files end in .txt or .json: content alone decides.
+    endings: &["deepmimic"],
+    looks_so: |h| looks_so(h.bytes),
+    up: Some(Axis::Y),
+    read: |s| Ok(s.at_rate(read(s.bytes, s.name, s.limits)?)),
+};
 
 /// How a joint turns in a frame.
 #[derive(Clone, Copy, PartialEq)]

@@ -7,6 +7,8 @@
 //! `"hand": "left"` or `"right"` says whose points those are whose names say no side, and `"points": [[x, y, z], …]` are points in the order
 //! of their numbers in a known model, of a hand or a body; or `{"left": […], "right": […]}` for both hands.
 
+use super::descriptor::FormatDescriptor;
+use super::head::Head;
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::cells::lines;
@@ -19,6 +21,38 @@ use crate::math::{Quat, Vec3, rotation_of_xyzw, same_hemisphere, slerp};
 use crate::pose::Hand;
 use crate::roles::Role;
 use crate::roles::points::{NUMBERED_HANDS, NumberedPoints, hand_role};
+
+pub(super) const FORMAT: FormatDescriptor = FormatDescriptor {
+    name: "jsonl",
+    title: "JSON lines",
+    noun: "lines of JSON",
+    endings: &["jsonl", "ndjson"],
+    looks_so: is_jsonl,
+    up: None,
+    read: |s| read(s.bytes, s.name, s.rate_hz, s.limits),
+};
+
+/// An object with poses on the first line.
+fn is_jsonl(head: &Head) -> bool {
+    let mut lines = head.lines();
+    let first = lines.next().unwrap_or_default();
+    let holds = |word: &[u8]| first.windows(word.len()).any(|window| window == word);
+    // By role or name: lists of numbers are landmarks.
+    let named = |field: &[u8]| {
+        let at = first
+            .windows(field.len())
+            .position(|window| window == field);
+        let rest = at.map(|at| first[at + field.len()..].trim_ascii_start());
+        let rest = rest.and_then(|rest| rest.strip_prefix(b":"));
+        rest.is_some_and(|rest| rest.trim_ascii_start().starts_with(b"{"))
+    };
+    // Lists of points that have a time or a hand are lines; any other list is a document of landmarks.
+    let is_numbered =
+        named(b"\"points\"") || holds(b"\"points\"") && (holds(b"\"t\"") || holds(b"\"hand\""));
+    first.starts_with(b"{")
+        && (named(b"\"positions\"") || named(b"\"rotations\"") || is_numbered)
+        && !holds(b"\"asset\"")
+}
 
 /// Frames a second of lines without times.
 const ASSUMED_HZ: f64 = 30.0;

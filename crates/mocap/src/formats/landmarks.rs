@@ -8,6 +8,7 @@ mod hands;
 mod matrix;
 mod rows;
 
+use super::descriptor::FormatDescriptor;
 use std::collections::HashMap;
 
 use serde_json::{Map, Value};
@@ -17,6 +18,17 @@ use super::table::{axis_of, to_seconds};
 use super::timing::{Clock, TimedPoints};
 use super::{Limits, Loaded, ParseError, Place, Warning, json};
 use crate::math::Vec3;
+
+pub(super) const FORMAT: FormatDescriptor = FormatDescriptor {
+    name: "landmarks",
+    title: "landmarks (JSON)",
+    noun: "JSON of landmarks",
+    // Most files that end in .json are no motion: content alone decides.
+    endings: &["landmarks"],
+    looks_so: |h| !h.is_binary() && looks_so(h.bytes),
+    up: None,
+    read: |s| Ok(s.at_rate(read(s.bytes, s.name, s.rate_hz, s.limits)?)),
+};
 
 /// Frames a second of a document without times.
 const ASSUMED_HZ: f64 = 30.0;

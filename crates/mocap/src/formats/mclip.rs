@@ -1,8 +1,19 @@
 //! The stored form of compressed clips, read as any other clip: its curves at the frames of their source.
 
+use super::descriptor::FormatDescriptor;
 use super::{Limits, Loaded, ParseError, Place, Warning};
 use crate::math::{Quat, Vec3};
 use crate::smooth::CompressedClip;
+
+pub(super) const FORMAT: FormatDescriptor = FormatDescriptor {
+    name: "mclip",
+    title: "MCLIP (curves)",
+    noun: "a stored clip",
+    endings: &["mclip"],
+    looks_so: |h| h.bytes.starts_with(crate::smooth::MAGIC),
+    up: None,
+    read: |s| Ok(s.at_rate(read(s.bytes, s.name, s.limits)?)),
+};
 
 /// Rotations that are made of a file however small it is: an hour of a body that stands still,
 const FREE_ROTATIONS: usize = 1 << 24;

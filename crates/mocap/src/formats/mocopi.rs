@@ -5,9 +5,21 @@
 //! and a position in the parent's frame, metres, Y up.
 
 use super::builder::{ClipBuilder, check_size};
+use super::descriptor::FormatDescriptor;
 use super::{Limits, Loaded, ParseError, Place, Warning, keys};
 use crate::clip::Joint;
+use crate::math::Axis;
 use crate::math::{Quat, Vec3};
+
+pub(super) const FORMAT: FormatDescriptor = FormatDescriptor {
+    name: "mocopi",
+    title: "mocopi packets",
+    noun: "recorded mocopi packets",
+    endings: &["mocopi"],
+    looks_so: |h| looks_so(h.bytes),
+    up: Some(Axis::Y),
+    read: |s| Ok(s.at_rate(read(s.bytes, s.name, s.limits)?)),
+};
 
 /// Rate if the packets have no times.
 const ASSUMED_HZ: f64 = 50.0;

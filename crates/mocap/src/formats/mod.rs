@@ -11,9 +11,12 @@ mod cells;
 pub mod container;
 pub mod csm;
 pub mod deepmimic;
+mod descriptor;
 #[cfg(feature = "fbx")]
 pub mod fbx;
+mod fbx_format;
 pub mod gltf;
+mod head;
 pub mod htr;
 mod json;
 pub mod jsonl;
@@ -39,91 +42,127 @@ mod timing;
 pub mod trc;
 mod xml;
 
-use crate::math::Vec3;
+use crate::math::Axis;
 pub use crate::parse_error::{ParseError, Place, Warning};
+use descriptor::FormatDescriptor;
+pub use descriptor::{Beside, FormatInput};
 pub use loaded::{Limits, Loaded};
-use timing::rate_not_used;
+pub use points::from_positions;
 
-/// Reads the formats of whole scenes and suits: [MVNX](mvnx), [glTF](gltf), FBX (feature `fbx`), [SMPL](smpl), [SMD](smd),
-/// [HTR](htr), [DeepMimic](deepmimic) and [mocopi], and of points that need nothing but the file ([CSM](csm), [NTU](ntu), [landmarks], [NumPy](numpy)). `rate_hz` replaces the rate where the file holds frames; keys in seconds keep theirs. `None` for
-/// other formats.
-pub fn read_scene(
-    format: probe::Format,
-    bytes: &[u8],
-    name: &str,
-    rate_hz: Option<f64>,
-    beside: gltf::Beside<'_>,
-    limits: &Limits,
-) -> Option<Result<Loaded, ParseError>> {
-    use probe::Format;
-    let loaded = match format {
-        Format::Mvnx => mvnx::read(bytes, name, limits),
-        Format::Smpl => smpl::read(bytes, name, limits),
-        Format::Smd => smd::read(bytes, name, limits),
-        Format::Htr => htr::read(bytes, name, limits),
-        Format::Csm => csm::read(bytes, name, rate_hz, limits),
-        Format::DeepMimic => deepmimic::read(bytes, name, limits),
-        Format::Numpy => numpy::read(bytes, name, rate_hz, limits),
-        Format::Mocopi => mocopi::read(bytes, name, limits),
-        Format::Gltf => gltf::read(bytes, name, beside, limits),
-        Format::NtuSkeleton => ntu::read(bytes, name, rate_hz, limits),
-        Format::Landmarks => landmarks::read(bytes, name, rate_hz, limits),
-        Format::Fbx => read_fbx(bytes, name, limits),
-        _ => return None,
-    };
-    let timed = matches!(format, Format::Gltf | Format::Fbx);
-    Some(loaded.map(|mut loaded| {
-        match rate_hz {
-            Some(_) if timed => loaded.warnings.push(rate_not_used()),
-            Some(rate_hz) => loaded.clips.iter_mut().for_each(|c| c.rate_hz = rate_hz),
-            None => {}
-        }
-        loaded
-    }))
+/// A format that can be read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum Format {
+    /// Biovision: skeleton and motion in one file.
+    Bvh,
+    /// Acclaim skeleton, for motions in [`Format::Amc`].
+    Asf,
+    /// Acclaim motion of an [`Format::Asf`] skeleton.
+    Amc,
+    /// The stored form of a compressed clip ([`smooth`](crate::smooth)).
+    Mclip,
+    /// Points of biomechanics, binary.
+    C3d,
+    /// Points as tab-separated text.
+    Trc,
+    /// Lines of JSON, a pose in each.
+    Jsonl,
+    /// A table of positions, CSV or TSV.
+    Table,
+    /// Xsens suits, XML.
+    Mvnx,
+    /// glTF 2.0, binary or text, VRM and VRMA among it.
+    Gltf,
+    /// Autodesk's exchange of scenes, binary or text.
+    Fbx,
+    /// A NumPy archive of SMPL poses, as AMASS has them.
+    Smpl,
+    /// Recorded packets of mocopi.
+    Mocopi,
+    /// Joints of Kinect v2 as text, as NTU RGB+D has them.
+    NtuSkeleton,
+    /// JSON with a list of points in each frame.
+    Landmarks,
+    /// Positions in NumPy arrays.
+    Numpy,
+    /// Skeletal animation of the Source engine, text.
+    Smd,
+    /// Skeletal motion of Motion Analysis, text.
+    Htr,
+    /// Markers of Character Studio, text.
+    Csm,
+    /// Joint angles of OpenSim, for a [`Format::OpenSimModel`].
+    OpenSimMotion,
+    /// A model of OpenSim.
+    OpenSimModel,
+    /// Motion of DeepMimic's humanoid, JSON.
+    DeepMimic,
 }
 
-/// Clips of points whose positions are at hand: one, or one for each subject (`Anna:LFHD`) whose points make a body. For
-/// each point its name and a position for each frame; one that is not finite was not seen. `metres_per_unit` is what is
-/// known of the unit. O(points × frames).
-///
-/// # Errors
-/// No point was ever seen, points with different numbers of positions, or more than `limits` allow.
-pub fn from_positions(
-    name: &str,
-    rate_hz: f64,
-    points: Vec<(String, Vec<Vec3>)>,
-    metres_per_unit: Option<f64>,
-    limits: &Limits,
-) -> Result<Loaded, ParseError> {
-    let frames = points.first().map_or(0, |(_, positions)| positions.len());
-    let other = points
-        .iter()
-        .find(|(_, positions)| positions.len() != frames);
-    if let Some((point, positions)) = other {
-        let expected = format!("{frames} positions of each point");
-        let found = format!("{} of {point}", positions.len());
-        return Err(ParseError::new(Place::File, expected, found));
+/// Every format that is read, in the order in which its content is asked for.
+const READ: &[(Format, FormatDescriptor)] = &[
+    (Format::Mclip, mclip::FORMAT),
+    (Format::Bvh, bvh::FORMAT),
+    (Format::Asf, acclaim::ASF),
+    (Format::Amc, acclaim::AMC),
+    (Format::Fbx, fbx_format::FORMAT),
+    (Format::Gltf, gltf::FORMAT),
+    (Format::Mvnx, mvnx::FORMAT),
+    (Format::Smpl, smpl::FORMAT),
+    (Format::Mocopi, mocopi::FORMAT),
+    (Format::Trc, trc::FORMAT),
+    (Format::C3d, c3d::FORMAT),
+    (Format::Jsonl, jsonl::FORMAT),
+    (Format::NtuSkeleton, ntu::FORMAT),
+    (Format::DeepMimic, deepmimic::FORMAT),
+    (Format::Landmarks, landmarks::FORMAT),
+    (Format::Numpy, numpy::FORMAT),
+    (Format::Smd, smd::FORMAT),
+    (Format::Htr, htr::FORMAT),
+    (Format::Csm, csm::FORMAT),
+    (Format::OpenSimMotion, opensim::MOTION),
+    (Format::OpenSimModel, opensim::MODEL),
+    (Format::Table, table::FORMAT),
+];
+
+impl Format {
+    /// Its name in tables and databases; never changes.
+    pub fn name(self) -> &'static str {
+        self.descriptor().name
     }
-    let point = |(name, positions)| points::Point { name, positions };
-    let table = points::PointTable {
-        points: points.into_iter().map(point).collect(),
-        rate_hz,
-        metres_per_unit,
-        zero_is_missing: false,
-    };
-    table.into_loaded(name, Vec::new(), limits)
-}
 
-#[cfg(feature = "fbx")]
-fn read_fbx(bytes: &[u8], name: &str, limits: &Limits) -> Result<Loaded, ParseError> {
-    fbx::read(bytes, name, limits)
-}
+    /// What it is called in tables for people: `BVH`.
+    pub fn title(self) -> &'static str {
+        self.descriptor().title
+    }
 
-#[cfg(not(feature = "fbx"))]
-fn read_fbx(_: &[u8], _: &str, _: &Limits) -> Result<Loaded, ParseError> {
-    Err(ParseError::new(
-        Place::File,
-        "a format that this build reads",
-        "FBX, which needs the feature `fbx`",
-    ))
+    /// What a file of it is called within a sentence: `a BVH clip`.
+    pub fn noun(self) -> &'static str {
+        self.descriptor().noun
+    }
+
+    /// The axis that is up in all of its files by its specification, which says as well that lengths are metres.
+    pub(crate) fn up(self) -> Option<Axis> {
+        self.descriptor().up
+    }
+
+    /// True of skeletons that are read for the motions beside them.
+    pub fn is_skeleton(self) -> bool {
+        matches!(self, Format::Asf | Format::OpenSimModel)
+    }
+
+    /// Reads a file of it.
+    ///
+    /// # Errors
+    /// The place, what was expected and what was found; a format of which a file needs another one beside it.
+    pub fn read(self, file: &FormatInput<'_>) -> Result<Loaded, ParseError> {
+        (self.descriptor().read)(file)
+    }
+
+    fn descriptor(self) -> &'static FormatDescriptor {
+        let own = READ.iter().find(|(format, _)| *format == self);
+        // Every format has one: the structural tests count them.
+        &own.unwrap_or(&READ[0]).1
+    }
 }

@@ -4,6 +4,7 @@
 //! An array is (frames, points, 3), with a fourth number for how sure a point is, with people before the points, or flat:
 //! (frames, 3 × points). Points without names are known by their number.
 
+use super::descriptor::FormatDescriptor;
 use std::collections::BTreeMap;
 
 use super::builder::{self, ClipBuilder};
@@ -14,6 +15,16 @@ use super::{Limits, Loaded, ParseError, Place, Warning, container};
 use crate::clip::Joint;
 use crate::math::{Quat, Vec3, rotation_of_xyzw};
 use crate::roles::points::numbered_counts;
+
+pub(super) const FORMAT: FormatDescriptor = FormatDescriptor {
+    name: "numpy",
+    title: "positions (NumPy)",
+    noun: "a NumPy array",
+    endings: &["npy"],
+    looks_so: |h| h.bytes.starts_with(b"\x93NUMPY"),
+    up: None,
+    read: |s| Ok(s.at_rate(read(s.bytes, s.name, s.rate_hz, s.limits)?)),
+};
 
 /// Frames a second where nothing says.
 const ASSUMED_HZ: f64 = 30.0;

@@ -346,5 +346,37 @@ pub(super) fn metres_of(unit: &str) -> Option<f64> {
     }
 }
 
+/// Clips of points whose positions are at hand: one, or one for each subject (`Anna:LFHD`) whose points make a body. For
+/// each point its name and a position for each frame; one that is not finite was not seen. `metres_per_unit` is what is
+/// known of the unit. O(points × frames).
+///
+/// # Errors
+/// No point was ever seen, points with different numbers of positions, or more than `limits` allow.
+pub fn from_positions(
+    name: &str,
+    rate_hz: f64,
+    points: Vec<(String, Vec<Vec3>)>,
+    metres_per_unit: Option<f64>,
+    limits: &Limits,
+) -> Result<Loaded, ParseError> {
+    let frames = points.first().map_or(0, |(_, positions)| positions.len());
+    let other = points
+        .iter()
+        .find(|(_, positions)| positions.len() != frames);
+    if let Some((point, positions)) = other {
+        let expected = format!("{frames} positions of each point");
+        let found = format!("{} of {point}", positions.len());
+        return Err(ParseError::new(Place::File, expected, found));
+    }
+    let point = |(name, positions)| Point { name, positions };
+    let table = PointTable {
+        points: points.into_iter().map(point).collect(),
+        rate_hz,
+        metres_per_unit,
+        zero_is_missing: false,
+    };
+    table.into_loaded(name, Vec::new(), limits)
+}
+
 #[cfg(test)]
 mod tests;

@@ -4,9 +4,26 @@
 
 use super::builder::{ClipBuilder, check_size};
 use super::cells::lines;
+use super::descriptor::FormatDescriptor;
 use super::{Limits, Loaded, ParseError, Place, Warning};
 use crate::clip::Joint;
 use crate::math::{Axis, Quat, Vec3};
+
+pub(super) const FORMAT: FormatDescriptor = FormatDescriptor {
+    name: "smd",
+    title: "SMD",
+    noun: "an SMD animation",
+    endings: &["smd"],
+    looks_so: |h| {
+        !h.is_binary()
+            && h.lines().take(20).any(|l| l.starts_with(b"version 1"))
+            && h.contains(b"\nnodes")
+            && h.contains(b"\nskeleton")
+            && !h.contains(b"vertexanimation")
+    },
+    up: None,
+    read: |s| Ok(s.at_rate(read(s.bytes, s.name, s.limits)?)),
+};
 
 /// Frames a second; the files do not say.
 const ASSUMED_HZ: f64 = 30.0;

@@ -1,7 +1,6 @@
 //! Options of the import, and what formats state about lengths and axes.
 
-use crate::formats::probe::Format;
-use crate::math::Axis;
+use crate::formats::Format;
 use crate::roles::mapping::Mapping;
 
 use super::signed_axis::SignedAxis;
@@ -33,19 +32,13 @@ pub struct Stated {
 impl Stated {
     /// Unit and axis of all files of `format` by its specification; `None` for those that leave it to the writer.
     pub fn of(format: Format) -> Option<Self> {
-        let up = match format {
-            Format::Gltf | Format::Mocopi | Format::OpenSimMotion | Format::DeepMimic => {
-                SignedAxis::Y
-            }
-            Format::Mvnx => SignedAxis {
-                axis: Axis::Z,
+        let stated = |axis| Self {
+            up: SignedAxis {
+                axis,
                 negative: false,
             },
-            _ => return None,
-        };
-        Some(Self {
-            up,
             metres_per_unit: 1.0,
-        })
+        };
+        format.up().map(stated)
     }
 }

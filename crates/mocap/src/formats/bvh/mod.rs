@@ -21,6 +21,8 @@ mod source;
 mod text;
 mod write;
 
+use super::descriptor::FormatDescriptor;
+use super::head::Head;
 use std::io::{Read, Seek};
 
 pub use positions::PositionChannels;
@@ -34,6 +36,37 @@ use self::source::{InFile, InMemory, TableText};
 use self::text::{Cursor, Encoding, show};
 use super::{Limits, Loaded, ParseError, Place};
 use crate::clip::{Clip, Skeleton, Span};
+
+pub(super) const FORMAT: FormatDescriptor = FormatDescriptor {
+    name: "bvh",
+    title: "BVH",
+    noun: "a BVH clip",
+    endings: &["bvh"],
+    looks_so: is_bvh,
+    up: None,
+    read: |s| {
+        let options = BvhOptions {
+            positions: s.positions,
+            rate_hz: s.rate_hz,
+            ..BvhOptions::default()
+        };
+        read(s.bytes, s.name, &options, s.limits)
+    },
+};
+
+/// `HIERARCHY` at the start of one of the first lines (junk before it is met), or `MOTION` alone.
+fn is_bvh(head: &Head) -> bool {
+    let begins = |line: &[u8], word: &[u8]| {
+        line.len() >= word.len() && line[..word.len()].eq_ignore_ascii_case(word)
+    };
+    head.lines()
+        .take(100)
+        .any(|line| begins(line, b"HIERARCHY"))
+        || head
+            .lines()
+            .next()
+            .is_some_and(|line| line.eq_ignore_ascii_case(b"MOTION"))
+}
 
 /// Facts that a file lacks or has wrong.
 #[derive(Debug, Clone, PartialEq)]

@@ -18,8 +18,19 @@ use self::header::C3dHeader;
 use self::layout::C3dLayout;
 use self::number::Processor;
 use self::params::{BLOCK, Parameters};
+use super::descriptor::FormatDescriptor;
 use super::points::{PointTable, check_size, metres_of};
 use super::{Limits, Loaded, ParseError, Place, Warning};
+
+pub(super) const FORMAT: FormatDescriptor = FormatDescriptor {
+    name: "c3d",
+    title: "C3D",
+    noun: "a C3D recording",
+    endings: &["c3d"],
+    looks_so: |h| h.bytes.len() >= 512 && matches!(h.bytes, [1..128, 0x50, ..]) && h.is_binary(),
+    up: None,
+    read: |s| read(s.bytes, s.name, s.rate_hz, s.limits),
+};
 
 /// Frames a second of a file that does not say.
 const ASSUMED_HZ: f64 = 100.0;

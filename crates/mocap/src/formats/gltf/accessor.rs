@@ -7,11 +7,8 @@ use std::io;
 use base64::Engine;
 use serde_json::Value;
 
-use super::super::{Limits, ParseError, Place};
+use super::super::{Beside, Limits, ParseError, Place};
 use super::document::{Document, index};
-
-/// Gives the bytes of a file that lies beside the one that is read, by its relative address.
-pub type Beside<'a> = &'a dyn Fn(&str) -> io::Result<Vec<u8>>;
 
 /// The buffers of a document, opened when they are first needed.
 pub(super) struct Buffers<'a> {

@@ -10,16 +10,35 @@ mod document;
 mod nodes;
 mod write;
 
-pub use self::accessor::Beside;
 pub use self::write::{write, write_vrma};
+pub use super::descriptor::Beside;
 
 use self::animation::Animation;
 use self::document::Document;
 use self::nodes::GltfScene;
 use super::builder::clip_names;
+use super::descriptor::FormatDescriptor;
+use super::head::Head;
 use super::scene::{self, Local, Sampling, SceneSize, SceneSkeleton};
 use super::{Limits, Loaded, ParseError, Place, Warning, keys};
 use crate::clip::Clip;
+use crate::math::Axis;
+
+pub(super) const FORMAT: FormatDescriptor = FormatDescriptor {
+    name: "gltf",
+    title: "glTF",
+    noun: "a glTF scene",
+    endings: &["gltf", "glb", "vrm", "vrma"],
+    looks_so: |h| h.bytes.starts_with(b"glTF") || is_gltf(h),
+    up: Some(Axis::Y),
+    read: |s| Ok(s.timed(read(s.bytes, s.name, s.beside, s.limits)?)),
+};
+
+/// An object with glTF's words.
+fn is_gltf(head: &Head) -> bool {
+    let lists = || head.contains(b"\"nodes\"") && head.contains(b"\"scenes\"");
+    head.starts("{") && (head.contains(b"\"asset\"") || lists())
+}
 
 /// Reads the skeletal animations of a glTF, GLB, VRM or VRMA file: a clip for each animation and each skeleton that it
 /// moves, called `name` (`name#animation` for several). `beside` finds buffers that lie in files of their own.

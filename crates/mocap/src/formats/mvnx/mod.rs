@@ -6,6 +6,8 @@
 
 mod body;
 
+use super::descriptor::FormatDescriptor;
+use crate::math::Axis;
 use roxmltree::{Document, Node};
 
 use self::body::MvnxSegment;
@@ -14,6 +16,16 @@ use super::xml::{child, is, limits_beside, parse, place, text_of};
 use super::{Limits, Loaded, ParseError, Warning};
 use crate::clip::{Clip, Joint};
 use crate::math::{Quat, Vec3};
+
+pub(super) const FORMAT: FormatDescriptor = FormatDescriptor {
+    name: "mvnx",
+    title: "MVNX",
+    noun: "an MVNX recording",
+    endings: &["mvnx"],
+    looks_so: |h| h.starts("<") && h.contains(b"<mvnx"),
+    up: Some(Axis::Z),
+    read: |s| Ok(s.at_rate(read(s.bytes, s.name, s.limits)?)),
+};
 
 /// Rate if a file has none.
 const ASSUMED_HZ: f64 = 60.0;

@@ -6,12 +6,33 @@
 
 mod body;
 
+use super::descriptor::FormatDescriptor;
+use super::head::Head;
 use std::collections::BTreeMap;
 
 use super::builder::{ClipBuilder, check_size};
 use super::npy::{self, Array};
 use super::{Limits, Loaded, ParseError, Place, Warning, container};
 use crate::math::{Quat, Vec3};
+
+pub(super) const FORMAT: FormatDescriptor = FormatDescriptor {
+    name: "smpl",
+    title: "SMPL poses (npz)",
+    noun: "an archive of SMPL poses",
+    endings: &["npz"],
+    looks_so: begins_with_array,
+    up: None,
+    read: |s| Ok(s.at_rate(read(s.bytes, s.name, s.limits)?)),
+};
+
+/// A zip archive whose first file is an array.
+fn begins_with_array(head: &Head) -> bool {
+    let name = || {
+        let length = u16::from_le_bytes([*head.bytes.get(26)?, *head.bytes.get(27)?]);
+        head.bytes.get(30..30 + usize::from(length))
+    };
+    head.bytes.starts_with(b"PK\x03\x04") && name().is_some_and(|name| name.ends_with(b".npy"))
+}
 
 /// Rate if a file has none; that of most of AMASS.
 const ASSUMED_HZ: f64 = 120.0;

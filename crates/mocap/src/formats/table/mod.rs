@@ -20,10 +20,23 @@ pub(super) use self::columns::axis_of;
 pub(super) use self::layout::to_seconds;
 use self::layout::{ColumnLayout, TableFrames, TableLine};
 use super::cells::{Decimal, clock, lines, number, split};
+use super::descriptor::FormatDescriptor;
 use super::points::{Point, UNSEEN, check_size};
 use super::timing::{Clock, TimedPoints};
-use super::{Limits, Loaded, ParseError, Place, Warning};
+use super::{Limits, Loaded, ParseError, Place, Warning, opensim};
 use crate::math::Vec3;
+
+pub(super) const FORMAT: FormatDescriptor = FormatDescriptor {
+    name: "table",
+    title: "table of positions",
+    noun: "a table",
+    endings: &["csv", "tsv", "tab"],
+    looks_so: |h| {
+        !h.is_binary() && (!opensim::is_table(h) || opensim::has_markers(h)) && looks_so(h.bytes)
+    },
+    up: None,
+    read: |s| read(s.bytes, s.name, s.rate_hz, s.limits),
+};
 
 /// TableFrames a second of a table without times.
 const ASSUMED_HZ: f64 = 30.0;

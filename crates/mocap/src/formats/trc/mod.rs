@@ -8,11 +8,33 @@ mod write;
 pub use write::write;
 
 use super::cells::{Decimal, lines, number, split};
+use super::descriptor::FormatDescriptor;
+use super::head::Head;
 use super::points::{Point, UNSEEN, check_size, metres_of};
 use super::table::axis_of;
 use super::timing::{Clock, TimedPoints};
 use super::{Limits, Loaded, ParseError, Place, Warning};
 use crate::math::Vec3;
+
+pub(super) const FORMAT: FormatDescriptor = FormatDescriptor {
+    name: "trc",
+    title: "TRC",
+    noun: "a TRC recording",
+    endings: &["trc"],
+    looks_so: is_trc,
+    up: None,
+    read: |s| read(s.bytes, s.name, s.rate_hz, s.limits),
+};
+
+/// `PathFileType`, or a row that begins with `Frame#` and names points after a row of TRC's header.
+fn is_trc(head: &Head) -> bool {
+    let begins = |line: &[u8], word: &[u8]| {
+        let line = line.strip_prefix(b"\"").unwrap_or(line);
+        line.len() >= word.len() && line[..word.len()].eq_ignore_ascii_case(word)
+    };
+    let opens = |line: &[u8]| begins(line, b"PathFileType") || begins(line, b"DataRate");
+    !head.is_binary() && head.lines().take(3).any(opens)
+}
 
 /// The header's rows before the names of points.
 struct Heading {

@@ -19,21 +19,17 @@ impl<'a> Head<'a> {
         self.bytes.trim_ascii_start().starts_with(text.as_bytes())
     }
 
-    /// True if it starts with one of these, in any case.
-    pub(super) fn starts_any(&self, texts: &[&str]) -> bool {
-        let start = self.bytes.trim_ascii_start();
-        let begins = |text: &&str| {
-            start
-                .get(..text.len())
-                .is_some_and(|s| s.eq_ignore_ascii_case(text.as_bytes()))
-        };
-        texts.iter().any(begins)
-    }
-
     pub(super) fn contains(&self, text: &[u8]) -> bool {
         self.bytes
             .windows(text.len())
             .any(|window| window.eq_ignore_ascii_case(text))
+    }
+
+    /// True if one of the first lines holds a word in lower case, however it is written there.
+    pub(super) fn says(&self, word: &str) -> bool {
+        let is_word = |at: &[u8]| at.eq_ignore_ascii_case(word.as_bytes());
+        let holds = |line: &[u8]| line.windows(word.len()).any(is_word);
+        self.lines().take(200).any(holds)
     }
 
     pub(super) fn is_markup(&self) -> bool {

@@ -1,0 +1,30 @@
+//! What is known of FBX, whether or not its reader is built.
+
+use super::descriptor::{FormatDescriptor, FormatInput};
+use super::{Loaded, ParseError};
+
+pub(super) const FORMAT: FormatDescriptor = FormatDescriptor {
+    name: "fbx",
+    title: "FBX",
+    noun: "an FBX scene",
+    endings: &["fbx"],
+    looks_so: |h| {
+        h.starts("Kaydara FBX Binary") || h.starts("; FBX") || h.starts("FBXHeaderExtension")
+    },
+    up: None,
+    read,
+};
+
+#[cfg(feature = "fbx")]
+fn read(file: &FormatInput<'_>) -> Result<Loaded, ParseError> {
+    Ok(file.timed(super::fbx::read(file.bytes, file.name, file.limits)?))
+}
+
+#[cfg(not(feature = "fbx"))]
+fn read(_: &FormatInput<'_>) -> Result<Loaded, ParseError> {
+    Err(ParseError::new(
+        super::Place::File,
+        "a format that this build reads",
+        "FBX, which needs the feature `fbx`",
+    ))
+}
