@@ -4,8 +4,9 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
 
 use morec::diagnosis::{Diagnoser, Diagnosis};
+use morec::features::BoneSet;
 use morec::index::MotionIndex;
-use morec::live::{Event, EventOptions, Frame, Performer, PerformerId, Recognizer};
+use morec::live::{Event, EventOptions, Frame, Performer, PerformerId, RecognizerCache};
 
 use crate::MorecStatus;
 use crate::axes::Convention;
@@ -41,10 +42,6 @@ pub(crate) struct Stream {
 
 struct StreamInput {
     performer: Performer,
-    /// For [`Performer`] to take at its next first frame.
-    ready: Option<Recognizer>,
-    /// As it was made.
-    new: Recognizer,
     made: Made,
     frame: Frame,
     events: rtrb::Producer<Event>,
@@ -53,16 +50,20 @@ struct StreamInput {
 
 /// Parts from which another performer is made.
 struct Made {
-    index: Arc<MotionIndex>,
+    recognizers: Arc<RecognizerCache>,
     options: EventOptions,
     rig: Arc<morec::live::Rig>,
+    bones: BoneSet,
 }
 
 impl Made {
-    fn performer(&self) -> Performer {
-        let mut performer = Performer::new(&self.index.model, PerformerId(0), &self.options);
+    fn performer(&self) -> Result<Performer, CallError> {
+        let mut performer = Performer::sharing(&self.recognizers, PerformerId(0), &self.options);
         performer.set_rig(&self.rig, &mut |_| {});
-        performer
+        let announced = performer.announce(self.bones);
+        announced
+            .map_err(|error| CallError::new(MorecStatus::NothingInCommon, error.to_string()))?;
+        Ok(performer)
     }
 }
 
@@ -101,8 +102,6 @@ impl Stream {
                 return Err(CallError::invalid(text));
             }
         };
-        // Made now and not at the first frame, so that what does not fit is said now, and no bone is given up because
-        // the first frame happens not to show it.
         if index.model.needs_rotations() && declared.rig == skeleton::body() {
             let text =
                 "the index looks at how joints are turned: declare a skeleton and give rotations";
@@ -111,25 +110,22 @@ impl Stream {
                 text.to_owned(),
             ));
         }
-        let new = Recognizer::new(&index.model, declared.bones)
-            .map_err(|error| CallError::new(MorecStatus::NothingInCommon, error.to_string()))?;
         let made = Made {
-            index: index.clone(),
+            recognizers: Arc::new(RecognizerCache::new(&index.model)),
             options: options.events.clone(),
             rig: Arc::new(declared.rig.clone()),
+            bones: declared.bones,
         };
         let (producer, consumer) = rtrb::RingBuffer::new(capacity);
         let input = StreamInput {
-            performer: made.performer(),
-            ready: Some(new.clone()),
-            new,
+            performer: made.performer()?,
             made,
             frame: Frame::default(),
             events: producer,
             sequence: 0,
         };
         Ok(Self {
-            latency_secs: input.new.latency_secs(),
+            latency_secs: input.performer.latency_secs().unwrap_or_default(),
             declared,
             convention: options.convention,
             input: Mutex::new(input),
@@ -153,11 +149,9 @@ impl Stream {
             sequence: &mut input.sequence,
             counts: &self.counts,
         };
-        let (model, ready) = (&input.made.index.model, &mut input.ready);
-        let mut make = |bones| ready.take().or_else(|| Recognizer::new(model, bones).ok());
         input
             .performer
-            .push(&input.frame, &mut make, &mut |event| out.event(event));
+            .push(&input.frame, &mut |event| out.event(event));
         self.counts.frames.fetch_add(1, Relaxed);
         self.counts
             .suppressed
@@ -186,8 +180,7 @@ impl Stream {
         let input = &mut *turn(&self.input)?;
         let output = &mut *turn(&self.output)?;
         while output.pop().is_ok() {}
-        input.performer = input.made.performer();
-        input.ready = Some(input.new.clone());
+        input.performer = input.made.performer()?;
         input.sequence = 0;
         let counts = &self.counts;
         for count in [

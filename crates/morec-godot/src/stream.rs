@@ -65,7 +65,7 @@ impl PerformerStream {
         self.events.clear();
         let events = &mut self.events;
         let mut say = |event| events.push(event);
-        self.performer.push_own(&self.frame, &mut say);
+        self.performer.push(&self.frame, &mut say);
     }
 
     /// Ends the stream; its last motions are then among the [`events`](Self::events).

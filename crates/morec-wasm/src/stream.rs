@@ -5,7 +5,7 @@ use std::sync::Arc;
 use morec::features::{BoneSet, KeyPose};
 use morec::import::SignedAxis;
 use morec::index::MotionIndex;
-use morec::live::{Event, EventOptions, Frame, Model, Performer, PerformerId, Recognizer, Rig};
+use morec::live::{Event, EventOptions, Frame, Performer, PerformerId, Rig};
 use morec::math::{Quat, Vec3};
 use morec::roles::Role;
 use morec::roles::points::{PointJoint, places_of};
@@ -44,11 +44,6 @@ impl Default for PointOptions {
 #[derive(Debug)]
 pub struct PointStream {
     performer: Performer,
-    model: Model,
-    /// For [`Performer`] to take at its first frame: made early, so that what does not fit is said early.
-    ready: Option<Recognizer>,
-    /// Why what the stream shows cannot be recognised.
-    problem: Option<String>,
     latency_secs: f64,
     places: Vec<(Role, PointJoint)>,
     /// Takes coordinates of the stream to Y up; `None` if they are.
@@ -95,9 +90,7 @@ impl PointStream {
                 rig.roles.set(role, None);
             }
         }
-        let ready = index
-            .recognizer(BoneSet::of_roles(&rig.roles))
-            .map_err(|error| error.to_string())?;
+        let announced = BoneSet::of_roles(&rig.roles);
         let events = EventOptions {
             early: options.early,
             each_repetition: options.each_repetition,
@@ -105,12 +98,11 @@ impl PointStream {
         };
         let mut performer = Performer::new(&index.model, PerformerId(0), &events);
         performer.set_rig(&Arc::new(rig), &mut |_| {});
+        let made = performer.announce(announced);
+        made.map_err(|error| error.to_string())?;
         Ok(Self {
-            latency_secs: ready.latency_secs(),
+            latency_secs: performer.latency_secs().unwrap_or_default(),
             performer,
-            ready: Some(ready),
-            problem: None,
-            model: index.model.clone(),
             places,
             turn: (up != SignedAxis::Y).then(|| up.to_y()),
             values: vec![f64::NAN; 3 * points.len()],
@@ -139,14 +131,8 @@ impl PointStream {
         self.frame.set_key_pose(&self.key);
         self.events.clear();
         let events = &mut self.events;
-        let mut make = |bones| {
-            let ready = self.ready.take().map(Ok);
-            let made = ready.unwrap_or_else(|| Recognizer::new(&self.model, bones));
-            self.problem = made.as_ref().err().map(ToString::to_string);
-            made.ok()
-        };
         self.performer
-            .push(&self.frame, &mut make, &mut |event| events.push(event));
+            .push(&self.frame, &mut |event| events.push(event));
         &self.events
     }
 
@@ -168,7 +154,8 @@ impl PointStream {
         let known = self.performer.diagnosis().map(|known| known.findings());
         let findings = known.iter().flat_map(|findings| findings.iter());
         let is_other = self.performer.shows_another();
-        let problem = self.problem.iter().filter(|_| is_other).cloned();
+        let problem = self.performer.problem().filter(|_| is_other);
+        let problem = problem.iter().map(ToString::to_string);
         problem.chain(findings.map(ToString::to_string)).collect()
     }
 }

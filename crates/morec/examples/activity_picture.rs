@@ -29,7 +29,7 @@ fn main() {
     for (time_secs, pose) in made::poses(&take).1 {
         frame.time_secs = time_secs;
         frame.set_key_pose(&pose);
-        performer.push_own(&frame, &mut |e| events.push(e));
+        performer.push(&frame, &mut |e| events.push(e));
     }
     performer.finish(&mut |e| events.push(e));
     let bar = |kind: usize| {

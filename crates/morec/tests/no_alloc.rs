@@ -109,7 +109,7 @@ fn events_take_no_memory(model: &Arc<morec::templates::TemplateModel>, poses: &[
         for (time_secs, pose) in poses {
             frame.time_secs = *time_secs;
             frame.set_key_pose(pose);
-            performer.push_own(&frame, &mut |_| events += 1);
+            performer.push(&frame, &mut |_| events += 1);
             std::hint::black_box(performer.diagnosis().map(|known| known.findings()));
         }
         performer.finish(&mut |_| events += 1);
@@ -275,7 +275,7 @@ fn the_thesiss_method_from_frames_to_events_takes_no_memory() {
             frame.time_secs = 100.0 * lap + number as f64 / 60.0 + late + gap;
             frame.pose.positions.clone_from(&pose.positions);
             frame.pose.rotations.clone_from(&pose.rotations);
-            performer.push_own(&frame, &mut |_| events += 1);
+            performer.push(&frame, &mut |_| events += 1);
         }
         performer.finish(&mut |_| events += 1);
     };

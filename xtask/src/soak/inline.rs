@@ -3,10 +3,7 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use morec::features::BoneSet;
-use morec::live::{
-    EventOptions, Frame, Model, Performer, PerformerId, Recognizer, Source, SourceEvent,
-};
+use morec::live::{EventOptions, Frame, Model, Performer, PerformerId, Source, SourceEvent};
 
 use morec_live::ClipSource;
 use morec_live::PlayableClip;
@@ -63,20 +60,14 @@ fn shares(mut secs: Vec<f64>) -> String {
     )
 }
 
-/// A performer, and recognisers ready to be copied.
 struct InlinePlayer {
-    model: Model,
     performer: Performer,
-    ready: Vec<(BoneSet, Option<Recognizer>)>,
 }
 
 impl InlinePlayer {
     fn new(model: &Model) -> Self {
-        let performer = Performer::new(model, PerformerId(0), &EventOptions::default());
         Self {
-            model: model.clone(),
-            performer,
-            ready: Vec::new(),
+            performer: Performer::new(model, PerformerId(0), &EventOptions::default()),
         }
     }
 
@@ -84,19 +75,11 @@ impl InlinePlayer {
     fn lap(&mut self, clips: &Arc<Vec<PlayableClip>>) -> Vec<f64> {
         let mut source = ClipSource::new(clips.clone());
         let (mut frame, mut secs, mut fresh) = (Frame::default(), Vec::new(), true);
-        let (model, ready) = (&self.model, &mut self.ready);
-        let mut make = |bones: BoneSet| match ready.iter().find(|(of, _)| *of == bones) {
-            Some((_, known)) => known.clone(),
-            None => {
-                ready.push((bones, Recognizer::new(model, bones).ok()));
-                ready.last().and_then(|(_, new)| new.clone())
-            }
-        };
         loop {
             match source.next(&mut frame) {
                 SourceEvent::Frame => {
                     let begun = Instant::now();
-                    self.performer.push(&frame, &mut make, &mut |_| ());
+                    self.performer.push(&frame, &mut |_| ());
                     if !std::mem::take(&mut fresh) {
                         secs.push(begun.elapsed().as_secs_f64());
                     }

@@ -207,7 +207,7 @@ impl Watch {
                     if let Some(rig) = known.filter(|_| missed) {
                         performer.set_rig(&rig, &mut out);
                     }
-                    performer.push_own(frame, &mut out);
+                    performer.push(frame, &mut out);
                 }
             }
             SourceEvent::Rig(actor, rig) => {

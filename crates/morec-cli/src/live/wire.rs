@@ -83,7 +83,7 @@ impl Over {
         while let Some(next) = self.receiver.next(&mut self.frame) {
             match next {
                 SourceEvent::Rig(_, rig) => self.performer.set_rig(&rig, &mut out),
-                SourceEvent::Frame => self.performer.push_own(&self.frame, &mut out),
+                SourceEvent::Frame => self.performer.push(&self.frame, &mut out),
                 SourceEvent::Gone(_) => self.performer.finish(&mut out),
                 SourceEvent::Quiet | SourceEvent::Ended => {}
             }

@@ -3,15 +3,14 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use crate::diagnosis::{Diagnoser, Diagnosis};
-use crate::features::BoneSet;
-
 use super::early::EarlyTracker;
 use super::event_tracker::EventTracker;
 use super::{
     EarlyDetection, Event, EventOptions, Frame, Model, PerformerId, PoseExtractor, Recognizer,
-    RecognizerInput, Rig, ShownBones,
+    RecognizerCache, RecognizerInput, Rig, ShownBones, StartError,
 };
+use crate::diagnosis::{Diagnoser, Diagnosis};
+use crate::features::BoneSet;
 
 /// Follows one performer: skeletons and frames in, events out.
 ///
@@ -19,7 +18,7 @@ use super::{
 /// stream has other bones than that was made for ([`ShownBones`]); other frames take none.
 #[derive(Debug)]
 pub struct Performer {
-    model: Model,
+    recognizers: Arc<RecognizerCache>,
     rig: Option<Arc<Rig>>,
     /// Made with the first pose, as `reader` is with the first skeleton: a performer that never comes takes little memory.
     recognizer: Option<Box<Recognizer>>,
@@ -31,6 +30,7 @@ pub struct Performer {
     wall_secs: f64,
     unusable: u64,
     dropped: u64,
+    problem: Option<StartError>,
     /// Made with the first skeleton: a performer that never comes needs none.
     diagnoser: Option<Box<Diagnoser>>,
 }
@@ -42,11 +42,20 @@ impl Performer {
         actor: PerformerId,
         options: &EventOptions,
     ) -> Self {
-        let model: Model = model.clone().into();
+        Self::sharing(&Arc::new(RecognizerCache::new(model)), actor, options)
+    }
+
+    /// The same, with recognisers that others share.
+    pub fn sharing(
+        recognizers: &Arc<RecognizerCache>,
+        actor: PerformerId,
+        options: &EventOptions,
+    ) -> Self {
+        let model = recognizers.model();
         Self {
             tracker: EventTracker::new(actor, model.classes().len(), options.refractory_secs),
             shown: ShownBones::new(model.bones()),
-            model,
+            recognizers: recognizers.clone(),
             reader: None,
             rig: None,
             recognizer: None,
@@ -54,6 +63,7 @@ impl Performer {
             wall_secs: 0.0,
             unusable: 0,
             dropped: 0,
+            problem: None,
             diagnoser: None,
         }
     }
@@ -61,7 +71,7 @@ impl Performer {
     /// Begins with a new skeleton; ends what went on with the old one.
     pub fn set_rig(&mut self, rig: &Arc<Rig>, out: &mut impl FnMut(Event)) {
         self.finish(out);
-        let rig = match self.model.roles_of(&rig.skeleton, &rig.roles) {
+        let rig = match self.recognizers.model().roles_of(&rig.skeleton, &rig.roles) {
             Cow::Borrowed(_) => rig.clone(),
             Cow::Owned(roles) => Arc::new(Rig {
                 roles,
@@ -69,24 +79,27 @@ impl Performer {
             }),
         };
         self.dropped = self.dropped();
-        self.recognizer = None;
+        (self.recognizer, self.problem) = (None, None);
         self.shown.reset();
         self.diagnoser = Some(Box::new(Diagnoser::live()));
-        let reader = PoseExtractor::new(&self.model, &rig.skeleton, &rig.roles);
+        let reader = PoseExtractor::new(self.recognizers.model(), &rig.skeleton, &rig.roles);
         self.reader = reader.ok().map(Box::new);
         self.rig = Some(rig);
     }
 
+    /// Makes a recogniser for `bones` now and not at the first frame, so that what does not fit is said now, and no bone is given up
+    /// because the first frame happens not to show it. Call it after [`set_rig`](Self::set_rig), which forgets it.
+    ///
+    /// # Errors
+    /// As [`Recognizer::new`].
+    pub fn announce(&mut self, bones: BoneSet) -> Result<(), StartError> {
+        self.recognizer = Some(Box::new(self.recognizers.recognizer(bones)?));
+        Ok(())
+    }
+
     /// Takes a frame and calls `out` with what it settled. A frame without a rig, or of a skeleton that shows none of
     /// the index's bones, says nothing and is counted.
-    ///
-    /// `make` gives a recogniser for the bones of a new skeleton, or for those that the stream turns out to show, if there can be one.
-    pub fn push(
-        &mut self,
-        frame: &Frame,
-        make: &mut impl FnMut(BoneSet) -> Option<Recognizer>,
-        out: &mut impl FnMut(Event),
-    ) {
+    pub fn push(&mut self, frame: &Frame, out: &mut impl FnMut(Event)) {
         let Some(rig) = &self.rig else {
             self.unusable += 1;
             return;
@@ -102,10 +115,8 @@ impl Performer {
             }
             None => Some(rig.bones(&pose)),
         };
-        if let Some(new) = bones.and_then(make) {
-            self.end(out);
-            self.dropped = self.dropped();
-            self.recognizer = Some(Box::new(new));
+        if let Some(bones) = bones {
+            self.look_at(bones, out);
         }
         let Some(recognizer) = &mut self.recognizer else {
             self.unusable += 1;
@@ -132,6 +143,17 @@ impl Performer {
         }
     }
 
+    /// Goes on with a recogniser for other bones, if there can be one.
+    fn look_at(&mut self, bones: BoneSet, out: &mut impl FnMut(Event)) {
+        let new = self.recognizers.recognizer(bones);
+        self.problem = new.as_ref().err().cloned();
+        if let Ok(new) = new {
+            self.end(out);
+            self.dropped = self.dropped();
+            self.recognizer = Some(Box::new(new));
+        }
+    }
+
     /// The stream ends or breaks off: tells what its last moments hold. It may go on with another frame.
     pub fn finish(&mut self, out: &mut impl FnMut(Event)) {
         self.end(out);
@@ -150,12 +172,6 @@ impl Performer {
         }
         self.early
             .cancel(None, &mut self.tracker.say(self.wall_secs, out));
-    }
-
-    /// [`push`](Self::push) that makes recognisers of its own.
-    pub fn push_own(&mut self, frame: &Frame, out: &mut impl FnMut(Event)) {
-        let model = self.model.clone();
-        self.push(frame, &mut |bones| Recognizer::new(&model, bones).ok(), out);
     }
 
     /// Frames that could not be used: no skeleton was known, or none of its bones are the index's.
@@ -178,6 +194,23 @@ impl Performer {
         self.diagnoser
             .as_ref()
             .map(|diagnoser| diagnoser.diagnosis())
+    }
+
+    /// Why what the stream shows cannot be recognised.
+    pub fn problem(&self) -> Option<&StartError> {
+        self.problem.as_ref()
+    }
+
+    /// See [`Recognizer::latency_secs`]; `None` before there is a recogniser.
+    pub fn latency_secs(&self) -> Option<f64> {
+        let recognizer = self.recognizer.as_ref();
+        recognizer.map(|recognizer| recognizer.latency_secs())
+    }
+
+    /// The bones that are looked at; `None` before there is a recogniser.
+    pub fn bones(&self) -> Option<BoneSet> {
+        let recognizer = self.recognizer.as_ref();
+        recognizer.map(|recognizer| recognizer.model().bones())
     }
 
     /// True if the last second showed nothing that the index can use, and something else: a performer of another kind.

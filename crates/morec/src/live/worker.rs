@@ -32,7 +32,6 @@ pub(super) struct StreamWorker {
     performers: Vec<Performer>,
     /// Frames that each performer has had.
     frames: [u64; MAX_PERFORMERS],
-    cache: Arc<RecognizerCache>,
     broadcast: EventBroadcast,
     cells: Arc<SessionCounters>,
     stop: Arc<AtomicBool>,
@@ -52,12 +51,11 @@ impl StreamWorker {
         stop: &Arc<AtomicBool>,
     ) -> (Self, Vec<EventReader>) {
         let (broadcast, readers) = EventBroadcast::new(options, cells, stop);
-        let performer = |i| Performer::new(cache.model(), PerformerId(i as u16), &options.events);
+        let performer = |i| Performer::sharing(cache, PerformerId(i as u16), &options.events);
         let worker = Self {
             feed,
             performers: (0..MAX_PERFORMERS).map(performer).collect(),
             frames: [0; MAX_PERFORMERS],
-            cache: cache.clone(),
             broadcast,
             cells: cells.clone(),
             stop: stop.clone(),
@@ -106,12 +104,7 @@ impl StreamWorker {
     fn frame(&mut self, frame: &Frame) {
         match self.performers.get_mut(frame.actor.index()) {
             Some(performer) => {
-                let (cache, broadcast) = (&self.cache, &mut self.broadcast);
-                performer.push(
-                    frame,
-                    &mut |bones| cache.recognizer(bones).ok(),
-                    &mut |event| broadcast.keep(event),
-                );
+                performer.push(frame, &mut |event| self.broadcast.keep(event));
                 self.cells
                     .admits_strangers(frame.actor, performer.admits_strangers());
                 let frames = &mut self.frames[frame.actor.index()];

@@ -144,7 +144,7 @@ fn fists_of_a_body_are_recognised_where_fingers_count() {
     for_each_world_pose(&stranger.clip, &stranger.rest, |time_secs, world| {
         frame.time_secs = time_secs;
         frame.pose.clone_from(world);
-        performer.push_own(&frame, &mut say);
+        performer.push(&frame, &mut say);
     });
     performer.finish(&mut say);
     assert_eq!(ends, found);

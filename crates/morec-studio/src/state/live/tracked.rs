@@ -93,7 +93,7 @@ impl LivePerformer {
             self.body = Body::new(&parents, &rig.roles, &frame.pose);
         }
         if let Some(performer) = &mut self.performer {
-            performer.push_own(frame, &mut |event| events.push(event));
+            performer.push(frame, &mut |event| events.push(event));
         }
         self.gone = false;
         self.now_secs = frame.time_secs;
