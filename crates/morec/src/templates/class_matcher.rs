@@ -170,17 +170,18 @@ impl ClassMatcher {
                 }
             }
         }
+        let is_near = |best: &OngoingMatch| {
+            best.distance < params.reach * threshold
+                && best.distance < params.rival * other
+                && best.age + 1 >= params.least_ticks
+        };
+        let best = best.filter(is_near)?;
         let bank = self.negatives.bank();
-        let negatives = (0..bank.len()).filter_map(|i| {
-            let least = params.least_rows(bank.template_len(i));
-            self.negatives.partial(i, least)
-        });
-        let negative = negatives.map(|n| n.distance).fold(FAR, f32::min);
-        best.filter(|b| {
-            b.distance < params.reach * threshold
-                && b.distance < params.gate * negative
-                && b.distance < params.rival * other
-                && b.age + 1 >= params.least_ticks
-        })
+        let nearer = |negative: usize| {
+            let least = params.least_rows(bank.template_len(negative));
+            let found = self.negatives.partial(negative, least);
+            found.is_some_and(|found| best.distance >= params.gate * found.distance)
+        };
+        (best.distance < params.gate * FAR && !(0..bank.len()).any(nearer)).then_some(best)
     }
 }

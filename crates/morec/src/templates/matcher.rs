@@ -41,6 +41,8 @@ pub struct Matcher {
     norm: SpreadNorm,
     rest_spread: f32,
     spreads: Arc<[f32]>,
+    /// Divisors of beginnings, whose spread is taken to be the template's.
+    norms: Arc<[f32]>,
     /// Noise of each template's rows.
     noises: Arc<[f32]>,
     noise_share: f32,
@@ -150,6 +152,7 @@ impl Matcher {
             norm_bounds: (spreads.iter())
                 .map(|spread| NormBound::new(norm, *spread))
                 .collect(),
+            norms: spreads.iter().map(|spread| norm.at(*spread)).collect(),
             spreads: spreads.into(),
             noises: templates.iter().map(Stretches::noise_of).collect(),
             noise_share: decode.noise_share,
@@ -367,7 +370,7 @@ impl Matcher {
     pub fn partial(&self, index: usize, least: usize) -> Option<PartialMatch> {
         let found = self.bank.partial(index, least)?;
         Some(PartialMatch {
-            distance: found.distance / self.norm.at(self.spreads[index]),
+            distance: found.distance / self.norms[index],
             ..found
         })
     }
