@@ -7,8 +7,8 @@ use crate::params::{Param, word};
 
 /// The options with their values that give `settings` on the command line: one for every field that is not as usual.
 ///
-/// A list is one value with commas; a table of parameters is an option for each.
-pub fn arguments<S: Serialize + Default>(settings: &S) -> Vec<[String; 2]> {
+/// A list is one value with commas; a table of parameters is an option for each; what is on or off is an option without a value.
+pub fn arguments<S: Serialize + Default>(settings: &S) -> Vec<(String, Option<String>)> {
     let fields = |settings: &S| match serde_json::to_value(settings) {
         Ok(Value::Object(fields)) => fields,
         _ => serde_json::Map::new(),
@@ -22,20 +22,21 @@ pub fn arguments<S: Serialize + Default>(settings: &S) -> Vec<[String; 2]> {
         .collect()
 }
 
-fn option(name: &str, value: Value) -> Vec<[String; 2]> {
+fn option(name: &str, value: Value) -> Vec<(String, Option<String>)> {
     let option = format!("--{}", name.replace('_', "-"));
     match value {
-        Value::Null => Vec::new(),
+        Value::Null | Value::Bool(false) => Vec::new(),
+        Value::Bool(true) => vec![(option, None)],
         Value::Array(values) => {
             let values: Vec<String> = values.into_iter().map(word).collect();
-            vec![[option, values.join(",")]]
+            vec![(option, Some(values.join(",")))]
         }
         Value::Object(params) => {
             let each = option.trim_end_matches('s');
-            let param = |(name, value)| [each.to_owned(), Param { name, value }.to_string()];
+            let param = |(name, value)| (each.to_owned(), Some(Param { name, value }.to_string()));
             params.into_iter().map(param).collect()
         }
-        value => vec![[option, word(value)]],
+        value => vec![(option, Some(word(value)))],
     }
 }
 
@@ -46,10 +47,16 @@ mod tests {
     use serde::de::DeserializeOwned;
 
     use super::*;
-    use crate::{CrossvalSettings, LeftOut, Method, TrainSettings, from_fields};
+    use crate::{
+        CrossvalSettings, CutMethod, CutSettings, LeftOut, Method, SearchSettings, TrainSettings,
+        from_fields,
+    };
 
     fn words<S: Serialize + Default>(settings: &S) -> Vec<String> {
-        arguments(settings).concat()
+        let options = arguments(settings).into_iter();
+        options
+            .flat_map(|(option, value)| std::iter::once(option).chain(value))
+            .collect()
     }
 
     fn parsed<S: Args + FromArgMatches>(words: &[String]) -> S {
@@ -73,6 +80,20 @@ mod tests {
     fn settings_come_back_from_a_command_line_and_from_keywords() {
         returns(&TrainSettings::default());
         returns(&CrossvalSettings::default());
+        returns(&CutSettings::default());
+        returns(&CutSettings {
+            direction: morec::segment::PassDirections::Backward,
+            rise: 3.5,
+            ..CutMethod::Ppca.into()
+        });
+        returns(&SearchSettings::default());
+        returns(&SearchSettings {
+            mirror: true,
+            learned: true,
+            classes: vec!["wave".into()],
+            warp_share: 0.25,
+            ..SearchSettings::default()
+        });
         let settings = TrainSettings {
             classes: vec!["wave".into(), "bow".into()],
             gestures: vec!["wave".into()],

@@ -17,7 +17,7 @@ pub enum OperationError {
     Param(#[from] ParamError),
     /// Settings that contradict each other.
     #[error("{0}")]
-    Settings(&'static str),
+    Settings(String),
     /// Clips and labels that do not fit together.
     #[error(transparent)]
     Data(#[from] DataError),
@@ -46,6 +46,7 @@ impl OperationError {
             OperationError::Crossval(CrossvalError::Train { source, .. }) => {
                 *source == TrainError::Cancelled
             }
+            OperationError::Database(error) => matches!(error, DbError::Cancelled),
             _ => false,
         }
     }

@@ -6,15 +6,20 @@
 
 mod arguments;
 mod crossval;
+mod cut;
 mod error;
 mod material;
 mod params;
+mod search;
 mod text;
 mod train;
+mod words;
 
 pub use arguments::arguments;
 pub use crossval::{CrossvalMeasures, CrossvalSettings, LeftOut};
+pub use cut::{CutMethod, CutSettings};
 pub use error::OperationError;
 pub use material::{accepted_labels, clips_to_train, training_data};
 pub use params::{Param, ParamError, from_fields};
+pub use search::{SearchSettings, example_of_clip, example_of_database};
 pub use train::{Method, TrainSettings, Unlabelled};

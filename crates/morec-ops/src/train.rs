@@ -1,6 +1,5 @@
 //! Training an index.
 
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use morec::features::BoneSet;
 use morec::index::MotionIndex;
 use morec::progress::Progress;
@@ -9,11 +8,10 @@ use morec::train::thesis::{SvrdmOptions, SvrdmTrainParams};
 use morec::train::{
     Everyday, Mirror, Recipe, TrainOptions, TrainParams, TrainingData, TrainingReport, train_index,
 };
-use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
 
 use crate::params::{self, Param, ParamError};
+use crate::words::choices;
 use crate::{OperationError, text};
 
 /// How an index is trained.
@@ -120,16 +118,6 @@ pub enum Unlabelled {
     Ignore,
 }
 
-/// A parser of the words of a library's enumeration, which knows nothing of command lines, with help for each word.
-fn choices<T: DeserializeOwned + Clone + Send + Sync + 'static>(
-    words: impl IntoIterator<Item = (&'static str, &'static str)>,
-) -> impl TypedValueParser<Value = T> {
-    let word = |(word, help)| PossibleValue::new(word).help(help);
-    let words: Vec<PossibleValue> = words.into_iter().map(word).collect();
-    PossibleValuesParser::new(words)
-        .try_map(|word| serde_json::from_value::<T>(Value::String(word)))
-}
-
 impl TrainSettings {
     /// Settings that train the method of 2009 with `params`.
     pub fn of_svrdm(params: &SvrdmTrainParams) -> Self {
@@ -154,9 +142,8 @@ impl TrainSettings {
     pub fn recipe(&self) -> Result<Recipe, OperationError> {
         let names_kinds = !self.activities.is_empty() || !self.gestures.is_empty();
         if names_kinds && self.method != Method::Auto {
-            return Err(OperationError::Settings(
-                "--activities and --gestures are for --method auto",
-            ));
+            let why = "--activities and --gestures are for --method auto";
+            return Err(OperationError::Settings(why.to_owned()));
         }
         Ok(match self.method {
             Method::Auto | Method::Templates => self.template_options()?.into(),

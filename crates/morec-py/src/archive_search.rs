@@ -15,7 +15,7 @@ use pyo3::types::PyBytes;
 use rayon::prelude::*;
 
 use crate::clip::PyClip;
-use crate::database::example_of;
+use crate::database::{db_error, example_of};
 use crate::errors::value_error;
 
 /// Clips of a part of an archive, laid out for searching.
@@ -34,10 +34,8 @@ pub struct SearchExample {
 #[pyfunction]
 #[pyo3(signature = (clip, start, stop=None))]
 pub fn search_example(clip: &PyClip, start: f64, stop: Option<f64>) -> PyResult<SearchExample> {
-    let example = example_of(&clip.data, start, stop);
-    let short = || value_error("the example must hold at least 0.1 s of motion");
     Ok(SearchExample {
-        example: example.ok_or_else(short)?,
+        example: example_of(&clip.data, start, stop).map_err(db_error)?,
     })
 }
 

@@ -4,17 +4,15 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use morec::features::{FeatureParams, bones_of_clip, rows_of_clip};
 use morec::files::{FileReader, list};
 use morec::labels::{ClipLength, Sample};
 use morec::pivots::PivotSet;
-use morec::segment::{KernelParams, PpcaParams};
 use morec_db::labels::{NewSample, SampleFilter, SampleId, SampleState};
-use morec_db::search::{Example, SearchIndex, SearchOptions};
+use morec_db::search::{Example, SearchIndex};
 use morec_db::{
-    ClipFilter, ClipId, ClipInfo, ClipUpdate, Cutter, DbError, ImportOutcome, MotionDb,
-    ProposeOptions,
+    ClipFilter, ClipId, ClipInfo, ClipUpdate, DbError, ImportOutcome, MotionDb, ProposeOptions,
 };
+use morec_ops::{CutSettings, SearchSettings, example_of_clip, example_of_database};
 use pyo3::exceptions::{PyFileExistsError, PyFileNotFoundError, PyKeyError, PyPermissionError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -23,6 +21,7 @@ use crate::clip::PyClip;
 use crate::clip_data::ClipData;
 use crate::errors::{MorecError, file_error, value_error, warn};
 use crate::job;
+use crate::material::{keywords, operation_error};
 use crate::tables::{plain, table};
 
 /// A motion database: clips, cuts, classes and labels in one SQLite file, as `morec db` keeps it.
@@ -335,30 +334,22 @@ impl PyDatabase {
     }
 
     /// Stretches that are like an example, the likest first.
-    #[pyo3(signature = (example, start=0.0, stop=None, *, mirror=false, limit=20, one_a_clip=false))]
-    #[allow(clippy::too_many_arguments)] // Keyword arguments of one Python method.
+    #[pyo3(signature = (example, start=0.0, stop=None, **settings))]
     fn search<'py>(
         &self,
         py: Python<'py>,
         example: &Bound<'py, PyAny>,
         start: f64,
         stop: Option<f64>,
-        mirror: bool,
-        limit: usize,
-        one_a_clip: bool,
+        settings: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
+        let settings: SearchSettings = keywords(settings)?;
         let name = example.extract::<String>().ok();
         let clip = match &name {
             Some(_) => None,
             None => crate::index::clips_of(example)?.into_iter().next(),
         };
         let data = clip.map(|clip| clip.get().data.clone());
-        let options = SearchOptions {
-            limit,
-            mirror,
-            one_a_clip,
-            ..SearchOptions::default()
-        };
         let (hits, names) = self.with(py, |db| {
             let mut search = held(&self.search);
             if search.is_none() {
@@ -368,16 +359,12 @@ impl PyDatabase {
                 return Err(DbError::Cancelled);
             };
             let example = match (&name, &data) {
-                (Some(name), _) => {
-                    let info = db.find_clip(name)?;
-                    index.example(info.id, start..stop.unwrap_or(info.duration_secs()))
-                }
-                (None, Some(data)) => example_of(data, start, stop),
-                (None, None) => None,
+                (Some(name), _) => example_of_database(db, index, name, start, stop)?,
+                (None, Some(data)) => example_of(data, start, stop)?,
+                (None, None) => return Err(DbError::Invalid("no example".to_owned())),
             };
-            let short =
-                || DbError::Invalid("the example must hold at least 0.1 s of motion".into());
-            let hits = index.search(&example.ok_or_else(short)?, &options);
+            let metric = settings.metric(db, index)?;
+            let hits = index.search_by(&example, &settings.options(), metric.as_ref());
             Ok((hits, names(db)?))
         })?;
         let mut rows = Vec::new();
@@ -403,40 +390,17 @@ impl PyDatabase {
     }
 
     /// Cuts clips where their behaviour changes, and keeps the cuts; a row for each clip.
-    #[pyo3(signature = (name=None, *, method="kernel", window=None, penalty=None, least=None, rise=None, progress=None))]
-    #[allow(clippy::too_many_arguments)] // Keyword arguments of one Python method.
+    #[pyo3(signature = (name=None, *, progress=None, **settings))]
     fn cut<'py>(
         &self,
         py: Python<'py>,
         name: Option<String>,
-        method: &str,
-        window: Option<f64>,
-        penalty: Option<f64>,
-        least: Option<f64>,
-        rise: Option<f64>,
         progress: Option<&Bound<'py, PyAny>>,
+        settings: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let (kernel, ppca) = (KernelParams::default(), PpcaParams::default());
-        let cutter = match method {
-            "kernel" => Cutter::Kernel(KernelParams {
-                window_secs: window.unwrap_or(kernel.window_secs),
-                penalty: penalty.unwrap_or(kernel.penalty),
-                least_secs: least.unwrap_or(kernel.least_secs),
-                ..kernel
-            }),
-            "ppca" => Cutter::Ppca(
-                PpcaParams {
-                    rise: rise.unwrap_or(ppca.rise),
-                    ..ppca
-                },
-                PivotSet::thesis(),
-            ),
-            other => {
-                return Err(value_error(format!(
-                    "method: expected \"kernel\" or \"ppca\", found {other:?}"
-                )));
-            }
-        };
+        let settings: CutSettings = keywords(settings)?;
+        let cutter = settings.cutter(PivotSet::thesis());
+        let cutter = cutter.map_err(operation_error)?;
         let filter = ClipFilter {
             name,
             ..ClipFilter::default()
@@ -556,14 +520,11 @@ fn names(db: &MotionDb) -> Result<BTreeMap<ClipId, String>, DbError> {
 }
 
 /// A stretch of a clip from elsewhere as an example.
-pub fn example_of(data: &ClipData, start_secs: f64, stop_secs: Option<f64>) -> Option<Example> {
-    let params = FeatureParams::default();
-    let bones = bones_of_clip(&data.clip, &data.roles, &data.rest);
-    let rows = rows_of_clip(&data.clip, &data.roles, &data.rest, bones, &params);
-    let tick = |secs: f64| ((secs * params.tick_hz()).round().max(0.0) as usize).min(rows.len());
-    let (start, stop) = (tick(start_secs), stop_secs.map_or(rows.len(), tick));
-    let span = rows.slice(start..stop.max(start));
-    let all = span.len() == rows.len();
-    let example = SearchIndex::example_of(&span, bones)?;
-    Some(if all { example } else { example.cut_out() })
+pub fn example_of(
+    data: &ClipData,
+    start_secs: f64,
+    stop_secs: Option<f64>,
+) -> Result<Example, DbError> {
+    let of = (&data.clip, &data.roles, &data.rest);
+    example_of_clip(of, start_secs, stop_secs)
 }

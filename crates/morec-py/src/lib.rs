@@ -55,8 +55,7 @@ fn _morec(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(divided::recognize_matched_kept, module)?)?;
     module.add_function(wrap_pyfunction!(crossval::crossval, module)?)?;
     module.add_function(wrap_pyfunction!(crossval::evaluate, module)?)?;
-    module.add_function(wrap_pyfunction!(segment::cut_kernel, module)?)?;
-    module.add_function(wrap_pyfunction!(segment::cut_ppca, module)?)?;
+    module.add_function(wrap_pyfunction!(segment::cut, module)?)?;
     module.add_function(wrap_pyfunction!(synth::synth_database, module)?)?;
     module.add_function(wrap_pyfunction!(synth::synth_everyday, module)?)?;
     module.add_function(wrap_pyfunction!(synth::synth_motions, module)?)?;

@@ -155,6 +155,24 @@ pub fn settings<S: Serialize + DeserializeOwned + Default>(given: &str) -> PyRes
     morec_ops::from_fields(fields).map_err(value_error)
 }
 
+/// Settings of an operation from keywords; `None` is as usual.
+///
+/// # Errors
+/// Those of [`settings`]; a value that JSON does not have.
+pub fn keywords<S: Serialize + DeserializeOwned + Default>(
+    given: Option<&Bound<'_, PyDict>>,
+) -> PyResult<S> {
+    let Some(given) = given else {
+        return Ok(S::default());
+    };
+    let set = PyDict::new(given.py());
+    for (name, value) in given.iter().filter(|(_, value)| !value.is_none()) {
+        set.set_item(name, value)?;
+    }
+    let json = given.py().import("json")?.call_method1("dumps", (set,))?;
+    settings(&json.extract::<String>()?)
+}
+
 /// Settings that make no sense are the caller's, other errors morec's.
 pub fn operation_error(error: OperationError) -> PyErr {
     match error {

@@ -9,16 +9,15 @@ use std::process::ExitCode;
 use anyhow::{Result, bail};
 
 pub use args::Args;
-use args::CheckedCutter;
 
 use crate::database;
 
 /// Cuts clips, or the clips of a database.
 pub fn run(args: &Args) -> Result<ExitCode> {
     match database::only(&args.inputs)? {
-        Some(db) => stored::run(db, CheckedCutter::new(args)?, args),
+        Some(db) => stored::run(db, args),
         None if args.clip.is_some() => bail!("--clip chooses clips of a database"),
-        None => files::run(&CheckedCutter::new(args)?, args),
+        None => files::run(args),
     }
 }
 
@@ -26,7 +25,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 pub fn run_stored(args: &Args) -> Result<ExitCode> {
     eprintln!("morec: `morec db cut` is `morec cut` now");
     match args.inputs.as_slice() {
-        [db] => stored::run(db, CheckedCutter::new(args)?, args),
+        [db] => stored::run(db, args),
         _ => bail!("expected one database"),
     }
 }

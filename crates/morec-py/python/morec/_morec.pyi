@@ -415,8 +415,11 @@ class Database:
         mirror: bool = False,
         limit: int = 20,
         one_a_clip: bool = False,
+        learned: bool = False,
+        classes: Sequence[str] = (),
+        warp_share: float = 0.0,
     ) -> Table:
-        """Stretches that are like an example, the likest first.
+        """Stretches that are like an example, the likest first; what ``morec db search`` finds.
 
         Parameters
         ----------
@@ -428,6 +431,12 @@ class Database:
         limit : int
         one_a_clip : bool
             Only the best of each clip.
+        learned : bool
+            Learn from the accepted samples what matters: at least two classes with two samples each.
+        classes : sequence of str
+            Learn from these classes only.
+        warp_share : float
+            Weight of the exact path against the summary of poses and pace, 0 to 1.
 
         Returns
         -------
@@ -443,6 +452,8 @@ class Database:
         penalty: float | None = None,
         least: float | None = None,
         rise: float | None = None,
+        quality: float | None = None,
+        direction: str = "both",
         progress: _Progress = None,
     ) -> Table:
         """Cut clips where their behaviour changes, and keep the cuts; what ``morec db cut`` does.
@@ -493,8 +504,7 @@ def crossval(material: dict[str, Any], train: str, how: str, progress: _Progress
 def evaluate(
     streams: list[tuple[str, float]], truth: list[tuple[str, str, float, float]], found: list[Any], /
 ) -> dict[str, Any]: ...
-def cut_kernel(clip: Clip, window: float | None, penalty: float | None, least: float | None, /) -> _Array: ...
-def cut_ppca(clip: Clip, rise: float | None, quality: float | None, direction: str, /) -> dict[str, _Array]: ...
+def cut(clip: Clip, /, **settings: str | float | None) -> dict[str, _Array]: ...
 def synth_database(
     seed: int,
     people: int,

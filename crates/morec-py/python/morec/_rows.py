@@ -278,8 +278,13 @@ def cut(
     dict
         ``cuts_secs``, shape (cuts,); of ppca also ``forward`` and ``backward``, shape (points, 2): seconds and misfit.
     """
-    if method == "kernel":
-        return {"cuts_secs": _morec.cut_kernel(clip, window, penalty, least)}
-    if method == "ppca":
-        return _morec.cut_ppca(clip, rise, quality, direction)
-    raise ValueError(f'method: expected "kernel" or "ppca", found {method!r}')
+    return _morec.cut(
+        clip,
+        method=method,
+        window=window,
+        penalty=penalty,
+        least=least,
+        rise=rise,
+        quality=quality,
+        direction=direction,
+    )

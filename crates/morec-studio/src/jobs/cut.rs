@@ -11,36 +11,11 @@ use morec::segment::{
     kernel_cuts, segment, still_stretches,
 };
 use morec_db::rows::ClipRows;
-use morec_db::{BY_HAND, ClipFilter, ClipId, ClipInfo, Cutter, DbError, MotionDb};
+use morec_db::{BY_HAND, ClipFilter, ClipId, ClipInfo, MotionDb};
+use morec_ops::{CutMethod, CutSettings, OperationError};
 
 use super::load::ClipMotion;
 use super::progress::{JobError, JobProgress};
-
-/// A method of segmentation.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum SegmentMethod {
-    /// Kernel change points over feature rows.
-    #[default]
-    Kernel,
-    /// Probabilistic principal components, as in the thesis.
-    Ppca,
-}
-
-impl SegmentMethod {
-    fn cutter(self) -> Cutter {
-        match self {
-            SegmentMethod::Kernel => Cutter::Kernel(KernelParams::default()),
-            SegmentMethod::Ppca => Cutter::Ppca(PpcaParams::default(), PivotSet::thesis()),
-        }
-    }
-
-    pub fn name(self) -> &'static str {
-        match self {
-            SegmentMethod::Kernel => "kernel",
-            SegmentMethod::Ppca => "ppca",
-        }
-    }
-}
 
 /// Result of cutting clips.
 #[derive(Debug, Clone)]
@@ -75,19 +50,21 @@ pub struct Curves {
 /// Cuts clips (all, if none are named) and keeps the cuts in place of earlier ones, as one step.
 pub fn cut(
     db: &Path,
-    method: SegmentMethod,
+    method: CutMethod,
     only: &[ClipId],
     progress: &JobProgress,
 ) -> Result<CutSummary, JobError> {
-    cut_all(db, method, only, progress).map_err(|e| JobError::of_db("Cutting stopped", &e))
+    cut_all(db, method, only, progress)
+        .map_err(|error| JobError::of_operation("Cutting stopped", &error))
 }
 
 fn cut_all(
     path: &Path,
-    method: SegmentMethod,
+    method: CutMethod,
     only: &[ClipId],
     progress: &JobProgress,
-) -> Result<CutSummary, DbError> {
+) -> Result<CutSummary, OperationError> {
+    let cutter = CutSettings::from(method).cutter(PivotSet::thesis())?;
     let mut db = MotionDb::open(path)?;
     let methods = db.cut_methods()?;
     let by_hand = |c: &ClipInfo| methods.get(&c.id).is_some_and(|m| m == BY_HAND);
@@ -96,7 +73,7 @@ fn cut_all(
         .into_iter()
         .filter(|c| only.is_empty() || only.contains(&c.id))
         .partition(by_hand);
-    let report = db.cut(&clips, &method.cutter(), progress)?;
+    let report = db.cut(&clips, &cutter, progress)?;
     Ok(CutSummary {
         clips: report.cuts.len(),
         by_hand: kept.len(),

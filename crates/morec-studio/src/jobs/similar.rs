@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
-use morec_db::search::{Hit, SearchIndex, SearchOptions};
+use morec_db::search::{Hit, SearchIndex};
 use morec_db::{DbError, MotionDb};
+use morec_ops::SearchSettings;
 
 use super::progress::{JobError, JobProgress};
 use crate::stretch::Stretch;
@@ -21,6 +22,15 @@ pub struct Similar {
     pub mirror: bool,
     /// The nearest first.
     pub hits: Vec<Hit>,
+}
+
+/// How the panel's searches are made.
+pub fn settings(mirror: bool) -> SearchSettings {
+    SearchSettings {
+        limit: MOST,
+        mirror,
+        ..SearchSettings::default()
+    }
 }
 
 /// Looks for motions like `of` in the database at `path`.
@@ -56,11 +66,10 @@ pub fn hits(
     progress: &JobProgress,
 ) -> Result<Option<Vec<Hit>>, DbError> {
     let index = SearchIndex::of_db(db, progress)?;
-    let options = SearchOptions {
+    let settings = SearchSettings {
         limit,
-        mirror,
-        ..SearchOptions::default()
+        ..settings(mirror)
     };
     let example = index.example(of.clip, of.span);
-    Ok(example.map(|example| index.search(&example.cut_out(), &options)))
+    Ok(example.map(|example| index.search(&example.cut_out(), &settings.options())))
 }

@@ -2,10 +2,11 @@
 
 use egui::{Rect, RichText, ScrollArea, Sense, Ui, Vec2, WidgetType, pos2};
 
+use morec_ops::CutMethod;
+
 use super::scale::{NAMES, Scale};
 use super::{Out, channel, curves, cuts, tracks, widgets};
 use crate::format;
-use crate::jobs::cut::SegmentMethod;
 use crate::state::{Command, PlayCommand, State, TimelineCommand};
 use crate::theme::Colours;
 
@@ -96,11 +97,11 @@ fn tools(ui: &mut Ui, state: &State, out: Out) {
         ui.separator();
         ui.menu_button("Cut all clips", |ui| {
             if ui.button("By kernel change points").clicked() {
-                timeline(TimelineCommand::Cut(SegmentMethod::Kernel));
+                timeline(TimelineCommand::Cut(CutMethod::Kernel));
                 ui.close();
             }
             if ui.button("By the thesis's method (PPCA)").clicked() {
-                timeline(TimelineCommand::Cut(SegmentMethod::Ppca));
+                timeline(TimelineCommand::Cut(CutMethod::Ppca));
                 ui.close();
             }
         });

@@ -10,6 +10,7 @@ use morec::train::thesis::SvrdmTrainParams;
 use morec_db::ClipId;
 use morec_db::exchange::LabelFormat;
 use morec_db::labels::SampleId;
+use morec_ops::CutMethod;
 
 use super::compare::CompareCommand;
 use super::cuts::CutCommand;
@@ -17,7 +18,6 @@ use super::live::LiveCommand;
 use super::player::PlayCommand;
 use super::similar::SimilarCommand;
 use crate::body::Camera;
-use crate::jobs::cut::SegmentMethod;
 use crate::store::Edit;
 use crate::stretch::Stretch;
 
@@ -238,7 +238,7 @@ pub enum TimelineCommand {
     ToPlayhead(super::timeline::Grip),
     /// Labels the selected stretch.
     LabelRange(String),
-    Cut(SegmentMethod),
+    Cut(CutMethod),
     /// The curve of the joint of this name with its keyframes.
     Channel(Option<(String, ChannelKind)>),
     /// Width of the tracks, as drawn.

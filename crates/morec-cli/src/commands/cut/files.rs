@@ -7,9 +7,10 @@ use anyhow::{Context, Result, bail};
 use morec::features::{FeatureParams, rows_of_clip};
 use morec::import::Take;
 use morec::segment::{KernelParams, PpcaParams, Segmentation, kernel_cuts, segment};
+use morec_db::Cutter;
 use serde::Serialize;
 
-use super::args::{Args, CheckedCutter};
+use super::args::Args;
 use crate::json::write_json;
 use crate::output;
 use crate::poses::{PoseReader, PosedClip};
@@ -41,12 +42,12 @@ struct Passes {
 }
 
 /// Reads, cuts and prints every clip.
-pub fn run(cutter: &CheckedCutter, args: &Args) -> Result<ExitCode> {
+pub fn run(args: &Args) -> Result<ExitCode> {
     let reader = args.poses.reader()?;
-    let found = match cutter {
-        CheckedCutter::Kernel(params) if args.plot.is_none() => by_kernel(&reader, params, args)?,
-        CheckedCutter::Kernel(_) => bail!("--plot draws the misfit of --method ppca"),
-        CheckedCutter::Ppca(params) => by_ppca(&reader, params, args)?,
+    let found = match &args.settings.cutter(reader.set.clone())? {
+        Cutter::Kernel(params) if args.plot.is_none() => by_kernel(&reader, params, args)?,
+        Cutter::Kernel(_) => bail!("--plot draws the misfit of --method ppca"),
+        Cutter::Ppca(params, _) => by_ppca(&reader, params, args)?,
     };
     let mut out = crate::console::stdout();
     if args.json {

@@ -6,21 +6,18 @@ use std::process::ExitCode;
 use anyhow::{Result, bail};
 use morec_db::{ClipCuts, ClipFilter, SegmentKind};
 
-use super::args::{Args, CheckedCutter};
+use super::args::Args;
 use crate::database;
 use crate::print;
 use crate::progress::StageBar;
 use crate::table::TextTable;
 
 /// Cuts, keeps and prints.
-pub fn run(path: &Path, cutter: CheckedCutter, args: &Args) -> Result<ExitCode> {
+pub fn run(path: &Path, args: &Args) -> Result<ExitCode> {
     if args.plot.is_some() {
         bail!("--plot draws a clip of a file, not of a database");
     }
-    let cutter = match cutter {
-        CheckedCutter::Kernel(params) => morec_db::Cutter::Kernel(params),
-        CheckedCutter::Ppca(params) => morec_db::Cutter::Ppca(params, args.poses.reader()?.set),
-    };
+    let cutter = args.settings.cutter(args.poses.reader()?.set)?;
     let mut db = database::open(path)?;
     let bar = StageBar::stoppable()?;
     let clips = db.find_clips(&ClipFilter {

@@ -7,11 +7,10 @@ use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
 use morec::TimeSpan;
-use morec::features::{FeatureParams, rows_of_clip};
 use morec::import::ImportOptions;
-use morec_db::labels::{SampleFilter, SampleState};
-use morec_db::search::{Example, Hit, LearnedMetric, SearchIndex, SearchOptions};
+use morec_db::search::{Example, Hit, SearchIndex};
 use morec_db::{ClipFilter, ClipId, ClipInfo, MotionDb, StoredClip};
+use morec_ops::{SearchSettings, example_of_clip, example_of_database};
 use serde::Serialize;
 
 use super::page::{self, Page};
@@ -46,29 +45,8 @@ pub struct Args {
     /// Stop of the example, seconds [default: the clip's end]
     #[arg(long, value_name = "SECS")]
     stop: Option<f64>,
-    /// Find what the example's mirror image is like, too
-    #[arg(long)]
-    mirror: bool,
-    /// At most N
-    #[arg(long, value_name = "N", default_value_t = 20)]
-    limit: usize,
-    /// Only the best of each clip
-    #[arg(long)]
-    one_a_clip: bool,
-    /// Learn from the accepted samples what matters: at least two classes with two samples each
-    #[arg(long)]
-    learned: bool,
-    /// Learn from these classes only
-    #[arg(
-        long,
-        value_name = "CLASSES",
-        value_delimiter = ',',
-        requires = "learned"
-    )]
-    classes: Vec<String>,
-    /// Weight of the exact path against the summary of poses and pace, 0 to 1
-    #[arg(long, value_name = "SHARE", default_value_t = SearchOptions::default().warp_share)]
-    warp_share: f32,
+    #[command(flatten)]
+    settings: SearchSettings,
     /// Write a page with a strip of poses for the example and for each hit, too
     #[arg(long, value_name = "HTML")]
     report: Option<PathBuf>,
@@ -111,16 +89,9 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     if let Some(path) = &args.report {
         page::check(path)?;
     }
-    args.classes
-        .iter()
-        .try_for_each(|class| db.need_class(class))?;
     let index = SearchIndex::of_reader(&db, &StageBar::stoppable()?)?;
     let (example, shown) = example(&db, &index, args)?;
-    let metric = if args.learned {
-        Some(learn(&db, &index, args)?)
-    } else {
-        None
-    };
+    let metric = args.settings.metric(&db, &index)?;
     let names: BTreeMap<ClipId, String> = db
         .clips(&ClipFilter::default())?
         .into_iter()
@@ -128,13 +99,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         .collect();
     let load_secs = begun.elapsed().as_secs_f64();
     let begun = Instant::now();
-    let options = SearchOptions {
-        limit: args.limit,
-        mirror: args.mirror,
-        one_a_clip: args.one_a_clip,
-        warp_share: args.warp_share.clamp(0.0, 1.0),
-    };
-    let hits = index.search_by(&example, &options, metric.as_ref());
+    let hits = index.search_by(&example, &args.settings.options(), metric.as_ref());
     let search_secs = begun.elapsed().as_secs_f64();
     let named = |hit: Hit| NamedHit {
         name: names.get(&hit.clip).cloned().unwrap_or_default(),
@@ -163,17 +128,6 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn learn(db: &MotionDb, index: &SearchIndex, args: &Args) -> Result<LearnedMetric> {
-    let mut samples = db.samples(&SampleFilter {
-        state: Some(SampleState::Accepted),
-        ..Default::default()
-    })?;
-    samples.retain(|s| args.classes.is_empty() || args.classes.contains(&s.class));
-    index
-        .learn(&samples)
-        .context("--learned: label some clips first (morec db label), or search without it")
-}
-
 /// Motion that the example is a stretch of.
 enum Shown {
     Kept(Box<ClipInfo>),
@@ -182,46 +136,27 @@ enum Shown {
 
 /// The example's rows, and the clip they are of.
 fn example(db: &MotionDb, index: &SearchIndex, args: &Args) -> Result<(Example, Shown)> {
-    let short = || {
-        format!(
-            "{}: the example must hold at least 0.1 s of motion",
-            args.example
-        )
-    };
-    if let Ok(clip) = db.find_clip(&args.example) {
-        let stop = args.stop.unwrap_or(clip.duration_secs());
-        let example = index
-            .example(clip.id, args.start..stop)
-            .with_context(short)?;
+    let (name, start, stop) = (&args.example, args.start, args.stop);
+    if let Ok(clip) = db.find_clip(name) {
+        let example = example_of_database(db, index, name, start, stop)?;
         return Ok((example, Shown::Kept(Box::new(clip))));
     }
-    let path = Path::new(&args.example);
+    let path = Path::new(name);
     if !path.exists() && path != Path::new("-") {
-        bail!(
-            "{}: neither a clip of the database nor a file{}",
-            args.example,
-            db.hint_of_clip(&args.example)
-        );
+        let hint = db.hint_of_clip(name);
+        bail!("{name}: neither a clip of the database nor a file{hint}");
     }
     let takes = files::takes(path, &args.read, &ImportOptions::default())?;
-    let take = takes
-        .into_iter()
-        .next()
-        .with_context(|| format!("{}: no clip in it", args.example))?;
-    let (params, bones) = (FeatureParams::default(), take.bones());
-    let rows = rows_of_clip(&take.clip, &take.roles, take.rest(), bones, &params);
+    let take = takes.into_iter().next();
+    let take = take.with_context(|| format!("{name}: no clip in it"))?;
     let stored = StoredClip {
         clip: take.clip,
         roles: take.roles,
         rest: take.report.rest_frames,
     };
-    let tick = |secs: f64| ((secs * params.tick_hz()).round().max(0.0) as usize).min(rows.len());
-    let (start, stop) = (tick(args.start), args.stop.map_or(rows.len(), tick));
-    let span = rows.slice(start..stop.max(start));
-    let all = span.len() == rows.len();
-    let example = SearchIndex::example_of(&span, bones).with_context(short)?;
+    let of = (&stored.clip, &stored.roles, &stored.rest);
     Ok((
-        if all { example } else { example.cut_out() },
+        example_of_clip(of, start, stop)?,
         Shown::File(Box::new(stored)),
     ))
 }

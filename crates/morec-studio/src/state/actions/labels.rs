@@ -3,10 +3,11 @@
 use std::sync::Arc;
 
 use morec_db::labels::{DbSample, NewSample, SampleState as Judged};
+use morec_ops::{CutMethod, CutSettings};
 
 use super::lines::ShownCommand;
 use crate::jobs::JobOutcome;
-use crate::jobs::cut::{self, SegmentMethod};
+use crate::jobs::cut;
 use crate::state::{CutCommand, Drag, Grip, PlayCommand, State, TimelineCommand};
 use crate::store::{Edit, Snapshot};
 use crate::stretch::Stretch;
@@ -296,11 +297,11 @@ impl State {
         }
     }
 
-    fn cut(&mut self, method: SegmentMethod) {
+    fn cut(&mut self, method: CutMethod) {
         let Some(store) = &self.store else { return };
         let db = store.path().to_owned();
         let line = ShownCommand::new("morec cut").word(&db);
-        self.show_line(line.with("--method", method.name()));
+        self.show_line(line.settings(&CutSettings::from(method)));
         self.jobs.start(
             "Cutting clips",
             true,

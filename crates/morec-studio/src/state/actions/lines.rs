@@ -56,7 +56,10 @@ impl ShownCommand {
     /// Adds the options of an operation's settings that are not as usual.
     pub fn settings<S: Serialize + Default>(self, settings: &S) -> Self {
         let options = morec_ops::arguments(settings).into_iter();
-        options.fold(self, |line, [option, value]| line.with(&option, value))
+        options.fold(self, |line, (option, value)| match value {
+            Some(value) => line.with(&option, value),
+            None => line.flag(&option, true),
+        })
     }
 
     /// Adds an option without a value, if `on`.

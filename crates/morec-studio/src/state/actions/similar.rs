@@ -50,7 +50,7 @@ impl State {
         let Some(store) = &self.store else { return };
         let (db, mirror) = (store.path().to_owned(), self.classes.mirror);
         let line = self.search_line(&of);
-        self.show_line(line.map(|line| line.flag("--mirror", mirror)));
+        self.show_line(line.map(|line| line.settings(&similar::settings(mirror))));
         for job in self.jobs.running.iter().filter(|j| j.name == SEARCHING) {
             job.cancel();
         }
