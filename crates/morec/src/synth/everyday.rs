@@ -4,6 +4,8 @@
 //! of the demo's gesture classes, and what people choose as signals is left out: both arms raised alike, one arm
 //! held out by a standing body. A class that lay within the library would be refused together with it.
 
+use rayon::prelude::*;
+
 use super::actor::Actor;
 use super::actor::Perform;
 use super::film::film;
@@ -46,32 +48,30 @@ pub const CONTENTS: [(&str, Perform); 16] = [
 /// The library: clips of everyday motion by several people at 60 Hz, about 17 minutes in all. Each is named
 /// `everyday_<content>_<person>`. The same seed gives the same clips on every platform.
 pub fn everyday(seed: u64) -> Vec<Clip> {
-    let mut clips = Vec::with_capacity(PEOPLE * CONTENTS.len());
-    for number in 0..PEOPLE {
-        let person = Person::draw(seed ^ 0xe7e7, number);
-        for (at, (content, perform)) in CONTENTS.iter().enumerate() {
-            let rng = Rng::for_part(seed, (number * CONTENTS.len() + at) as u64);
-            let mut actor = Actor::new(&person, rng);
-            actor.wait(0.4);
-            let secs = if ["talk", "flail"].contains(content) {
-                ARMS_SECS
-            } else {
-                CLIP_SECS
-            };
-            while actor.now_secs < secs {
-                actor.vary();
-                perform(&mut actor);
-                let pause = actor.rng.range(0.1, 0.8);
-                actor.wait(pause);
-            }
-            clips.push(film(
-                actor,
-                &format!("everyday_{content}_{}", person.name),
-                RATE_HZ,
-            ));
+    let people: Vec<Person> = (0..PEOPLE)
+        .map(|number| Person::draw(seed ^ 0xe7e7, number))
+        .collect();
+    // Each clip draws from numbers of its own: it does not matter which thread makes it.
+    let clip = |at: usize| {
+        let person = &people[at / CONTENTS.len()];
+        let (content, perform) = CONTENTS[at % CONTENTS.len()];
+        let mut actor = Actor::new(person, Rng::for_part(seed, at as u64));
+        actor.wait(0.4);
+        let secs = match content {
+            "talk" | "flail" => ARMS_SECS,
+            _ => CLIP_SECS,
+        };
+        while actor.now_secs < secs {
+            actor.vary();
+            perform(&mut actor);
+            let pause = actor.rng.range(0.1, 0.8);
+            actor.wait(pause);
         }
-    }
-    clips
+        let name = format!("everyday_{content}_{}", person.name);
+        film(actor, &name, RATE_HZ)
+    };
+    let clips = 0..PEOPLE * CONTENTS.len();
+    clips.into_par_iter().map(clip).collect()
 }
 
 /// Stands about: shifting weight, looking, small movements of the hands.

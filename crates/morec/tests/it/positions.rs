@@ -7,7 +7,7 @@ use morec::features::{BoneSet, for_each_pose};
 use morec::formats::{Limits, Loaded, ParseError, c3d, jsonl, table, trc};
 use morec::import::{ImportOptions, Take, normalize};
 use morec::live::{
-    Detection, EventOptions, Frame, Performer, PerformerId, Phase, Recognizer, Rig, recognize_clip,
+    Detection, EventOptions, Frame, Performer, PerformerId, Phase, Rig, recognize_clip,
 };
 use morec::math::Vec3;
 use morec::roles::LEGS;
