@@ -209,8 +209,9 @@ impl Flag {
 /// Foresees whole numbers below 2^63 in absolute value: how many binary digits, then the digits, the first of them by
 /// its chance.
 pub struct Whole {
-    /// A tree over 0 to 63 digits.
     digits: [Chance; 64],
+    /// True if `digits` says of each number of digits whether there are more, false if it is a tree over 0 to 63.
+    is_counted: bool,
     second: [Chance; 64],
 }
 
@@ -218,6 +219,7 @@ impl Default for Whole {
     fn default() -> Self {
         Self {
             digits: [EVEN; 64],
+            is_counted: false,
             second: [EVEN; 64],
         }
     }
@@ -232,15 +234,35 @@ impl Whole {
         whole
     }
 
-    /// A number of at least 0.
-    pub fn natural(&mut self, coder: &mut impl Coder, value: u64) -> u64 {
-        let digits = u64::BITS - value.leading_zeros();
+    /// Counts binary digits one by one: numbers of few digits take fewer steps.
+    pub fn counted() -> Self {
+        Self {
+            is_counted: true,
+            ..Self::default()
+        }
+    }
+
+    /// The number of binary digits, below 64.
+    fn digits(&mut self, coder: &mut impl Coder, digits: usize) -> usize {
+        if self.is_counted {
+            let mut count = 0;
+            while count < 63 && coder.bit(&mut self.digits[count], digits > count) {
+                count += 1;
+            }
+            return count;
+        }
         let mut node = 1;
         for level in (0..6).rev() {
             let bit = coder.bit(&mut self.digits[node], digits >> level & 1 == 1);
             node = node << 1 | usize::from(bit);
         }
-        let digits = node - 64;
+        node - 64
+    }
+
+    /// A number of at least 0.
+    pub fn natural(&mut self, coder: &mut impl Coder, value: u64) -> u64 {
+        let digits = (u64::BITS - value.leading_zeros()) as usize;
+        let digits = self.digits(coder, digits);
         if digits < 2 {
             return digits as u64;
         }
@@ -274,6 +296,21 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
+        #[test]
+        fn counted_numbers_are_read(values in prop::collection::vec((any::<i64>(), 0u32..64), 0..300)) {
+            let numbers = || values.iter().map(|(value, shift)| (value >> shift).max(-i64::MAX));
+            let (mut writer, mut whole) = (Writer::new(), Whole::counted());
+            numbers().for_each(|number| {
+                whole.signed(&mut writer, number);
+            });
+            let bytes = writer.finish();
+            let (mut reader, mut whole) = (Reader::new(&bytes), Whole::counted());
+            for number in numbers() {
+                prop_assert_eq!(whole.signed(&mut reader, 0), number);
+            }
+            prop_assert!(!reader.is_beyond_end());
+        }
+
         #[test]
         fn what_is_written_is_read(values in prop::collection::vec((any::<i64>(), 0u32..63, any::<bool>()), 0..300)) {
             let values: Vec<(i64, bool)> = values.into_iter().map(|(v, s, b)| (v >> s >> 1, b)).collect();
