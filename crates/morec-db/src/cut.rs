@@ -328,8 +328,13 @@ mod tests {
         let done = std::sync::atomic::AtomicBool::new(false);
         std::thread::scope(|scope| {
             let cutting = scope.spawn(|| {
-                while !done.load(Ordering::Relaxed) {
+                // An end, and room for the other writer: if that one fails, nobody waits for ever.
+                for _ in 0..10_000 {
+                    if done.load(Ordering::Relaxed) {
+                        break;
+                    }
                     other.cut_by_hand(&clip, &[1.5]).unwrap();
+                    std::thread::sleep(std::time::Duration::from_millis(1));
                 }
             });
             for change in 1..60 {

@@ -15,7 +15,9 @@ mod write;
 pub use classes::ClassCount;
 pub use plan::{ChangedLabel, LabelChange, LabelOptions, Labelled};
 pub(crate) use read::list;
-pub use sample::{Added, DbSample, GROUPED_BY, NewSample, SampleFilter, SampleId, SampleState};
+pub use sample::{
+    Added, DbSample, GROUPED_BY, JudgedCounts, NewSample, SampleFilter, SampleId, SampleState,
+};
 pub use whole::WholeClip;
 
 #[cfg(test)]

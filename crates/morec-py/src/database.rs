@@ -7,7 +7,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use morec::files::{FileReader, list};
 use morec::labels::{ClipLength, Sample};
 use morec::pivots::PivotSet;
-use morec_db::labels::{NewSample, SampleFilter, SampleId, SampleState};
+use morec_db::labels::{NewSample, SampleFilter, SampleState};
 use morec_db::search::{Example, SearchIndex};
 use morec_db::{
     ClipFilter, ClipId, ClipInfo, ClipUpdate, DbError, ImportOutcome, MotionDb, ProposeOptions,
@@ -478,24 +478,8 @@ impl PyDatabase {
         classes: Vec<String>,
     ) -> PyResult<(usize, usize)> {
         self.with(py, |db| {
-            let all = db.samples(&SampleFilter {
-                state: Some(SampleState::Proposed),
-                ..SampleFilter::default()
-            })?;
-            let (mut accepted, mut rejected): (Vec<SampleId>, Vec<SampleId>) = Default::default();
-            for s in all
-                .iter()
-                .filter(|s| classes.is_empty() || classes.contains(&s.class))
-            {
-                let score = s.score.unwrap_or(0.0);
-                if accept.is_some_and(|least| score >= least) {
-                    accepted.push(s.id);
-                } else if reject.is_some_and(|least| score < least) {
-                    rejected.push(s.id);
-                }
-            }
-            db.judge_both(&accepted, &rejected, "user")?;
-            Ok((accepted.len(), rejected.len()))
+            let judged = db.judge_by_score(&classes, (accept, reject), "user")?;
+            Ok((judged.accepted, judged.rejected))
         })
     }
 

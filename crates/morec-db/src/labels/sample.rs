@@ -9,6 +9,15 @@ use morec::TimeSpan;
 )]
 pub struct SampleId(pub i64);
 
+/// Number of proposals that were judged, and of those that are left.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[allow(missing_docs)] // The names say it.
+pub struct JudgedCounts {
+    pub accepted: usize,
+    pub rejected: usize,
+    pub left: usize,
+}
+
 /// A sample as it is kept.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct DbSample {

@@ -4,7 +4,9 @@ use rusqlite::{Connection, OptionalExtension, params};
 
 use super::plan::LabelOptions;
 use super::read::{find, list};
-use super::sample::{Added, DbSample, NewSample, SampleFilter, SampleId, SampleState};
+use super::sample::{
+    Added, DbSample, JudgedCounts, NewSample, SampleFilter, SampleId, SampleState,
+};
 use super::write::{add, alter};
 use crate::history::counted;
 use crate::time::now_secs;
@@ -114,25 +116,40 @@ impl MotionDb {
         self.edit(&what, |conn| judge(conn, samples, state, by))
     }
 
-    /// Accepts samples and rejects others, as one step.
+    /// Accepts the proposals of `classes` (of all, if none is named) with at least the score `accept`, and rejects the others below
+    /// `reject`, as one step. A proposal without a score has 0.
     ///
     /// # Errors
     /// The database cannot be written.
-    pub fn judge_both(
+    pub fn judge_by_score(
         &mut self,
-        accepted: &[SampleId],
-        rejected: &[SampleId],
+        classes: &[String],
+        (accept, reject): (Option<f64>, Option<f64>),
         by: &str,
-    ) -> Result<(), DbError> {
-        let what = format!(
-            "accept {} and reject {}",
-            accepted.len(),
-            counted(rejected.len(), "sample")
-        );
-        self.edit(&what, |conn| {
-            judge(conn, accepted, SampleState::Accepted, by)?;
-            judge(conn, rejected, SampleState::Rejected, by)?;
-            Ok(())
+    ) -> Result<JudgedCounts, DbError> {
+        self.edit("judge proposals by their scores", |conn| {
+            let proposed = SampleFilter {
+                state: Some(SampleState::Proposed),
+                ..SampleFilter::default()
+            };
+            let all = list(conn, &proposed)?;
+            let (mut accepted, mut rejected) = (Vec::new(), Vec::new());
+            let wanted = |s: &&DbSample| classes.is_empty() || classes.contains(&s.class);
+            for sample in all.iter().filter(wanted) {
+                let score = sample.score.unwrap_or(0.0);
+                if accept.is_some_and(|least| score >= least) {
+                    accepted.push(sample.id);
+                } else if reject.is_some_and(|least| score < least) {
+                    rejected.push(sample.id);
+                }
+            }
+            judge(conn, &accepted, SampleState::Accepted, by)?;
+            judge(conn, &rejected, SampleState::Rejected, by)?;
+            Ok(JudgedCounts {
+                accepted: accepted.len(),
+                rejected: rejected.len(),
+                left: all.len() - accepted.len() - rejected.len(),
+            })
         })
     }
 

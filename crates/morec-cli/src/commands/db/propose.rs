@@ -6,7 +6,7 @@ use std::process::ExitCode;
 
 use anyhow::Result;
 use morec::TimeSpan;
-use morec_db::labels::{SampleFilter, SampleId, SampleState};
+use morec_db::labels::{JudgedCounts, SampleFilter, SampleState};
 use morec_db::{ClipFilter, ClipId, MotionDb, Proposal, ProposeOptions, most_informative};
 use serde::Serialize;
 
@@ -90,32 +90,15 @@ fn proposed(db: &MotionDb) -> Result<Vec<morec_db::labels::DbSample>> {
 
 fn judge(args: &Args) -> Result<ExitCode> {
     let mut db = database::open(&args.db)?;
-    let all = proposed(&db)?;
-    let wanted = |s: &&morec_db::labels::DbSample| {
-        args.classes.is_empty() || args.classes.contains(&s.class)
-    };
-    let score = |s: &morec_db::labels::DbSample| s.score.unwrap_or(0.0);
-    let pick = |holds: &dyn Fn(f64) -> bool| -> Vec<SampleId> {
-        all.iter()
-            .filter(wanted)
-            .filter(|s| holds(score(s)))
-            .map(|s| s.id)
-            .collect()
-    };
-    let accepted = args
-        .accept
-        .map_or_else(Vec::new, |least| pick(&|score| score >= least));
-    let rejected = args.reject.map_or_else(Vec::new, |least| {
-        pick(&|score| score < least && args.accept.is_none_or(|accept| score < accept))
-    });
-    db.judge_both(&accepted, &rejected, "user")?;
-    let (accepted, rejected) = (accepted.len(), rejected.len());
-    let left = all.len() - accepted - rejected;
+    let judged = db.judge_by_score(&args.classes, (args.accept, args.reject), "user")?;
     if args.json {
-        print::print_json(
-            &serde_json::json!({ "accepted": accepted, "rejected": rejected, "left": left }),
-        )?;
+        print::print_json(&judged)?;
     } else {
+        let JudgedCounts {
+            accepted,
+            rejected,
+            left,
+        } = judged;
         print::print(format_args!(
             "{accepted} accepted, {rejected} rejected, {left} left to look at\n"
         ))?;
