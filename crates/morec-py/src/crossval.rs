@@ -139,8 +139,8 @@ impl PyCrossval {
     fn __repr__(&self) -> String {
         let shown = |value: Option<f64>| value.map_or("-".to_owned(), |v| format!("{v:.3}"));
         format!(
-            "<morec.Crossval without {}: accuracy {}, F1 {}, {} of {} samples found>",
-            self.by.said(),
+            "<morec.Crossval by {}: accuracy {}, F1 {}, {} of {} samples found>",
+            format!("{:?}", self.by).to_lowercase(),
             shown(self.accuracy()),
             shown(self.f1()),
             self.measures.evaluation.events.matched,

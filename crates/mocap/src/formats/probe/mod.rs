@@ -49,12 +49,13 @@ pub fn probe(bytes: &[u8], name: &str) -> Result<Format, ParseError> {
     let expected = match format_of_name(name) {
         // What it is called and is not.
         Some(format) => format!("{}, as its name says", format.name()),
-        None => EXPECTED.to_owned(),
+        None => {
+            let titles: Vec<&str> = READ.iter().map(|(_, known)| known.title).collect();
+            titles.join(", ")
+        }
     };
     Err(ParseError::new(Place::File, expected, found))
 }
-
-const EXPECTED: &str = "BVH, AMC, FBX, glTF, VRM, MVNX, AMASS, OpenSim MOT, C3D, TRC, MCLIP, JSON lines or a table of positions";
 
 /// The format that a file's ending promises.
 pub fn format_of_name(name: &str) -> Option<Format> {
