@@ -243,9 +243,9 @@ def test_cross_validation_measures_and_reports(
     again = morec.evaluate(measured.truth, measured.found, clips)
     assert again["thesis"] == measured.evaluation["thesis"]
     assert "by person" in repr(measured)
-    with pytest.raises(ValueError, match="by: expected"):
+    with pytest.raises(ValueError, match="by=shoe: .*expected one of"):
         morec.crossval(clips, labels, by="shoe")
-    with pytest.raises(ValueError, match="perturb:"):
+    with pytest.raises(ValueError, match="perturb=.*louder"):
         morec.crossval(clips, labels, perturb=["louder"])
     with pytest.raises(ValueError, match="lies in the stream"):
         morec.evaluate([{"clip": "x", "class": "a", "start_secs": 0, "stop_secs": 1}], [], {"y": 3.0})
