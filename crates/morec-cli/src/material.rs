@@ -122,7 +122,7 @@ impl MaterialArgs {
     /// A clip's path is its name here.
     fn load_db(&self, path: &Path, unknown: &[PathBuf]) -> Result<ClipMaterial> {
         let db = database::open_read_only(path)?;
-        let infos = db.clips(&ClipFilter::default())?;
+        let mut infos = db.clips(&ClipFilter::default())?;
         let (mut files, mut names) = (Vec::new(), BTreeSet::new());
         let mut aside = |given: &[PathBuf]| -> Result<BTreeSet<PathBuf>> {
             let mut set = BTreeSet::new();
@@ -145,14 +145,13 @@ impl MaterialArgs {
         }
         let labels = accepted_labels(&db)?;
         names.extend(labels.rows.iter().map(|row| row.clip.clone()));
-        let wanted =
-            |info: &ClipInfo| names.contains(&info.name) && !self.exclude.contains(&info.name);
+        infos.retain(|info| names.contains(&info.name) && !self.exclude.contains(&info.name));
         let loaded = |(info, clip): (ClipInfo, TrainClip)| LoadedClip {
             path: PathBuf::from(&info.name),
             file_bytes: std::fs::metadata(&info.path).map_or(0, |m| m.len()),
             clip,
         };
-        let stored = clips_to_train(&db, wanted)?;
+        let stored = clips_to_train(&db, infos)?;
         let mut clips: Vec<LoadedClip> = stored.into_iter().map(loaded).collect();
         if !files.is_empty() {
             clips.extend(load_clips(&files, &self.read, &self.import_options()?)?);

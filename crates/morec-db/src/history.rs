@@ -172,11 +172,19 @@ impl MotionDb {
         what: &str,
         change: impl FnOnce(&Connection) -> Result<T, DbError>,
     ) -> Result<T, DbError> {
+        self.edit_named(|conn| Ok((change(conn)?, what.to_owned())))
+    }
+
+    /// The same where only `change` knows what the step is called.
+    pub(crate) fn edit_named<T>(
+        &mut self,
+        change: impl FnOnce(&Connection) -> Result<(T, String), DbError>,
+    ) -> Result<T, DbError> {
         let program = self.program.clone();
         let tx = self.write()?;
-        let recording = record(&tx, what, None, &program)?;
-        let done = change(&tx)?;
-        recorded(&tx, what, &recording)?;
+        let recording = record(&tx, "", None, &program)?;
+        let (done, what) = change(&tx)?;
+        recorded(&tx, &what, &recording)?;
         tx.commit()?;
         Ok(done)
     }

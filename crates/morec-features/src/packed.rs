@@ -4,7 +4,7 @@
 //! follows from where it pointed and how it turned; a bone moves at right angles to its direction, so that two
 //! coordinates of its velocity give the third; and motion goes on as it began. What nothing foretells goes through an
 //! adaptive range coder. The first `u32` is the number of rows; its top bit says that binary digits are [counted](Whole::counted), as
-//! they are written since: before, they were a tree, which takes twice as long to read.
+//! in all rows that are written; rows of before have a tree of digits, which takes half as long again to read.
 
 use mocap::coder::{Coder, Reader, Whole, Writer};
 

@@ -148,3 +148,15 @@ fn measured<K: Copy>(results: &[(K, Tested)]) -> Result<Vec<(K, Evaluation)>, Ev
 fn evaluation(tested: &Tested) -> Result<Evaluation, EvalError> {
     Evaluation::of(&tested.streams, &tested.truths, &tested.founds)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_left_out_follows_from_people_and_clips() {
+        assert_eq!(LeftOut::usual(2, 3), LeftOut::Person);
+        assert_eq!(LeftOut::usual(1, 2), LeftOut::Clip);
+        assert_eq!(LeftOut::usual(0, 1), LeftOut::Half);
+    }
+}

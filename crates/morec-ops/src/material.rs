@@ -1,5 +1,7 @@
 //! What a database has to train from.
 
+use std::collections::BTreeSet;
+
 use morec::labels::{Extent, Label, Labels};
 use morec::train::{StreamKind, TrainClip, TrainingData};
 use morec_db::labels::{DbSample, SampleFilter, SampleState};
@@ -33,16 +35,14 @@ pub fn accepted_labels(db: &MotionDb) -> Result<Labels, DbError> {
     })
 }
 
-/// The clips of a database that `wanted` names, as labelled ones, by name.
+/// Clips of a database, as labelled ones.
 ///
 /// # Errors
 /// The database cannot be read.
 pub fn clips_to_train(
     db: &MotionDb,
-    wanted: impl Fn(&ClipInfo) -> bool,
+    infos: Vec<ClipInfo>,
 ) -> Result<Vec<(ClipInfo, TrainClip)>, DbError> {
-    let mut infos = db.clips(&ClipFilter::default())?;
-    infos.retain(wanted);
     let ids: Vec<ClipId> = infos.iter().map(|info| info.id).collect();
     let clip = |(info, stored): (ClipInfo, StoredClip)| {
         let clip = TrainClip {
@@ -72,11 +72,13 @@ pub fn training_data(db: &MotionDb, classes: &[String]) -> Result<TrainingData, 
         labels.rows.retain(|row| classes.contains(&row.class));
     }
     let background = db.background(classes)?.clips;
-    let is_background = |info: &ClipInfo| background.iter().any(|b| b.id == info.id);
-    let taught = |info: &ClipInfo| labels.rows.iter().any(|row| row.clip == info.name);
-    let clips = clips_to_train(db, |info| is_background(info) || taught(info))?;
-    let clips = clips.into_iter().map(|(info, clip)| TrainClip {
-        source: match is_background(&info) {
+    let background: BTreeSet<ClipId> = background.iter().map(|info| info.id).collect();
+    let taught: BTreeSet<&str> = labels.rows.iter().map(|row| row.clip.as_str()).collect();
+    let mut infos = db.clips(&ClipFilter::default())?;
+    infos.retain(|info| background.contains(&info.id) || taught.contains(info.name.as_str()));
+    let clips = clips_to_train(db, infos)?.into_iter();
+    let clips = clips.map(|(info, clip)| TrainClip {
+        source: match background.contains(&info.id) {
             true => StreamKind::Background,
             false => StreamKind::Labelled,
         },

@@ -18,7 +18,7 @@ pub(super) const FORMAT: FormatDescriptor = FormatDescriptor {
     endings: &["csm"],
     looks_so: |h| !h.is_binary() && h.says("$order") && h.says("$points"),
     up: None,
-    read: |s| Ok(s.at_rate(read(s.bytes, s.name, s.rate_hz, s.limits)?)),
+    read: |file| Ok(file.at_rate(read(file.bytes, file.name, file.rate_hz, file.limits)?)),
 };
 
 /// Frames a second where the file does not say.

@@ -3,10 +3,10 @@
 //! knees and elbows, an angle about Z. The skeleton is not in the file; its lengths are those of the humanoid that all of them
 //! are for, as its published model (URDF) has them.
 
-use super::descriptor::FormatDescriptor;
 use serde_json::Value;
 
 use super::builder::{ClipBuilder, check_size};
+use super::descriptor::FormatDescriptor;
 use super::{Limits, Loaded, ParseError, Place, Warning, json};
 use crate::clip::Joint;
 use crate::math::{Axis, Quat, Vec3, rotation_of_xyzw};
@@ -19,7 +19,7 @@ pub(super) const FORMAT: FormatDescriptor = FormatDescriptor {
     endings: &["deepmimic"],
     looks_so: |h| looks_so(h.bytes),
     up: Some(Axis::Y),
-    read: |s| Ok(s.at_rate(read(s.bytes, s.name, s.limits)?)),
+    read: |file| Ok(file.at_rate(read(file.bytes, file.name, file.limits)?)),
 };
 
 /// How a joint turns in a frame.

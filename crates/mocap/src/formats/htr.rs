@@ -5,11 +5,11 @@
 //! A segment's frame in that of its parent is `(T_base + T) · R_base · R`. Angles turn about the axes in the order that the header
 //! names, as in BVH: `ZYX` is `R_z · R_y · R_x`. Factors of bone lengths are left out: producers disagree about what they mean.
 
-use super::descriptor::FormatDescriptor;
 use std::collections::HashMap;
 
 use super::builder::{ClipBuilder, check_size};
 use super::cells::{Decimal, lines, number};
+use super::descriptor::FormatDescriptor;
 use super::{Limits, Loaded, ParseError, Place, Warning};
 use crate::clip::Joint;
 use crate::math::{Axis, Quat, Vec3};
@@ -22,7 +22,7 @@ pub(super) const FORMAT: FormatDescriptor = FormatDescriptor {
     endings: &["htr", "htr2"],
     looks_so: |h| !h.is_binary() && h.says("[segmentnames&hierarchy]") && !h.says("filetype gtr"),
     up: None,
-    read: |s| Ok(s.at_rate(read(s.bytes, s.name, s.limits)?)),
+    read: |file| Ok(file.at_rate(read(file.bytes, file.name, file.limits)?)),
 };
 
 /// Frames a second of a file that does not say.

@@ -7,11 +7,11 @@
 //! `"hand": "left"` or `"right"` says whose points those are whose names say no side, and `"points": [[x, y, z], …]` are points in the order
 //! of their numbers in a known model, of a hand or a body; or `{"left": […], "right": […]}` for both hands.
 
-use super::descriptor::FormatDescriptor;
-use super::head::Head;
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::cells::lines;
+use super::descriptor::FormatDescriptor;
+use super::head::Head;
 use super::points::{Point, PointTable, UNSEEN, check_size};
 use super::timing::{Clock, Schedule};
 use super::{Limits, Loaded, ParseError, Place, Warning, json};
@@ -29,7 +29,7 @@ pub(super) const FORMAT: FormatDescriptor = FormatDescriptor {
     endings: &["jsonl", "ndjson"],
     looks_so: is_jsonl,
     up: None,
-    read: |s| read(s.bytes, s.name, s.rate_hz, s.limits),
+    read: |file| read(file.bytes, file.name, file.rate_hz, file.limits),
 };
 
 /// An object with poses on the first line.

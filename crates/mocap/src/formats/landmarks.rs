@@ -8,11 +8,11 @@ mod hands;
 mod matrix;
 mod rows;
 
-use super::descriptor::FormatDescriptor;
 use std::collections::HashMap;
 
 use serde_json::{Map, Value};
 
+use super::descriptor::FormatDescriptor;
 use super::points::{Point, UNSEEN, check_size};
 use super::table::{axis_of, to_seconds};
 use super::timing::{Clock, TimedPoints};
@@ -27,7 +27,7 @@ pub(super) const FORMAT: FormatDescriptor = FormatDescriptor {
     endings: &["landmarks"],
     looks_so: |h| !h.is_binary() && looks_so(h.bytes),
     up: None,
-    read: |s| Ok(s.at_rate(read(s.bytes, s.name, s.rate_hz, s.limits)?)),
+    read: |file| Ok(file.at_rate(read(file.bytes, file.name, file.rate_hz, file.limits)?)),
 };
 
 /// Frames a second of a document without times.

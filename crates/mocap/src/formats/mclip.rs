@@ -12,7 +12,7 @@ pub(super) const FORMAT: FormatDescriptor = FormatDescriptor {
     endings: &["mclip"],
     looks_so: |h| h.bytes.starts_with(crate::smooth::MAGIC),
     up: None,
-    read: |s| Ok(s.at_rate(read(s.bytes, s.name, s.limits)?)),
+    read: |file| Ok(file.at_rate(read(file.bytes, file.name, file.limits)?)),
 };
 
 /// Rotations that are made of a file however small it is: an hour of a body that stands still,

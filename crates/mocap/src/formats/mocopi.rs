@@ -8,8 +8,7 @@ use super::builder::{ClipBuilder, check_size};
 use super::descriptor::FormatDescriptor;
 use super::{Limits, Loaded, ParseError, Place, Warning, keys};
 use crate::clip::Joint;
-use crate::math::Axis;
-use crate::math::{Quat, Vec3};
+use crate::math::{Axis, Quat, Vec3};
 
 pub(super) const FORMAT: FormatDescriptor = FormatDescriptor {
     name: "mocopi",
@@ -18,7 +17,7 @@ pub(super) const FORMAT: FormatDescriptor = FormatDescriptor {
     endings: &["mocopi"],
     looks_so: |h| looks_so(h.bytes),
     up: Some(Axis::Y),
-    read: |s| Ok(s.at_rate(read(s.bytes, s.name, s.limits)?)),
+    read: |file| Ok(file.at_rate(read(file.bytes, file.name, file.limits)?)),
 };
 
 /// Rate if the packets have no times.

@@ -2,10 +2,10 @@
 //! number of bodies, and for each body a line of its own, the number of joints, and a line for each joint that begins with its
 //! place in metres and ends with how well it was tracked.
 
-use super::descriptor::FormatDescriptor;
 use std::collections::BTreeMap;
 
 use super::cells::lines;
+use super::descriptor::FormatDescriptor;
 use super::points::{Point, PointTable, UNSEEN, check_size};
 use super::{Limits, Loaded, ParseError, Place, Warning};
 use crate::math::Vec3;
@@ -17,7 +17,7 @@ pub(super) const FORMAT: FormatDescriptor = FormatDescriptor {
     endings: &["skeleton"],
     looks_so: |h| !h.is_binary() && looks_so(h.bytes),
     up: None,
-    read: |s| Ok(s.at_rate(read(s.bytes, s.name, s.rate_hz, s.limits)?)),
+    read: |file| Ok(file.at_rate(read(file.bytes, file.name, file.rate_hz, file.limits)?)),
 };
 
 /// In the order of `JointType` of the Kinect for Windows SDK 2.0.

@@ -4,10 +4,10 @@
 //! An array is (frames, points, 3), with a fourth number for how sure a point is, with people before the points, or flat:
 //! (frames, 3 × points). Points without names are known by their number.
 
-use super::descriptor::FormatDescriptor;
 use std::collections::BTreeMap;
 
 use super::builder::{self, ClipBuilder};
+use super::descriptor::FormatDescriptor;
 use super::npy::{self, Array};
 use super::points::{BODY_OF_THESE, Point, UNSEEN, WITH_HANDS_AND_FACE, check_size};
 use super::timing::{Clock, TimedPoints};
@@ -23,7 +23,7 @@ pub(super) const FORMAT: FormatDescriptor = FormatDescriptor {
     endings: &["npy"],
     looks_so: |h| h.bytes.starts_with(b"\x93NUMPY"),
     up: None,
-    read: |s| Ok(s.at_rate(read(s.bytes, s.name, s.rate_hz, s.limits)?)),
+    read: |file| Ok(file.at_rate(read(file.bytes, file.name, file.rate_hz, file.limits)?)),
 };
 
 /// Frames a second where nothing says.

@@ -22,7 +22,7 @@ pub(super) const FORMAT: FormatDescriptor = FormatDescriptor {
             && !h.contains(b"vertexanimation")
     },
     up: None,
-    read: |s| Ok(s.at_rate(read(s.bytes, s.name, s.limits)?)),
+    read: |file| Ok(file.at_rate(read(file.bytes, file.name, file.limits)?)),
 };
 
 /// Frames a second; the files do not say.

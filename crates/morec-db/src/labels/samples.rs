@@ -127,7 +127,7 @@ impl MotionDb {
         (accept, reject): (Option<f64>, Option<f64>),
         by: &str,
     ) -> Result<JudgedCounts, DbError> {
-        self.edit("judge proposals by their scores", |conn| {
+        self.edit_named(|conn| {
             let proposed = SampleFilter {
                 state: Some(SampleState::Proposed),
                 ..SampleFilter::default()
@@ -145,11 +145,17 @@ impl MotionDb {
             }
             judge(conn, &accepted, SampleState::Accepted, by)?;
             judge(conn, &rejected, SampleState::Rejected, by)?;
-            Ok(JudgedCounts {
+            let what = format!(
+                "accept {} and reject {}",
+                accepted.len(),
+                counted(rejected.len(), "sample")
+            );
+            let counts = JudgedCounts {
                 accepted: accepted.len(),
                 rejected: rejected.len(),
                 left: all.len() - accepted.len() - rejected.len(),
-            })
+            };
+            Ok((counts, what))
         })
     }
 

@@ -77,7 +77,7 @@ pub fn align(
     match aligned(path, of, with, progress) {
         Ok(Some(aligned)) => Ok(Arc::new(aligned)),
         Ok(None) => Err(JobError::Failed(none)),
-        Err(error) => Err(JobError::of_db("Nothing was compared", &error)),
+        Err(error) => Err(JobError::of("Nothing was compared", error)),
     }
 }
 

@@ -54,8 +54,7 @@ pub fn cut(
     only: &[ClipId],
     progress: &JobProgress,
 ) -> Result<CutSummary, JobError> {
-    cut_all(db, method, only, progress)
-        .map_err(|error| JobError::of_operation("Cutting stopped", &error))
+    cut_all(db, method, only, progress).map_err(|error| JobError::of("Cutting stopped", error))
 }
 
 fn cut_all(

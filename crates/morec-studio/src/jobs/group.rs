@@ -89,7 +89,7 @@ pub fn group(path: &Path, cuts: bool, progress: &JobProgress) -> Result<Clustere
             .to_owned(),
         )),
         Ok(groups) => Ok(groups),
-        Err(error) => Err(JobError::of_db("Grouping stopped", &error)),
+        Err(error) => Err(JobError::of("Grouping stopped", error)),
     }
 }
 

@@ -183,7 +183,7 @@ pub fn judge(
             by,
         })
     };
-    let judged = judged().map_err(|error| JobError::of_operation("Not judged", &error))?;
+    let judged = judged().map_err(|error| JobError::of("Not judged", error))?;
     Ok(Box::new(judged))
 }
 

@@ -85,7 +85,7 @@ pub fn is_labels(path: &Path) -> bool {
 
 /// Reads files of labels, and finds what they would change in the database at `db`.
 pub fn read(db: &Path, paths: &[PathBuf]) -> Result<LabelFiles, JobError> {
-    let failed = |error: DbError| JobError::of_db("Labels were not read", &error);
+    let failed = |error: DbError| JobError::of("Labels were not read", error);
     let mut db = MotionDb::open(db).map_err(failed)?;
     let clips = db.clips(&ClipFilter::default()).map_err(failed)?;
     let lengths = clip_lengths(&clips);

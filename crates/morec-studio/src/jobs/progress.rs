@@ -5,7 +5,6 @@ use std::sync::{Mutex, PoisonError};
 
 use morec::progress::Progress;
 use morec::train::DataError;
-use morec_db::DbError;
 use morec_ops::OperationError;
 
 use crate::store::Wake;
@@ -77,21 +76,13 @@ pub enum JobError {
 }
 
 impl JobError {
-    /// Of an error of an operation, with what that means before it.
-    pub(super) fn of_operation(what: &str, error: &OperationError) -> Self {
-        match error {
+    /// Of an error of an operation or of the database, with what that means before it.
+    pub(super) fn of(what: &str, error: impl Into<OperationError>) -> Self {
+        match error.into() {
             error if error.is_cancelled() => Self::Cancelled,
             OperationError::Data(DataError::NoSample) => {
                 Self::Failed("Nothing to learn from: label a few motions first".to_owned())
             }
-            error => Self::Failed(format!("{what}: {error}")),
-        }
-    }
-
-    /// Of an error of the database, with what that means before it.
-    pub(super) fn of_db(what: &str, error: &DbError) -> Self {
-        match error {
-            DbError::Cancelled => Self::Cancelled,
             error => Self::Failed(format!("{what}: {error}")),
         }
     }

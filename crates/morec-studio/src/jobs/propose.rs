@@ -13,5 +13,5 @@ pub fn propose(path: &Path, progress: &JobProgress) -> Result<usize, JobError> {
         .and_then(|mut db| db.propose_and_keep(&ProposeOptions::default(), progress));
     let likely = |p: &&Proposal| f64::from(p.score) >= UNLIKELY;
     kept.map(|kept| kept.iter().filter(likely).count())
-        .map_err(|e| JobError::of_db("Nothing was proposed", &e))
+        .map_err(|e| JobError::of("Nothing was proposed", e))
 }

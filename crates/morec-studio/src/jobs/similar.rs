@@ -53,7 +53,7 @@ pub fn find(
             "Nothing was searched: the stretch is too short, or no body part of its clip is known"
                 .to_owned(),
         )),
-        Err(error) => Err(JobError::of_db("Nothing was searched", &error)),
+        Err(error) => Err(JobError::of("Nothing was searched", error)),
     }
 }
 

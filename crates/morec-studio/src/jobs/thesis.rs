@@ -69,7 +69,7 @@ pub fn run(
     progress: &JobProgress,
 ) -> Result<Arc<Thesis>, JobError> {
     let trained = trained(path, classes, params, progress).map(Arc::new);
-    trained.map_err(|error| JobError::of_operation("The method of 2009 was not trained", &error))
+    trained.map_err(|error| JobError::of("The method of 2009 was not trained", error))
 }
 
 fn trained(

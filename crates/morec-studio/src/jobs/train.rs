@@ -36,7 +36,7 @@ pub fn run(
         Ok((index.to_bytes()?, index, report))
     };
     let (bytes, index, report) =
-        trained().map_err(|error| JobError::of_operation("Training stopped", &error))?;
+        trained().map_err(|error| JobError::of("Training stopped", error))?;
     Ok(Box::new(TrainedIndex {
         index: Arc::new(index),
         bytes,

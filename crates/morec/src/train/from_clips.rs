@@ -183,7 +183,6 @@ pub fn build_train_set(
         bodiless,
         lacking: left_out
             .into_iter()
-            .filter(|(clip, _)| clip.source != StreamKind::Everyday)
             .map(|(clip, _)| clip.name.clone())
             .collect(),
     }

@@ -21,10 +21,10 @@ mod source;
 mod text;
 mod write;
 
-use super::descriptor::FormatDescriptor;
-use super::head::Head;
 use std::io::{Read, Seek};
 
+use super::descriptor::FormatDescriptor;
+use super::head::Head;
 pub use positions::PositionChannels;
 pub use write::write;
 
@@ -44,13 +44,13 @@ pub(super) const FORMAT: FormatDescriptor = FormatDescriptor {
     endings: &["bvh"],
     looks_so: is_bvh,
     up: None,
-    read: |s| {
+    read: |file| {
         let options = BvhOptions {
-            positions: s.positions,
-            rate_hz: s.rate_hz,
+            positions: file.positions,
+            rate_hz: file.rate_hz,
             ..BvhOptions::default()
         };
-        read(s.bytes, s.name, &options, s.limits)
+        read(file.bytes, file.name, &options, file.limits)
     },
 };
 

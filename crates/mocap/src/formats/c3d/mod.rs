@@ -29,7 +29,7 @@ pub(super) const FORMAT: FormatDescriptor = FormatDescriptor {
     endings: &["c3d"],
     looks_so: |h| h.bytes.len() >= 512 && matches!(h.bytes, [1..128, 0x50, ..]) && h.is_binary(),
     up: None,
-    read: |s| read(s.bytes, s.name, s.rate_hz, s.limits),
+    read: |file| read(file.bytes, file.name, file.rate_hz, file.limits),
 };
 
 /// Frames a second of a file that does not say.

@@ -31,7 +31,7 @@ pub(super) const FORMAT: FormatDescriptor = FormatDescriptor {
     endings: &["gltf", "glb", "vrm", "vrma"],
     looks_so: |h| h.bytes.starts_with(b"glTF") || is_gltf(h),
     up: Some(Axis::Y),
-    read: |s| Ok(s.timed(read(s.bytes, s.name, s.beside, s.limits)?)),
+    read: |file| Ok(file.timed(read(file.bytes, file.name, file.beside, file.limits)?)),
 };
 
 /// An object with glTF's words.

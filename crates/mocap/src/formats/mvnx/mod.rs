@@ -6,16 +6,15 @@
 
 mod body;
 
-use super::descriptor::FormatDescriptor;
-use crate::math::Axis;
 use roxmltree::{Document, Node};
 
 use self::body::MvnxSegment;
 use super::builder::{ClipBuilder, check_size, clip_names};
+use super::descriptor::FormatDescriptor;
 use super::xml::{child, is, limits_beside, parse, place, text_of};
 use super::{Limits, Loaded, ParseError, Warning};
 use crate::clip::{Clip, Joint};
-use crate::math::{Quat, Vec3};
+use crate::math::{Axis, Quat, Vec3};
 
 pub(super) const FORMAT: FormatDescriptor = FormatDescriptor {
     name: "mvnx",
@@ -24,7 +23,7 @@ pub(super) const FORMAT: FormatDescriptor = FormatDescriptor {
     endings: &["mvnx"],
     looks_so: |h| h.starts("<") && h.contains(b"<mvnx"),
     up: Some(Axis::Z),
-    read: |s| Ok(s.at_rate(read(s.bytes, s.name, s.limits)?)),
+    read: |file| Ok(file.at_rate(read(file.bytes, file.name, file.limits)?)),
 };
 
 /// Rate if a file has none.

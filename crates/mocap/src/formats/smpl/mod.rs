@@ -6,11 +6,11 @@
 
 mod body;
 
-use super::descriptor::FormatDescriptor;
-use super::head::Head;
 use std::collections::BTreeMap;
 
 use super::builder::{ClipBuilder, check_size};
+use super::descriptor::FormatDescriptor;
+use super::head::Head;
 use super::npy::{self, Array};
 use super::{Limits, Loaded, ParseError, Place, Warning, container};
 use crate::math::{Quat, Vec3};
@@ -22,7 +22,7 @@ pub(super) const FORMAT: FormatDescriptor = FormatDescriptor {
     endings: &["npz"],
     looks_so: begins_with_array,
     up: None,
-    read: |s| Ok(s.at_rate(read(s.bytes, s.name, s.limits)?)),
+    read: |file| Ok(file.at_rate(read(file.bytes, file.name, file.limits)?)),
 };
 
 /// A zip archive whose first file is an array.

@@ -35,7 +35,7 @@ pub(super) const FORMAT: FormatDescriptor = FormatDescriptor {
         !h.is_binary() && (!opensim::is_table(h) || opensim::has_markers(h)) && looks_so(h.bytes)
     },
     up: None,
-    read: |s| read(s.bytes, s.name, s.rate_hz, s.limits),
+    read: |file| read(file.bytes, file.name, file.rate_hz, file.limits),
 };
 
 /// TableFrames a second of a table without times.

@@ -23,7 +23,7 @@ pub(super) const FORMAT: FormatDescriptor = FormatDescriptor {
     endings: &["trc"],
     looks_so: is_trc,
     up: None,
-    read: |s| read(s.bytes, s.name, s.rate_hz, s.limits),
+    read: |file| read(file.bytes, file.name, file.rate_hz, file.limits),
 };
 
 /// `PathFileType`, or a row that begins with `Frame#` and names points after a row of TRC's header.
