@@ -243,7 +243,7 @@ impl KeptClip {
             motion,
             recipe: rows::recipe(&params),
             bones: rows::bits(bones),
-            rows: rows.to_packed(&params),
+            rows: rows.to_packed(),
         })
     }
 
@@ -284,5 +284,5 @@ pub fn rows_recipe() -> String {
 pub fn packed_rows(stored: &StoredClip) -> (i64, Vec<u8>) {
     let params = FeatureParams::default();
     let (bones, rows): (_, Rows) = rows_of(stored, &params);
-    (rows::bits(bones), rows.to_packed(&params))
+    (rows::bits(bones), rows.to_packed())
 }

@@ -1,4 +1,4 @@
-//! Feature rows of clips, kept ready in about two bits a value ([`Rows::to_packed`]).
+//! Feature rows of clips, kept ready in about three bits a value ([`Rows::to_packed`]).
 //!
 //! Rows are those of [`morec::features`] over every bone a clip shows. They are made of the stored motion, so that
 //! making them again gives them again.
@@ -192,7 +192,7 @@ impl MotionDb {
             .collect::<Result<_, DbError>>()?;
         let made = stored.par_iter().filter_map(|(clip, stored)| {
             let (bones, rows) = rows_of(stored, params);
-            unpacked(*clip, bits(bones), &rows.to_packed(params), params)
+            unpacked(*clip, bits(bones), &rows.to_packed(), params)
         });
         Ok(made.collect())
     }
@@ -233,7 +233,7 @@ impl MotionDb {
                 .par_iter()
                 .map(|(id, stored)| {
                     let (bones, rows) = rows_of(stored, params);
-                    (*id, bones, rows.to_packed(params))
+                    (*id, bones, rows.to_packed())
                 })
                 .collect();
             let tx = self.write()?;

@@ -10,11 +10,13 @@
 mod bound;
 mod boxes;
 mod candidates;
+mod codes;
 mod copies;
 mod graph;
 pub(crate) mod layout;
 mod learned;
 mod plan;
+mod probe;
 #[cfg(test)]
 mod pruned_tests;
 mod rank;
@@ -22,9 +24,11 @@ mod sketch;
 mod summary;
 #[cfg(test)]
 mod tests;
+mod window_sketch;
 mod windows;
 
-pub use bound::{BoundDepth, SketchedClip, lower_bounds};
+pub use bound::{SketchedClip, SketchedClips};
+pub use codes::SketchCodes;
 pub use copies::{NearCopy, near_duplicates, near_duplicates_of};
 pub use learned::LearnedMetric;
 pub use plan::SearchPlan;
@@ -154,7 +158,7 @@ impl SearchIndex {
     }
 }
 
-/// The sketch of a clip for [`lower_bounds`]: 196 bytes, and 43 for four rows; `None` without rows, or of rows out of all measure.
+/// The sketch of a clip for a [`SearchPlan`]: 196 bytes, and 43 for four rows; `None` without rows, or of rows out of all measure.
 pub fn sketch_of(clip: &ClipRows) -> Option<Vec<u8>> {
     let laid = to_canonical(&clip.rows, clip.bones);
     sketch::sketch(&laid.rows).filter(|_| !clip.rows.is_empty())

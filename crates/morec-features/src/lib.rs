@@ -13,6 +13,7 @@
 
 #![warn(clippy::missing_errors_doc, clippy::missing_panics_doc)]
 
+mod blocks;
 pub mod classes;
 mod grid;
 mod layout;

@@ -1,16 +1,22 @@
-//! Feature rows in about two bits a value, for keeping.
+//! Feature rows in about three bits a value, for keeping.
 //!
-//! Values are rounded to 1/64. Little is left to say after that, because a row says much twice: where a bone points
+//! Values are rounded to 1/64 and written in [blocks](crate::blocks), which are read at about the speed of memory. The first `u32` is the
+//! number of rows; its top two bits say so.
+//!
+//! Rows of earlier releases are read here as well. In these a row is foreseen, because it says much twice: where a bone points
 //! follows from where it pointed and how it turned; a bone moves at right angles to its direction, so that two
-//! coordinates of its velocity give the third; and motion goes on as it began. What nothing foretells goes through an
-//! adaptive range coder. The first `u32` is the number of rows; its top bit says that binary digits are [counted](Whole::counted), as
-//! in all rows that are written; rows of before have a tree of digits, which takes half as long again to read.
+//! coordinates of its velocity give the third; and motion goes on as it began. What nothing foretells went through an
+//! adaptive range coder: less than two bits a value, and 22 ns to read one. Its binary digits are [counted](Whole::counted) if the top bit
+//! alone is set, and a tree of choices otherwise.
 
-use mocap::coder::{Coder, Reader, Whole, Writer};
+use mocap::coder::{Coder, Reader, Whole};
 
+use crate::blocks::{read_blocks, write_blocks};
 use crate::retime::unsaturated;
-use crate::{BoneSet, FeatureParams, RowLayout, Rows};
+use crate::{FeatureParams, RowLayout, Rows};
 
+/// In the number of rows: they are in blocks.
+const BLOCKS: u32 = 3 << 30;
 /// In the number of rows: digits are counted.
 const COUNTED: u32 = 1 << 31;
 
@@ -24,50 +30,57 @@ const GOES_ON: f64 = 0.3;
 const MOST_SATURATED: f64 = 0.95;
 
 impl Rows {
-    /// The rows in as few bytes as may be, each value moved by 1/128 at most (values are held to ±2^18; what is no number
-    /// becomes 0). `params` must be those the rows were made with: they foretell directions from velocities. Rows
-    /// must be whole feature rows of `6 b + 4` values. O(values).
-    pub fn to_packed(&self, params: &FeatureParams) -> Vec<u8> {
-        self.packed_by(params, true)
-    }
-
-    fn packed_by(&self, params: &FeatureParams, is_counted: bool) -> Vec<u8> {
-        let mark = if is_counted { COUNTED } else { 0 };
-        let mut bytes = (self.len() as u32 | mark).to_le_bytes().to_vec();
-        let layout = RowLayout::from_dim(self.dim()).unwrap_or(RowLayout::of(BoneSet::NONE));
-        let mut forecast = Forecast::new(layout, params, is_counted);
-        let mut coder = Writer::new();
-        for row in self.iter() {
-            let mut levels: Vec<i64> = row.iter().map(|value| level(f64::from(*value))).collect();
-            forecast.row(&mut coder, &mut levels);
-        }
-        bytes.extend(coder.finish());
+    /// The rows in few bytes, each value moved by 1/128 at most (values are held to ±2^18; what is no number
+    /// becomes 0). O(values).
+    pub fn to_packed(&self) -> Vec<u8> {
+        let levels = self.values().iter().map(|value| level(f64::from(*value)));
+        let levels: Vec<i32> = levels.map(|level| level as i32).collect();
+        let mut bytes = (self.len() as u32 | BLOCKS).to_le_bytes().to_vec();
+        write_blocks(&levels, self.dim(), &mut bytes);
         bytes
     }
 
-    /// Reads rows of `dim` values that [`to_packed`](Self::to_packed) wrote; `None` for bytes that are none of it.
+    /// Reads rows of `dim` values that [`to_packed`](Self::to_packed) wrote, of this release or an earlier one; `None` for bytes that are none of
+    /// it. `params` must be those that rows of earlier releases were made with: they foretell directions from velocities.
     pub fn from_packed(bytes: &[u8], dim: usize, params: &FeatureParams) -> Option<Rows> {
         let (len, codes) = bytes.split_first_chunk::<4>()?;
         let len = u32::from_le_bytes(*len);
-        let is_counted = len & COUNTED != 0;
-        let len = (len & !COUNTED) as usize;
-        let mut forecast = Forecast::new(RowLayout::from_dim(dim)?, params, is_counted);
-        let mut coder = Reader::new(codes);
-        let mut rows = Rows::new(dim);
-        let (mut levels, mut row) = (vec![0i64; dim], vec![0f32; dim]);
-        for _ in 0..len {
-            forecast.row(&mut coder, &mut levels);
-            // Every row takes a share of a bit at least: what claims to be endless ends here.
-            if coder.is_beyond_end() {
-                return None;
+        let layout = RowLayout::from_dim(dim)?;
+        let rows = (len & !BLOCKS) as usize;
+        match len & BLOCKS {
+            BLOCKS => {
+                let values = read_blocks(codes, rows, dim, STEP as f32)?;
+                Some(Rows::from_values(dim, values))
             }
-            row.iter_mut()
-                .zip(&levels)
-                .for_each(|(value, level)| *value = (*level as f64 * STEP) as f32);
-            rows.push(&row);
+            mark => foreseen(codes, rows, layout, params, mark == COUNTED),
         }
-        Some(rows)
     }
+}
+
+/// Rows of earlier releases.
+fn foreseen(
+    codes: &[u8],
+    len: usize,
+    layout: RowLayout,
+    params: &FeatureParams,
+    is_counted: bool,
+) -> Option<Rows> {
+    let mut forecast = Forecast::new(layout, params, is_counted);
+    let mut coder = Reader::new(codes);
+    let mut rows = Rows::new(layout.dim());
+    let (mut levels, mut row) = (vec![0i64; layout.dim()], vec![0f32; layout.dim()]);
+    for _ in 0..len {
+        forecast.row(&mut coder, &mut levels);
+        // Every row takes a share of a bit at least: what claims to be endless ends here.
+        if coder.is_beyond_end() {
+            return None;
+        }
+        row.iter_mut()
+            .zip(&levels)
+            .for_each(|(value, level)| *value = (*level as f64 * STEP) as f32);
+        rows.push(&row);
+    }
+    Some(rows)
 }
 
 fn level(value: f64) -> i64 {
@@ -140,7 +153,7 @@ impl Forecast {
         }
     }
 
-    /// Writes a row's levels, or reads them.
+    /// Reads a row's levels; a writer writes them.
     fn row(&mut self, coder: &mut impl Coder, levels: &mut [i64]) {
         let (directions, rest) = levels.split_at_mut(self.layout.directions().len());
         let (velocities, root) = rest.split_at_mut(self.layout.velocities().len());
@@ -252,7 +265,24 @@ impl Misses {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::BoneSet;
+    use mocap::coder::Writer;
     use proptest::prelude::*;
+
+    /// Rows as earlier releases wrote them.
+    fn packed_before(rows: &Rows, params: &FeatureParams, is_counted: bool) -> Vec<u8> {
+        let mark = if is_counted { COUNTED } else { 0 };
+        let layout = RowLayout::from_dim(rows.dim()).unwrap();
+        let mut forecast = Forecast::new(layout, params, is_counted);
+        let mut coder = Writer::new();
+        for row in rows.iter() {
+            let mut levels: Vec<i64> = row.iter().map(|value| level(f64::from(*value))).collect();
+            forecast.row(&mut coder, &mut levels);
+        }
+        let mut bytes = (rows.len() as u32 | mark).to_le_bytes().to_vec();
+        bytes.extend(coder.finish());
+        bytes
+    }
 
     proptest! {
         #[test]
@@ -260,23 +290,24 @@ mod tests {
             let bones = (0..bones).fold(BoneSet::NONE, BoneSet::with);
             let rows = Rows::from_values(RowLayout::of(bones).dim(), values);
             let params = FeatureParams::default();
-            let again = Rows::from_packed(&rows.to_packed(&params), rows.dim(), &params).unwrap();
+            let again = Rows::from_packed(&rows.to_packed(), rows.dim(), &params).unwrap();
             prop_assert_eq!(again.len(), rows.len());
             for (a, b) in rows.values().iter().zip(again.values()) {
                 prop_assert!((a - b).abs() <= 0.5 * STEP as f32 + 1e-6);
             }
-            // As rows were written before.
-            let of_old = rows.packed_by(&params, false);
-            prop_assert_eq!(&Rows::from_packed(&of_old, rows.dim(), &params).unwrap(), &again);
+            for is_counted in [false, true] {
+                let before = packed_before(&rows, &params, is_counted);
+                prop_assert_eq!(&Rows::from_packed(&before, rows.dim(), &params).unwrap(), &again);
+            }
             // What has been rounded is not rounded again.
-            prop_assert_eq!(Rows::from_packed(&again.to_packed(&params), rows.dim(), &params).unwrap(), again);
+            prop_assert_eq!(Rows::from_packed(&again.to_packed(), rows.dim(), &params).unwrap(), again);
         }
 
         #[test]
         fn wild_values_do_no_harm(values in prop::collection::vec(any::<f32>(), 0..200)) {
             let rows = Rows::from_values(10, values);
             let params = FeatureParams::default();
-            let again = Rows::from_packed(&rows.to_packed(&params), 10, &params).unwrap();
+            let again = Rows::from_packed(&rows.to_packed(), 10, &params).unwrap();
             for (a, b) in rows.values().iter().zip(again.values()) {
                 let held = if a.is_nan() { 0.0 } else { a.clamp(-(1 << 18) as f32, (1 << 18) as f32) };
                 prop_assert!((held - b).abs() <= 0.5 * STEP as f32 + held.abs() * 1e-6);
@@ -292,16 +323,21 @@ mod tests {
         }
 
         #[test]
-        fn any_bytes_are_rows_or_nothing(bytes in prop::collection::vec(any::<u8>(), 0..300), dim in 0usize..20) {
+        fn any_bytes_are_rows_or_nothing(bytes in prop::collection::vec(any::<u8>(), 0..300), dim in 0usize..20, mark in 0u8..4) {
             let _ = Rows::from_packed(&bytes, dim, &FeatureParams::default());
+            // Few rows, of each kind.
+            let marked: Vec<u8> = [9, 0, 0, mark << 6].into_iter().chain(bytes).collect();
+            let _ = Rows::from_packed(&marked, dim, &FeatureParams::default());
         }
 
         #[test]
         fn what_is_cut_short_is_nothing(keep in 0usize..100) {
             let rows = Rows::from_values(10, (0..1000).map(|i| ((i * i) as f32).sin()).collect());
             let params = FeatureParams::default();
-            let bytes = rows.to_packed(&params);
-            prop_assert!(Rows::from_packed(&bytes[..keep.min(bytes.len() / 2)], 10, &params).is_none());
+            let bytes = rows.to_packed();
+            prop_assert!(Rows::from_packed(&bytes[..keep.min(bytes.len() - 1)], 10, &params).is_none());
+            let before = packed_before(&rows, &params, true);
+            prop_assert!(Rows::from_packed(&before[..keep.min(before.len() / 2)], 10, &params).is_none());
         }
     }
 }

@@ -3,8 +3,9 @@
 use std::ops::Range;
 
 use morec::features::{BoneSet, FeatureParams, RowLayout, Rows};
+use morec_db::rows::ClipRows;
 use morec_db::search::{
-    BoundDepth, Example, SearchIndex, SearchOptions, SearchPlan, SketchedClip, lower_bounds,
+    Example, Hit, SearchIndex, SearchOptions, SearchPlan, SketchCodes, SketchedClip, SketchedClips,
     sketch_of, windows_wanted,
 };
 use morec_db::{ClipId, bones_of_bits, clip_rows};
@@ -48,25 +49,22 @@ fn options(limit: usize, mirror: bool, one_a_clip: bool) -> SearchOptions {
     }
 }
 
-/// Clips by their numbers, with distances.
-fn numbered(near: Vec<(ClipId, f32)>) -> Vec<(i64, f32)> {
-    near.into_iter()
-        .map(|(clip, distance)| (clip.0, distance))
-        .collect()
+/// A clip as it is kept: number, bones, packed rows.
+type NumberedRows = (i64, i64, PyBackedBytes);
+
+/// Unpacks rows, in parallel; what is none is left out.
+fn unpacked(clips: &[NumberedRows]) -> Vec<ClipRows> {
+    let one = |(id, bones, rows): &NumberedRows| clip_rows(ClipId(*id), *bones, rows);
+    clips.par_iter().filter_map(one).collect()
 }
 
 #[pymethods]
 impl SearchPart {
     /// For each clip its number, bones and packed rows.
     #[new]
-    fn new(py: Python<'_>, clips: Vec<(i64, i64, PyBackedBytes)>) -> Self {
-        let index = py.detach(|| {
-            let rows = clips
-                .par_iter()
-                .filter_map(|(id, bones, rows)| clip_rows(ClipId(*id), *bones, rows));
-            let rows: Vec<_> = rows.collect();
-            SearchIndex::new(&rows, FeatureParams::default().tick_hz())
-        });
+    fn new(py: Python<'_>, clips: Vec<NumberedRows>) -> Self {
+        let tick_hz = FeatureParams::default().tick_hz();
+        let index = py.detach(|| SearchIndex::new(&unpacked(&clips), tick_hz));
         Self { index }
     }
 
@@ -89,44 +87,9 @@ impl SearchPart {
         one_a_clip: bool,
     ) -> Vec<(i64, f32)> {
         let options = options(limit, mirror, one_a_clip);
-        numbered(py.detach(|| self.index.nearest_clips(&example.example, &options)))
-    }
-
-    /// The clips of the nearest windows and how near these are, as `SearchPlan.found` takes them.
-    fn nearest_windows(
-        &self,
-        py: Python<'_>,
-        example: &SearchExample,
-        limit: usize,
-        mirror: bool,
-        one_a_clip: bool,
-    ) -> Vec<(i64, f32)> {
-        let options = options(limit, mirror, one_a_clip);
-        numbered(py.detach(|| self.index.nearest_windows(&example.example, &options)))
-    }
-
-    /// The hits, best first: clip, start, stop, score, warp distance, mirrored.
-    fn search(
-        &self,
-        py: Python<'_>,
-        example: &SearchExample,
-        limit: usize,
-        mirror: bool,
-        one_a_clip: bool,
-    ) -> Vec<(i64, f64, f64, f32, f32, bool)> {
-        let options = options(limit, mirror, one_a_clip);
-        let hits = py.detach(|| self.index.search(&example.example, &options));
-        let hit = |h: morec_db::search::Hit| {
-            (
-                h.clip.0,
-                h.span.start_secs,
-                h.span.stop_secs,
-                h.score,
-                h.warp_distance,
-                h.mirrored,
-            )
-        };
-        hits.into_iter().map(hit).collect()
+        let near = py.detach(|| self.index.nearest_clips(&example.example, &options));
+        let numbered = |(clip, distance): (ClipId, f32)| (clip.0, distance);
+        near.into_iter().map(numbered).collect()
     }
 
     /// Rows in all.
@@ -162,7 +125,7 @@ pub fn rows_packed<'py>(
         )));
     }
     let rows = Rows::from_values(columns, rows.as_slice()?.to_vec());
-    let packed = py.detach(|| rows.to_packed(&FeatureParams::default()));
+    let packed = py.detach(|| rows.to_packed());
     Ok(PyBytes::new(py, &packed))
 }
 
@@ -174,19 +137,21 @@ type SketchColumns<'py> = (
 );
 
 /// Clips of tables of sketches, one after the other.
-#[pyclass(frozen, module = "morec")]
-pub struct SketchedClips {
+#[pyclass(frozen, name = "SketchedClips", module = "morec")]
+pub struct PySketchedClips {
     tables: Vec<Py<PyArray1<u8>>>,
     /// Of each clip its table, and where its sketch begins and ends.
     places: Vec<(u32, Range<u32>)>,
     bones: Vec<BoneSet>,
+    /// If there are many.
+    codes: Option<SketchCodes>,
 }
 
 #[pymethods]
-impl SketchedClips {
-    /// Nothing is copied: the arrays are not to be changed.
+impl PySketchedClips {
+    /// Nothing is copied: the arrays are not to be changed. More than `few` clips are searched by codes first.
     #[new]
-    fn new(tables: Vec<SketchColumns<'_>>) -> PyResult<Self> {
+    fn new(tables: Vec<SketchColumns<'_>>, few: usize) -> PyResult<Self> {
         let (mut kept, mut places, mut all_bones) = (Vec::new(), Vec::new(), Vec::new());
         for (number, (bones, starts, bytes)) in tables.iter().enumerate() {
             if starts.len() != bones.len() + 1 {
@@ -208,6 +173,7 @@ impl SketchedClips {
             kept.push(bytes.as_unbound().clone_ref(bytes.py()));
         }
         Ok(Self {
+            codes: (places.len() > few).then(SketchCodes::default),
             tables: kept,
             places,
             bones: all_bones,
@@ -217,57 +183,43 @@ impl SketchedClips {
     fn __len__(&self) -> usize {
         self.places.len()
     }
+}
 
-    /// A bound below the distance of all windows of each clip, or of those at the places `which`. `closely` is by eighths of
-    /// windows, else by halves. A bound above `reach` says only that the clip is farther than that.
-    #[pyo3(signature = (example, limit, mirror, one_a_clip, closely, reach, which=None))]
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "those of a search, and how it is done"
-    )]
-    fn bounds<'py>(
+/// The clips and the bytes of their tables, which Python holds meanwhile.
+struct SketchView<'a> {
+    clips: &'a PySketchedClips,
+    tables: Vec<&'a [u8]>,
+}
+
+impl SketchedClips for SketchView<'_> {
+    fn count(&self) -> usize {
+        self.clips.places.len()
+    }
+
+    fn clip(&self, at: usize) -> SketchedClip<'_> {
+        let (table, span) = &self.clips.places[at];
+        SketchedClip {
+            sketch: &self.tables[*table as usize][span.start as usize..span.end as usize],
+            bones: self.clips.bones[at],
+        }
+    }
+}
+
+impl PySketchedClips {
+    /// Does something with the sketches, without Python's lock.
+    fn with<T: Send>(
         &self,
-        py: Python<'py>,
-        example: &SearchExample,
-        limit: usize,
-        mirror: bool,
-        one_a_clip: bool,
-        closely: bool,
-        reach: f32,
-        which: Option<PyReadonlyArray1<'py, i64>>,
-    ) -> PyResult<Bound<'py, PyArray1<f32>>> {
-        let arrays: Vec<_> = self.tables.iter().map(|t| t.bind(py).readonly()).collect();
-        let tables: Vec<&[u8]> = arrays
-            .iter()
-            .map(|array| array.as_slice())
-            .collect::<Result<_, _>>()?;
-        let clip = |at: usize| {
-            let (table, span) = &self.places[at];
-            let (table, span) = (*table as usize, span.start as usize..span.end as usize);
-            SketchedClip {
-                sketch: &tables[table][span],
-                bones: self.bones[at],
-            }
+        py: Python<'_>,
+        work: impl FnOnce(&SketchView<'_>) -> T + Send,
+    ) -> PyResult<T> {
+        let held: Vec<_> = self.tables.iter().map(|t| t.bind(py).readonly()).collect();
+        let tables = held.iter().map(|table| table.as_slice());
+        let tables = tables.collect::<Result<_, _>>()?;
+        let view = SketchView {
+            clips: self,
+            tables,
         };
-        let options = options(limit, mirror, one_a_clip);
-        let depth = if closely {
-            BoundDepth::Eighths
-        } else {
-            BoundDepth::Halves
-        };
-        let example = &example.example;
-        let bounds = match which {
-            None => {
-                let clips = (0..self.places.len()).into_par_iter().map(clip);
-                py.detach(|| lower_bounds(example, &options, depth, reach, clips))
-            }
-            Some(which) => {
-                let which = places_below(&which, self.places.len(), "the tables of sketches")?;
-                let clips = which.into_par_iter().map(clip);
-                py.detach(|| lower_bounds(example, &options, depth, reach, clips))
-            }
-        };
-        Ok(PyArray1::from_vec(py, bounds))
+        Ok(py.detach(|| work(&view)))
     }
 }
 
@@ -277,94 +229,75 @@ pub fn search_windows(limit: usize) -> usize {
     windows_wanted(&options(limit, false, false))
 }
 
-/// Clips that a search reads in their order, and the point at which it has read enough.
+/// A hit: clip, start, stop, score, warp distance, mirrored.
+type HitRow = (i64, f64, f64, f32, f32, bool);
+
+fn hit_row(hit: Hit) -> HitRow {
+    let (clip, span) = (hit.clip.0, hit.span);
+    let (score, distance) = (hit.score, hit.warp_distance);
+    let (start, stop) = (span.start_secs, span.stop_secs);
+    (clip, start, stop, score, distance, hit.mirrored)
+}
+
+/// A search among clips of which there are sketches: says which of them to read, until it has read enough.
 #[pyclass(name = "SearchPlan", module = "morec")]
 pub struct PySearchPlan {
     plan: SearchPlan,
-}
-
-/// Places, all of which are below `count`.
-fn places_below(
-    places: &PyReadonlyArray1<'_, i64>,
-    count: usize,
-    of: &str,
-) -> PyResult<Vec<usize>> {
-    let place = |at: &i64| usize::try_from(*at).ok().filter(|at| *at < count);
-    let places: Option<Vec<usize>> = places.as_slice()?.iter().map(place).collect();
-    places.ok_or_else(|| value_error(format!("no such clip in {of}")))
-}
-
-/// Windows by the numbers of their clips.
-fn windows_of(windows: Vec<(i64, f32)>) -> Vec<(ClipId, f32)> {
-    let window = |(clip, distance)| (ClipId(clip), distance);
-    windows.into_iter().map(window).collect()
-}
-
-/// Places as an array.
-fn places<'py>(py: Python<'py>, places: &[usize]) -> Bound<'py, PyArray1<i64>> {
-    PyArray1::from_iter(py, places.iter().map(|at| *at as i64))
+    clips: Py<PySketchedClips>,
 }
 
 #[pymethods]
 impl PySearchPlan {
-    /// Of bounds by eighths if `closely`, else by halves.
     #[new]
     fn new(
-        bounds: PyReadonlyArray1<'_, f32>,
+        clips: &Bound<'_, PySketchedClips>,
+        example: &SearchExample,
         limit: usize,
         mirror: bool,
         one_a_clip: bool,
-        closely: bool,
     ) -> PyResult<Self> {
         let options = options(limit, mirror, one_a_clip);
-        let plan = match closely {
-            true => SearchPlan::by_eighths(bounds.as_slice()?, &options),
-            false => SearchPlan::new(bounds.as_slice()?, &options),
-        };
-        Ok(Self { plan })
+        let (tick_hz, codes) = (FeatureParams::default().tick_hz(), &clips.get().codes);
+        let plan = clips.get().with(clips.py(), |sketches| {
+            SearchPlan::new(
+                &example.example,
+                &options,
+                tick_hz,
+                sketches,
+                codes.as_ref(),
+            )
+        })?;
+        Ok(Self {
+            plan,
+            clips: clips.clone().unbind(),
+        })
     }
 
-    /// Places of clips that have to be bound by eighths now.
-    fn next_to_bound<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
-        places(py, &self.plan.next_to_bound())
-    }
-
-    /// Takes the bounds of the clips at these places.
-    fn bound(
+    /// Places of clips that have to be read now; none if enough has been read: all that can count if it is `exact`, else the likeliest.
+    fn next_to_read<'py>(
         &mut self,
-        which: PyReadonlyArray1<'_, i64>,
-        bounds: PyReadonlyArray1<'_, f32>,
-    ) -> PyResult<()> {
-        let which = places_below(&which, self.plan.len(), "the plan")?;
-        self.plan.bound(&which, bounds.as_slice()?);
-        Ok(())
+        py: Python<'py>,
+        exact: bool,
+    ) -> PyResult<Bound<'py, PyArray1<i64>>> {
+        let plan = &mut self.plan;
+        let places = self
+            .clips
+            .get()
+            .with(py, |sketches| plan.next_to_read(exact, sketches))?;
+        let places = places.into_iter().map(|at| at as i64);
+        Ok(PyArray1::from_iter(py, places))
     }
 
-    /// Takes what another plan has found in clips at these places, which were read.
-    fn known(&mut self, read: PyReadonlyArray1<'_, i64>, windows: Vec<(i64, f32)>) -> PyResult<()> {
-        let read = places_below(&read, self.plan.len(), "the plan")?;
-        self.plan.known(&read, &windows_of(windows));
-        Ok(())
+    /// Takes clips that were read: number, bones and packed rows of each.
+    fn take(&mut self, py: Python<'_>, clips: Vec<NumberedRows>) {
+        let plan = &mut self.plan;
+        py.detach(|| plan.take(&unpacked(&clips)));
     }
 
-    /// The distance beyond which no window counts, as far as it is known.
-    fn reach(&self) -> f32 {
-        self.plan.reach()
-    }
-
-    /// Places of clips that have to be read now; none if enough has been read.
-    fn next_to_read<'py>(&mut self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
-        places(py, &self.plan.next_to_read())
-    }
-
-    /// Takes the nearest windows of clips that were read: their clips and distances.
-    fn found(&mut self, windows: Vec<(i64, f32)>) {
-        self.plan.found(&windows_of(windows));
-    }
-
-    /// Numbers of the clips that hold the nearest windows.
-    fn chosen(&self) -> Vec<i64> {
-        self.plan.chosen().into_iter().map(|clip| clip.0).collect()
+    /// The hits among the clips that were read, best first: clip, start, stop, score, warp distance, mirrored.
+    fn hits(&self, py: Python<'_>) -> Vec<HitRow> {
+        let hits = py.detach(|| self.plan.hits());
+        hits.into_iter().map(hit_row).collect()
     }
 }
 
@@ -372,7 +305,7 @@ impl PySearchPlan {
 pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<SearchPart>()?;
     module.add_class::<SearchExample>()?;
-    module.add_class::<SketchedClips>()?;
+    module.add_class::<PySketchedClips>()?;
     module.add_class::<PySearchPlan>()?;
     module.add_function(wrap_pyfunction!(search_example, module)?)?;
     module.add_function(wrap_pyfunction!(search_windows, module)?)?;

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import io
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -87,15 +88,18 @@ def test_the_hits_are_those_of_all_rows(many: ma.Archive, base: ma.Archive, clip
     assert fast.read < 0.9 * IN_ALL, "some clips are not read"
 
 
-def test_some_of_many_clips_are_searched_first(
+def test_of_many_clips_the_likeliest_are_searched_first(
     many: ma.Archive, clips: list[morec.Clip], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     many.add_sketches()
-    monkeypatch.setattr("morec.archive._search.GLANCED_AT", 100)
-    monkeypatch.setattr("morec.archive._search.SOME", (6, 3))
+    monkeypatch.setattr("morec.archive._search.FEW_CLIPS", 100)
     for wanted in HOW:
         fast, slow = found(many, clips[0], 2.0, 3.5, wanted)
         assert fast.hits == slow.hits and len(fast.hits) > 0
+        likely, _ = found(many, clips[0], 2.0, 3.5, replace(wanted, exact=False))
+        assert likely.read <= fast.read and len(likely.hits) == len(fast.hits)
+    table = many.search(clips[0], 2.0, 3.5, exact=False)
+    assert table == many.search(clips[0], 2.0, 3.5), "so few are all read"
 
 
 def test_sketches_are_missing_stale_or_damaged(many: ma.Archive, base: ma.Archive, clips: list[morec.Clip]) -> None:
@@ -192,18 +196,11 @@ def test_clips_that_show_nothing_are_no_hits(many: ma.Archive, base: ma.Archive,
         assert fast.hits == slow.hits and fast.sketched == IN_ALL + 4
 
 
-def test_mistakes_are_plain_errors(clips: list[morec.Clip]) -> None:
-    example = _morec.search_example(clips[0], 0.0, 1.0)
+def test_mistakes_are_plain_errors() -> None:
     table = (np.zeros(2, np.int64), np.array([0, 4, 9], np.int32), np.zeros(4, np.uint8))
     with pytest.raises(ValueError, match="beyond the bytes"):
-        _morec.SketchedClips([table])
+        _morec.SketchedClips([table], 9)
     with pytest.raises(ValueError, match="expected 3, found 2"):
-        _morec.SketchedClips([(table[0], table[1][:2], table[2])])
-    clips_of = _morec.SketchedClips([(table[0], table[1], np.zeros(9, np.uint8))])
-    with pytest.raises(ValueError, match="no such clip"):
-        clips_of.bounds(example, 20, False, False, False, 9.0, np.array([2]))
-    plan = _morec.SearchPlan(np.zeros(3, np.float32), 20, False, False, False)
-    with pytest.raises(ValueError, match="no such clip"):
-        plan.bound(np.array([3]), np.zeros(1, np.float32))
+        _morec.SketchedClips([(table[0], table[1][:2], table[2])], 9)
     with pytest.raises(ValueError, match="6 columns for each bone"):
         _morec.rows_packed(np.zeros((3, 8), np.float32))

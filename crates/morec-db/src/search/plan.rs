@@ -1,143 +1,177 @@
-//! The order in which a search reads clips of which bounds are known, and when it has read enough.
+//! A search that reads few of many clips: which ones next, and when they are enough.
 
+use rayon::prelude::*;
+
+use super::bound::{BoundDepth, SketchedClips, lower_bounds};
+use super::codes::SketchCodes;
 use super::rank::windows_wanted;
-use super::{BoundDepth, SearchOptions};
+use super::{Example, Hit, SearchIndex, SearchOptions};
 use crate::ClipId;
+use crate::rows::ClipRows;
 
-/// Clips for each window that is wanted of which the bound by eighths is taken before anything has been found.
-const LOOKED_AT_FIRST: usize = 4;
+/// Of this many clips the likeliest is looked at before all others.
+const LIKELIEST: usize = 20;
+/// At least this many are, for each window that is wanted.
+const LIKELY: usize = 8;
 
 /// Clips that are read at once: this many may be read in vain.
 const BATCH: usize = 128;
+/// Batches of the likeliest clips: after these the nearest windows are so near that closer bounds exclude most clips.
+const BATCHES: usize = 4;
 
 /// Distances within this factor of the last that counts are ranked with it.
 const TIES: f32 = 1.0 + 1e-4;
 
-/// A search among clips of which [lower bounds](super::lower_bounds) are known: says which clips are looked at more closely,
-/// then which are read, until no other can hold one of the nearest windows.
+/// A search among clips of which there are [sketches](super::sketch_of): says which clips to read until no other can hold one of
+/// the nearest windows.
 ///
-/// The hits of a [search](super::SearchIndex::search) among [`chosen`](Self::chosen) are those of a search among all.
+/// First are the clips that are likeliest by their [codes](SketchCodes): these are bound closely, and the nearest of them are read.
+/// The distance of the windows that are found then excludes most others, by their boxes first and what is left by close bounds.
+/// After all are read that have to be, [`hits`](Self::hits) are those of a [search](SearchIndex::search) among all clips.
 #[derive(Debug, Clone)]
 pub struct SearchPlan {
-    /// For each clip its bound, and how it was taken.
-    bounds: Vec<(f32, BoundDepth)>,
-    read: Vec<bool>,
-    /// Places of clips that may still be read, in order.
+    example: Example,
+    options: SearchOptions,
+    /// For each clip a lower bound of its distance.
+    bounds: Vec<f32>,
+    /// Places of clips that may still be read, in order, and whether they are all that may hold a window.
     left: Vec<usize>,
+    has_all: bool,
+    /// Places of clips that were looked at before all others, in order.
+    likeliest: Vec<usize>,
+    batches: usize,
     /// The nearest windows so far: their distances and clips, nearest first.
     found: Vec<(f32, ClipId)>,
+    /// The clips that hold them.
+    near: SearchIndex,
+    /// Windows that are looked at.
     wanted: usize,
 }
 
 impl SearchPlan {
-    /// Of bounds by halves.
-    pub fn new(bounds: &[f32], options: &SearchOptions) -> Self {
-        Self::of(bounds, BoundDepth::Halves, options)
-    }
-
-    /// Of bounds by eighths: none is wanted any more.
-    pub fn by_eighths(bounds: &[f32], options: &SearchOptions) -> Self {
-        Self::of(bounds, BoundDepth::Eighths, options)
-    }
-
-    fn of(bounds: &[f32], depth: BoundDepth, options: &SearchOptions) -> Self {
-        Self {
-            bounds: bounds.iter().map(|b| (*b, depth)).collect(),
-            read: vec![false; bounds.len()],
-            left: (0..bounds.len())
-                .filter(|at| bounds[*at] < f32::INFINITY)
-                .collect(),
+    /// A search among these clips, by `codes` if there are many. `tick_hz` rows are a second. O(codes), in parallel; without codes
+    /// a bound for each clip.
+    pub fn new(
+        example: &Example,
+        options: &SearchOptions,
+        tick_hz: f64,
+        clips: &impl SketchedClips,
+        codes: Option<&SketchCodes>,
+    ) -> Self {
+        let mut plan = Self {
+            example: example.clone(),
+            options: options.clone(),
+            bounds: vec![0.0; clips.count()],
+            left: Vec::new(),
+            has_all: false,
+            likeliest: Vec::new(),
+            batches: BATCHES,
             found: Vec::new(),
+            near: SearchIndex::new(&[], tick_hz),
             wanted: windows_wanted(options),
+        };
+        match codes {
+            Some(codes) => plan.look_at_likeliest(codes, clips),
+            None => plan.look_at_all(clips),
         }
+        plan
     }
 
-    /// Clips in it.
-    pub fn len(&self) -> usize {
-        self.bounds.len()
+    /// Bounds the clips closely that are likeliest by their codes.
+    fn look_at_likeliest(&mut self, codes: &SketchCodes, clips: &impl SketchedClips) {
+        let estimates = codes.estimates(&self.example, &self.options, clips);
+        let is_searched = |at: &usize| estimates[*at] < f32::INFINITY;
+        self.left = (0..estimates.len()).filter(is_searched).collect();
+        let count = (clips.count() / LIKELIEST).max(LIKELY * self.wanted);
+        least(&estimates, &mut self.left, count);
+        self.bound(BoundDepth::Eighths, clips);
+        self.likeliest.clone_from(&self.left);
     }
 
-    /// True if there is no clip in it.
-    pub fn is_empty(&self) -> bool {
-        self.bounds.is_empty()
+    /// Bounds all clips that were not looked at, and keeps those that may hold a window within reach.
+    fn look_at_all(&mut self, clips: &impl SketchedClips) {
+        let known = std::mem::take(&mut self.left);
+        let is_new = |at: &usize| self.likeliest.binary_search(at).is_err();
+        self.left = (0..clips.count()).filter(is_new).collect();
+        for depth in [BoundDepth::Box, BoundDepth::Eighths] {
+            self.bound(depth, clips);
+        }
+        self.left.extend(known);
+        self.left.sort_unstable();
+        self.has_all = true;
+    }
+
+    /// Bounds all that is left, and leaves what may be within reach.
+    fn bound(&mut self, depth: BoundDepth, clips: &impl SketchedClips) {
+        let of_these = self.left.par_iter().map(|at| clips.clip(*at));
+        let reach = self.reach();
+        let bounds = lower_bounds(&self.example, &self.options, depth, reach, of_these);
+        for (at, bound) in self.left.iter().zip(bounds) {
+            self.bounds[*at] = bound;
+        }
+        self.keep_within(reach);
+    }
+
+    fn keep_within(&mut self, reach: f32) {
+        let bounds = &self.bounds;
+        self.left
+            .retain(|at| bounds[*at] <= reach && bounds[*at] < f32::INFINITY);
     }
 
     /// The distance beyond which no window counts, as far as it is known.
-    pub fn reach(&self) -> f32 {
+    fn reach(&self) -> f32 {
         let last = self.wanted.checked_sub(1).and_then(|at| self.found.get(at));
         last.map_or(f32::INFINITY, |(distance, _)| TIES * distance)
     }
 
-    /// Clips, by their places, of which bounds by eighths are wanted now.
-    pub fn next_to_bound(&self) -> Vec<usize> {
-        let reach = self.reach();
-        let mut clips = self.left_within(reach, BoundDepth::Halves);
-        if reach == f32::INFINITY {
-            self.least(&mut clips, LOOKED_AT_FIRST * self.wanted);
+    /// Clips, by their places, that have to be read now; none if enough has been read. They count as read. `clips` are those of
+    /// [`new`](Self::new). Unless it is `exact`, the search ends with the likeliest clips, and others could hold nearer windows.
+    pub fn next_to_read(&mut self, exact: bool, clips: &impl SketchedClips) -> Vec<usize> {
+        let is_known = self.batches == 0 && self.reach() < f32::INFINITY;
+        if exact && !self.has_all && (is_known || self.left.is_empty()) {
+            self.look_at_all(clips);
         }
-        clips
+        let mut next = self.left.clone();
+        least(&self.bounds, &mut next, BATCH);
+        self.left.retain(|at| next.binary_search(at).is_err());
+        self.batches = self.batches.saturating_sub(1);
+        next
     }
 
-    /// Takes the bounds of these clips.
-    pub fn bound(&mut self, clips: &[usize], bounds: &[f32]) {
-        for (at, bound) in clips.iter().zip(bounds) {
-            // Both are bounds.
-            self.bounds[*at] = (bound.max(self.bounds[*at].0), BoundDepth::Eighths);
-        }
-    }
-
-    /// Takes what another plan, for some of the clips, has found: windows of clips that were read, by their places in this one.
-    pub fn known(&mut self, read: &[usize], windows: &[(ClipId, f32)]) {
-        read.iter().for_each(|at| self.read[*at] = true);
-        self.found(windows);
-    }
-
-    /// Clips, by their places, that have to be read now; none if enough has been read. They count as read.
-    pub fn next_to_read(&mut self) -> Vec<usize> {
-        let mut clips = self.left_within(self.reach(), BoundDepth::Eighths);
-        self.least(&mut clips, BATCH);
-        clips.iter().for_each(|at| self.read[*at] = true);
-        clips
-    }
-
-    /// Clips that are not read and whose bounds, taken like this, are within a distance.
-    fn left_within(&self, reach: f32, taken: BoundDepth) -> Vec<usize> {
-        let within = |at: &&usize| {
-            let (bound, depth) = self.bounds[**at];
-            depth == taken && bound <= reach && !self.read[**at]
-        };
-        self.left.iter().filter(within).copied().collect()
-    }
-
-    /// This many of these clips, those of the least bounds, in the order of their places.
-    fn least(&self, clips: &mut Vec<usize>, count: usize) {
-        if clips.len() > count {
-            let bound = |at: &usize| self.bounds[*at].0;
-            clips
-                .select_nth_unstable_by(count, |a, b| bound(a).total_cmp(&bound(b)).then(a.cmp(b)));
-            clips.truncate(count);
-            clips.sort_unstable();
-        }
-    }
-
-    /// Takes [the nearest windows](super::SearchIndex::nearest_windows) of clips that were read.
-    pub fn found(&mut self, windows: &[(ClipId, f32)]) {
-        self.found
-            .extend(windows.iter().map(|(clip, distance)| (*distance, *clip)));
+    /// Takes the rows of clips that were read, or of others of which there is no sketch.
+    pub fn take(&mut self, rows: &[ClipRows]) {
+        let read = SearchIndex::new(rows, self.near.tick_hz);
+        let windows = read.nearest_windows(&self.example, &self.options);
+        let windows = windows.into_iter().map(|(clip, far)| (far, clip));
+        self.found.extend(windows);
         self.found
             .sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let reach = self.reach();
         self.found.retain(|(distance, _)| *distance <= reach);
         // How near windows must be is never more than it was.
-        let (bounds, read) = (&self.bounds, &self.read);
-        self.left.retain(|at| bounds[*at].0 <= reach && !read[*at]);
+        self.keep_within(reach);
+        // No more is held than may be needed.
+        let mut chosen: Vec<ClipId> = self.found.iter().map(|(_, clip)| *clip).collect();
+        chosen.sort_unstable();
+        let near = &mut self.near.clips;
+        near.extend(read.clips);
+        near.retain(|clip| chosen.binary_search(&clip.clip).is_ok());
+        near.sort_unstable_by_key(|clip| clip.clip);
     }
 
-    /// Clips that hold the nearest windows of those found, in order of number.
-    pub fn chosen(&self) -> Vec<ClipId> {
-        let mut clips: Vec<ClipId> = self.found.iter().map(|(_, clip)| *clip).collect();
-        clips.sort_unstable();
-        clips.dedup();
-        clips
+    /// The hits among the clips that were read, best first.
+    pub fn hits(&self) -> Vec<Hit> {
+        self.near.search(&self.example, &self.options)
+    }
+}
+
+/// Keeps this many of some places, those of the least values, in order.
+fn least(values: &[f32], places: &mut Vec<usize>, count: usize) {
+    if places.len() > count {
+        places.select_nth_unstable_by(count, |a, b| {
+            values[*a].total_cmp(&values[*b]).then(a.cmp(b))
+        });
+        places.truncate(count);
+        places.sort_unstable();
     }
 }

@@ -1,10 +1,9 @@
 //! Bounds are bounds, and a search that reads few clips gives what one that reads all gives.
 
-use std::collections::BTreeMap;
-
 use morec::features::{BoneSet, FeatureParams, RowLayout, Rows};
 use proptest::prelude::*;
 
+use super::bound::{BoundDepth, lower_bounds};
 use super::candidates::spans;
 use super::rank::probes;
 use super::*;
@@ -55,6 +54,34 @@ fn clips_of(seed: u64, count: usize, bones: &[BoneSet]) -> Vec<ClipRows> {
         .collect()
 }
 
+fn sketches_of(clips: &[ClipRows]) -> Vec<Vec<u8>> {
+    let sketch = |clip: &ClipRows| sketch_of(clip).unwrap_or_default();
+    clips.iter().map(sketch).collect()
+}
+
+fn sketched<'a>(sketch: &'a Vec<u8>, clip: &ClipRows) -> SketchedClip<'a> {
+    SketchedClip {
+        sketch,
+        bones: clip.bones,
+    }
+}
+
+/// Clips with their sketches.
+struct Sketched<'a> {
+    clips: &'a [ClipRows],
+    sketches: Vec<Vec<u8>>,
+}
+
+impl SketchedClips for Sketched<'_> {
+    fn count(&self) -> usize {
+        self.clips.len()
+    }
+
+    fn clip(&self, at: usize) -> SketchedClip<'_> {
+        sketched(&self.sketches[at], &self.clips[at])
+    }
+}
+
 fn bounds(
     example: &Example,
     options: &SearchOptions,
@@ -62,10 +89,7 @@ fn bounds(
     reach: f32,
     clips: &[ClipRows],
 ) -> Vec<f32> {
-    let sketches: Vec<Vec<u8>> = clips
-        .iter()
-        .map(|c| sketch_of(c).unwrap_or_default())
-        .collect();
+    let sketches = sketches_of(clips);
     let clip = |(sketch, clip)| sketched(sketch, clip);
     lower_bounds(
         example,
@@ -76,46 +100,29 @@ fn bounds(
     )
 }
 
-fn sketched<'a>(sketch: &'a Vec<u8>, clip: &ClipRows) -> SketchedClip<'a> {
-    SketchedClip {
-        sketch,
-        bones: clip.bones,
-    }
-}
-
-/// The search that reads few clips: its hits, and how many clips it read.
-fn pruned(example: &Example, options: &SearchOptions, clips: &[ClipRows]) -> (Vec<Hit>, usize) {
-    let by_number: BTreeMap<ClipId, &ClipRows> = clips.iter().map(|c| (c.clip, c)).collect();
-    let mut plan = SearchPlan::new(
-        &bounds(example, options, BoundDepth::Halves, f32::INFINITY, clips),
-        options,
-    );
-    let closely = bounds(example, options, BoundDepth::Eighths, f32::INFINITY, clips);
+/// The search that reads few clips, the likeliest by `codes` first: its hits, and how many clips it read.
+fn pruned(
+    example: &Example,
+    options: &SearchOptions,
+    clips: &[ClipRows],
+    codes: Option<&SketchCodes>,
+    exact: bool,
+) -> (Vec<Hit>, usize) {
+    let sketches = Sketched {
+        clips,
+        sketches: sketches_of(clips),
+    };
+    let mut plan = SearchPlan::new(example, options, 30.0, &sketches, codes);
     let mut read = 0;
     loop {
-        let which = plan.next_to_bound();
-        let of_these: Vec<f32> = which.iter().map(|at| closely[*at]).collect();
-        plan.bound(&which, &of_these);
-        let batch: Vec<ClipRows> = plan
-            .next_to_read()
-            .iter()
-            .map(|at| clips[*at].clone())
-            .collect();
-        if batch.is_empty() {
-            break;
+        let which = plan.next_to_read(exact, &sketches);
+        if which.is_empty() {
+            return (plan.hits(), read);
         }
-        read += batch.len();
-        plan.found(&SearchIndex::new(&batch, 30.0).nearest_windows(example, options));
+        read += which.len();
+        let rows: Vec<ClipRows> = which.iter().map(|at| clips[*at].clone()).collect();
+        plan.take(&rows);
     }
-    let chosen: Vec<ClipRows> = plan
-        .chosen()
-        .iter()
-        .map(|id| by_number[id].clone())
-        .collect();
-    (
-        SearchIndex::new(&chosen, 30.0).search(example, options),
-        read,
-    )
 }
 
 fn all_options(limit: usize) -> Vec<SearchOptions> {
@@ -135,14 +142,13 @@ fn check_bounds(example: &Example, clips: &[ClipRows]) {
     let index = SearchIndex::new(clips, 30.0);
     for options in all_options(20) {
         let probes = probes(example, &options, None);
-        let [halves, eighths] = [BoundDepth::Halves, BoundDepth::Eighths]
+        let [boxes, eighths] = [BoundDepth::Box, BoundDepth::Eighths]
             .map(|depth| bounds(example, &options, depth, f32::INFINITY, clips));
         let mut order = eighths.clone();
         order.sort_by(f32::total_cmp);
         let reach = order[order.len() / 3];
         let near = bounds(example, &options, BoundDepth::Eighths, reach, clips);
         for (near, far) in near.iter().zip(&eighths) {
-            // What windows lie within may say more.
             assert!(near == far || *near > reach, "{near} {far} {reach}");
         }
         for clip in &index.clips {
@@ -155,16 +161,9 @@ fn check_bounds(example: &Example, clips: &[ClipRows]) {
                     .filter(|p| !p.bones.and(clip.laid.bones).is_empty())
                 {
                     let distance = probe.distance_of(clip, &span);
-                    assert!(
-                        halves[at] <= distance,
-                        "{span:?}: {} {distance}",
-                        halves[at]
-                    );
-                    assert!(
-                        eighths[at] <= distance,
-                        "{span:?}: {} {distance}",
-                        eighths[at]
-                    );
+                    for bound in [boxes[at], eighths[at]] {
+                        assert!(bound <= distance, "{span:?}: {bound} {distance}");
+                    }
                     let said = near[at];
                     assert!(
                         said <= distance || distance > reach,
@@ -209,14 +208,17 @@ proptest! {
         }
         let index = SearchIndex::new(&clips, 30.0);
         let of = clips.iter().find(|c| c.rows.len() > 60).unwrap();
+        let codes = SketchCodes::default();
         for example in [
             index.example(of.clip, 0.3..1.8).unwrap(),
             SearchIndex::example_of(&of.rows, of.bones).unwrap(),
         ] {
             for options in all_options(limit) {
-                let (hits, read) = pruned(&example, &options, &clips);
-                prop_assert_eq!(&hits, &index.search(&example, &options));
-                prop_assert!(read <= clips.len(), "none is read twice");
+                for codes in [None, Some(&codes)] {
+                    let (hits, read) = pruned(&example, &options, &clips, codes, true);
+                    prop_assert_eq!(&hits, &index.search(&example, &options));
+                    prop_assert!(read <= clips.len(), "none is read twice");
+                }
             }
         }
     }
@@ -243,7 +245,7 @@ fn of_motion_few_clips_are_read() {
     let example = index.example(ClipId(3), 0.5..2.5).unwrap();
     check_bounds(&example, &clips);
     for options in all_options(3) {
-        let (hits, _) = pruned(&example, &options, &clips);
+        let (hits, _) = pruned(&example, &options, &clips, None, true);
         assert_eq!(hits, index.search(&example, &options));
     }
 }
@@ -278,17 +280,34 @@ fn of_real_clips_most_are_not_read() {
         })
         .collect();
     let index = SearchIndex::new(&clips, 30.0);
-    let mut shares = Vec::new();
+    let (mut shares, codes, mut likely) = (Vec::new(), SketchCodes::default(), (0, 0));
     for number in (0..clips.len() as i64).step_by(clips.len() / 8) {
         let example = index.example(ClipId(number), 0.2..1.4).unwrap();
         check_bounds(&example, &clips[..300.min(clips.len())]);
         for options in all_options(5) {
-            let (hits, read) = pruned(&example, &options, &clips);
+            let (hits, read) = pruned(&example, &options, &clips, Some(&codes), true);
             assert_eq!(hits, index.search(&example, &options));
             shares.push(read as f64 / clips.len() as f64);
+            let (quick, fewer) = pruned(&example, &options, &clips, Some(&codes), false);
+            assert!(fewer <= read);
+            let is_found = |hit: &&Hit| {
+                quick
+                    .iter()
+                    .any(|q| (q.clip, q.span) == (hit.clip, hit.span))
+            };
+            likely = (
+                likely.0 + hits.iter().filter(is_found).count(),
+                likely.1 + hits.len(),
+            );
         }
     }
     let mean = shares.iter().sum::<f64>() / shares.len() as f64;
     println!("{} clips, {mean:.3} of them read", clips.len());
     assert!(mean < 0.6, "{mean} of {} clips read", clips.len());
+    let (found, of) = likely;
+    println!("{found} of {of} hits by the likeliest clips alone");
+    assert!(
+        4 * found >= 3 * of,
+        "{found} of {of} hits are among the likeliest clips"
+    );
 }

@@ -36,6 +36,7 @@ def parser() -> argparse.ArgumentParser:
     one.add_argument("--limit", type=int, default=20)
     one.add_argument("--mirror", action="store_true")
     one.add_argument("--one-a-clip", action="store_true")
+    one.add_argument("--likeliest", action="store_true", help="end after the likeliest clips, sooner: some hits may be missed")
     one = commands.add_parser("group", help="labelled samples in groups of like ones")
     one.add_argument("archive")
     one.add_argument("--classes", default="", help="only these, separated by commas")
@@ -86,7 +87,13 @@ def run(args: argparse.Namespace, s3: dict[str, str] | None) -> int:
             table(events.column_names, events.to_pylist())
     elif args.command == "search":
         hits = archive.search(
-            args.example, args.start, args.stop, limit=args.limit, mirror=args.mirror, one_a_clip=args.one_a_clip
+            args.example,
+            args.start,
+            args.stop,
+            limit=args.limit,
+            mirror=args.mirror,
+            one_a_clip=args.one_a_clip,
+            exact=not args.likeliest,
         )
         table(hits.columns, hits)
     else:

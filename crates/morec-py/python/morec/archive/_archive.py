@@ -264,6 +264,7 @@ class Archive:
         limit: int = 20,
         mirror: bool = False,
         one_a_clip: bool = False,
+        exact: bool = True,
     ) -> Table:
         """Stretches that are like an example, the likest first; what ``morec db search`` finds in the same clips.
 
@@ -272,14 +273,19 @@ class Archive:
         example : Clip, path, or key or name of a clip of the archive
         start, stop : float
             The stretch of it, seconds.
+        exact : bool
+            If not, the search ends when the likeliest clips have been read: in a fraction of the time, and some hits may
+            be missed. Those that are found have the scores and the order of an exact search among the same clips. Clips that have
+            no sketches are read in any case.
 
         Returns
         -------
         Table
             Columns clip, name, start_secs, stop_secs, score, warp_distance, mirrored.
         """
-        asked = self._example(example, start, stop)
-        return Table([dict(zip(HITS, hit)) for hit in self._search(asked, Wanted(limit, mirror, one_a_clip)).hits], HITS)
+        wanted = Wanted(limit, mirror, one_a_clip, exact)
+        found = self._search(self._example(example, start, stop), wanted)
+        return Table([dict(zip(HITS, hit)) for hit in found.hits], HITS)
 
     def _search(self, asked: Example, wanted: Wanted) -> Found:
         parts = [(name, size) for name, size in self.store.list(layout.CLIPS) if name.endswith(".parquet")]

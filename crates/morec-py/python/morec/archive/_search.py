@@ -1,8 +1,7 @@
-"""Search: clips are read in the order of what their sketches promise, until no other can be among the hits."""
+"""Search: sketches of clips say which to read, the likeliest first, until no other can be among the hits."""
 
 from __future__ import annotations
 
-import math
 import os
 import zlib
 from collections.abc import Sequence
@@ -21,10 +20,8 @@ from ._sketches import SketchTable
 from ._store import Store, patiently
 from ._tasks import Example, Nearest
 
-#: Archives of more than GLANCED_AT clips are searched in every 64th clip first, then in every 8th, then in all.
-GLANCED_AT, SOME = 1 << 14, (64, 8)
-#: Batches of clips that are read in each of these first searches.
-ROUNDS = 3
+#: No more clips than these are all looked at closely.
+FEW_CLIPS = 1 << 14
 
 #: A clip's number, bones and packed rows.
 KeptRows = tuple[int, int, bytes]
@@ -34,13 +31,16 @@ Names = tuple[str, str]
 
 @dataclass(frozen=True)
 class Wanted:
-    """Options of a search, as the native part takes them."""
+    """Options of a search."""
 
     limit: int
     mirror: bool
     one_a_clip: bool
+    #: If not, it ends when the likeliest clips have been read, although others could be among the hits.
+    exact: bool = True
 
     def native(self) -> tuple[int, bool, bool]:
+        """As the native part takes them."""
         return self.limit, self.mirror, self.one_a_clip
 
 
@@ -49,9 +49,8 @@ class Found:
     """Hits, and how much was looked at for them."""
 
     hits: list[tuple[str, str, float, float, float, float, bool]]
-    #: Clips of which there are sketches, of these such as were bound closely, and such as were read.
+    #: Clips of which there are sketches, and how many of these were read.
     sketched: int
-    bound: int
     read: int
 
 
@@ -59,22 +58,21 @@ def search(
     store: Store, sketches: Sketched, unsketched: DataFrame | None, example: Example, wanted: Wanted
 ) -> Found:
     """The hits among the clips of which there are sketches and those of a frame (clip, name, bones, rows) that have none."""
-    ask = Asked(store, sketches, example.native(), wanted)
-    found = Found([], len(sketches), 0, 0)
-    rows: dict[int, KeptRows] = {}
+    plan = _morec.SearchPlan(sketches.clips, example.native(), *wanted.native())
+    #: Names of clips, and places of those that have sketches.
     names: dict[int, Names] = {}
-    plan = ask.plan_of_all(found, rows)
+    read: dict[int, int] = {}
     if unsketched is not None:
-        for row, name in _nearest_of(unsketched, example, wanted):
-            rows[row[0]], names[row[0]] = row, name
-        plan.found(_morec.SearchPart(list(rows.values())).nearest_windows(ask.example, *wanted.native()))
-    while len(ask.read_next(plan, None, found, rows)[0]):
-        pass
-    few = [rows[number] for number in sorted(plan.chosen())]
-    hits = _morec.SearchPart(few).search(ask.example, *wanted.native())
-    names |= sketches.names([hit[0] for hit in hits if hit[0] not in names])
-    found.hits = [(*names[hit[0]], *hit[1:]) for hit in hits]
-    return found
+        nearest = _nearest_of(unsketched, example, wanted)
+        plan.take([row for row, _ in nearest])
+        names = {row[0]: name for row, name in nearest}
+    while len(places := plan.next_to_read(wanted.exact)):
+        rows = sketches.rows(store, places)
+        plan.take(rows)
+        read |= {row[0]: place for row, place in zip(rows, places.tolist())}
+    hits = plan.hits()
+    names |= {hit[0]: sketches.name(read[hit[0]]) for hit in hits if hit[0] not in names}
+    return Found([(*names[hit[0]], *hit[1:]) for hit in hits], len(sketches), len(read))
 
 
 class Sketched:
@@ -82,21 +80,17 @@ class Sketched:
 
     def __init__(self, tables: Sequence[SketchTable]) -> None:
         self.tables = list(tables)
-        self.clips = _morec.SketchedClips([table.native() for table in tables])
+        self.clips = _morec.SketchedClips([table.native() for table in tables], FEW_CLIPS)
         self.firsts = np.cumsum([0, *(len(table.clip) for table in tables)])
-        self.numbers = np.concatenate([np.zeros(0, np.int64), *(table.clip for table in tables)])
 
     def __len__(self) -> int:
         return len(self.clips)
 
-    def names(self, numbers: Sequence[int]) -> dict[int, Names]:
-        """Keys and names of clips by their numbers."""
-        places: list[int] = np.flatnonzero(np.isin(self.numbers, numbers)).tolist()
-        return {int(self.numbers[place]): self._name(place) for place in places}
-
-    def _name(self, place: int) -> Names:
+    def name(self, place: int) -> Names:
+        """Key and name of the clip at a place."""
         at = int(np.searchsorted(self.firsts, place, side="right")) - 1
-        return clip_of(int(self.numbers[place])), self.tables[at].name[place - int(self.firsts[at])].as_py()
+        table, row = self.tables[at], place - int(self.firsts[at])
+        return clip_of(int(table.clip[row])), table.name[row].as_py()
 
     def rows(self, store: Store, places: Any) -> list[KeptRows]:
         """Rows of the clips at these places, in their order."""
@@ -141,70 +135,6 @@ def _packed(store: Store, part: str, places: list[Place]) -> list[bytes]:
 
     groups = {group: rows_of(group) for group in {int(place.table.row_group[place.row]) for place in places}}
     return [groups[int(p.table.row_group[p.row])][int(p.table.row[p.row])].as_py() or b"" for p in places]
-
-
-@dataclass(frozen=True)
-class Asked:
-    """An example, and where it is searched for."""
-
-    store: Store
-    sketches: Sketched
-    example: _morec.SearchExample
-    wanted: Wanted
-
-    def bounds(self, closely: bool, reach: float, places: Any) -> Any:
-        return self.sketches.clips.bounds(self.example, *self.wanted.native(), closely, reach, places)
-
-    def plan(self, reach: float, places: Any) -> _morec.SearchPlan:
-        """Once it is known how near windows must be, those that are near enough are few: they are compared closely at once."""
-        closely = reach < math.inf
-        return _morec.SearchPlan(self.bounds(closely, reach, places), *self.wanted.native(), closely)
-
-    def plan_of_all(self, found: Found, rows: dict[int, KeptRows]) -> _morec.SearchPlan:
-        """The plan for all clips; of many, some have been read.
-
-        Among some of the clips the nearest windows are farther, but so near that of most others a glance is enough.
-        """
-        reach, read = math.inf, np.zeros(0, np.int64)
-        windows: list[tuple[int, float]] = []
-        for step in SOME if len(self.sketches) > GLANCED_AT else ():
-            some = np.arange(0, len(self.sketches), step)
-            plan = self.plan(reach, some)
-            # Each step divides the one before it.
-            plan.known(read // step, windows)
-            for _ in range(ROUNDS):
-                which, near = self.read_next(plan, some, found, rows)
-                read, windows = np.concatenate([read, some[which]]), windows + near
-            reach = plan.reach()
-        plan = self.plan(reach, None)
-        plan.known(read, windows)
-        return plan
-
-    def read_next(
-        self, plan: _morec.SearchPlan, places: Any, found: Found, rows: dict[int, KeptRows]
-    ) -> tuple[Any, list[tuple[int, float]]]:
-        """Reads what a plan for the clips at these places asks for next; which it were, none if it has enough, and their windows.
-
-        `rows` holds those of clips that may be needed.
-        """
-        def at(which: Any) -> Any:
-            return which if places is None else places[which]
-
-        which = plan.next_to_bound()
-        if len(which):
-            plan.bound(which, self.bounds(True, plan.reach(), at(which)))
-            found.bound += len(which)
-        which = plan.next_to_read()
-        read = self.sketches.rows(self.store, at(which))
-        found.read += len(read)
-        windows = _morec.SearchPart(read).nearest_windows(self.example, *self.wanted.native()) if read else []
-        plan.found(windows)
-        # No more is held than may be needed.
-        chosen = set(plan.chosen())
-        for number in [number for number in rows if number not in chosen]:
-            del rows[number]
-        rows.update((row[0], row) for row in read if row[0] in chosen)
-        return which, windows
 
 
 def _nearest_of(frame: DataFrame, example: Example, wanted: Wanted) -> list[tuple[KeptRows, Names]]:
