@@ -7,7 +7,7 @@ use super::{guide, others, root};
 use crate::kit::Folder;
 
 /// Options of other programs.
-const FOREIGN: [&str; 16] = [
+const FOREIGN: [&str; 17] = [
     "--release",
     "--workspace",
     "--open",
@@ -21,6 +21,7 @@ const FOREIGN: [&str; 16] = [
     "--ask",
     "--endpoint",
     "--from-files",
+    "--likeliest",
     "--parts",
     "--scale",
     "--ray",
