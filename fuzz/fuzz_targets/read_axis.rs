@@ -2,7 +2,7 @@
 //! Any bytes in any pieces: no panic, the pieces make no difference to what is decoded, every pose is finite.
 
 use libfuzzer_sys::fuzz_target;
-use morec::live::axis::{AxisDecoder, AxisOptions, AxisReceiver};
+use morec_live::axis::{AxisDecoder, AxisOptions, AxisReceiver};
 use morec::live::{Frame, MAX_PERFORMERS, SourceEvent};
 
 fn decoded<'a>(pieces: impl Iterator<Item = &'a [u8]>) -> Vec<String> {

@@ -2,7 +2,7 @@
 //! Any datagrams from any senders at any pace: no panic, times that only go forward, no pose of infinities.
 
 use libfuzzer_sys::fuzz_target;
-use morec::live::vmc::{VmcOptions, VmcReceiver};
+use morec_live::vmc::{VmcOptions, VmcReceiver};
 use morec::live::{Frame, MAX_PERFORMERS, SourceEvent};
 
 fuzz_target!(|packets: Vec<(u8, u8, Vec<u8>)>| {

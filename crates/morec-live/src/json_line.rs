@@ -27,9 +27,9 @@
 use std::collections::BTreeMap;
 use std::io::Write;
 
+use crate::vmc::{HUMANOID, HUMANOID_BONES};
 use morec::features::Hand;
 use morec::live::Recording;
-use morec::live::vmc::{HUMANOID, HUMANOID_BONES};
 use morec::math::{Quat, Vec3, rotation_of_xyzw};
 use morec::roles::Role;
 use morec::roles::points::{NUMBERED_HANDS, NumberedPoints, hand_role};

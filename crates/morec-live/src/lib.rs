@@ -21,11 +21,11 @@
 //! # }
 //! ```
 //!
-//! This crate owns sockets and threads; the protocols as bytes are in [`morec::live`]. It prints nothing: what a source
-//! notices is in its [`Notices`].
+//! This crate owns sockets and threads, and the protocols of devices as bytes ([`vmc`], [`axis`], [`osc`]), which need neither. It prints nothing:
+//! what a source notices is in its [`Notices`].
 
 mod address;
-mod axis;
+pub mod axis;
 mod broadcast;
 mod clip;
 mod error;
@@ -35,7 +35,7 @@ mod json_line;
 mod lines;
 mod network;
 mod notices;
-mod osc;
+pub mod osc;
 mod places;
 mod playable;
 mod sink;
@@ -44,7 +44,7 @@ mod sources;
 mod summary;
 mod threads;
 mod unnamed;
-mod vmc;
+pub mod vmc;
 mod webcam;
 mod websocket;
 

@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
+use crate::axis::AxisOptions;
+use crate::vmc::VmcOptions;
 use morec::files::FileReader;
 use morec::import::ImportOptions;
 use morec::index::MotionIndex;
-use morec::live::axis::AxisOptions;
-use morec::live::vmc::VmcOptions;
 use morec::live::{OverflowPolicy, Source};
 use morec::roles::mapping::Mapping;
 

@@ -16,8 +16,7 @@ use morec::roles::RoleMap;
 use morec::svrdm::SvrdmEngine;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use morec::live::vmc::{Bundling, VmcOptions, VmcReceiver, VmcSender};
-use morec::live::{EventOptions, Frame, Performer, PerformerId, Recognizer, Rig, SourceEvent};
+use morec::live::{EventOptions, Frame, Performer, PerformerId, Recognizer, Rig};
 use morec::synth::{LimbSide, Person, Script};
 
 #[global_allocator]
@@ -76,7 +75,6 @@ fn pushing_takes_no_memory() {
         "too little happened to prove anything: {found} detections"
     );
     events_take_no_memory(&model, &poses);
-    packets_take_no_memory();
 }
 
 #[test]
@@ -122,49 +120,6 @@ fn events_take_no_memory(model: &Arc<morec::templates::TemplateModel>, poses: &[
         events >= 8,
         "too little was said to prove anything: {events} events"
     );
-}
-
-/// From packets to frames.
-fn packets_take_no_memory() {
-    let person = Person {
-        hand: LimbSide::Right,
-        ..Person::draw(89, 1)
-    };
-    let take = Script::new(89, person)
-        .rest(0.5)
-        .play("push")
-        .film("packets", 60.0)
-        .unwrap();
-    let roles = morec::roles::RoleMap::find(&take.clip.skeleton);
-    let mut sender = VmcSender::new(Bundling::Bytes(700), true);
-    let packets: Vec<(f64, Vec<u8>)> = (0..take.clip.frames)
-        .flat_map(|frame| {
-            let (secs, pose) = (
-                frame as f64 / 60.0,
-                morec::kinematics::WorldPose::of(&take.clip, frame),
-            );
-            sender
-                .frame(secs, &pose, &roles)
-                .iter()
-                .map(|p| (secs, p.clone()))
-                .collect::<Vec<_>>()
-        })
-        .collect();
-    let mut receiver = VmcReceiver::new(&VmcOptions::default());
-    let (mut frame, mut frames) = (Frame::default(), 0);
-    let mut play = |packets: &[(f64, Vec<u8>)]| {
-        for (secs, packet) in packets {
-            receiver.packet(1u8, *secs, packet);
-            receiver.tick(*secs);
-            while let Some(next) = receiver.next(&mut frame) {
-                frames += usize::from(matches!(next, SourceEvent::Frame));
-            }
-        }
-    };
-    let (before, after) = packets.split_at(packets.len() / 2);
-    play(before);
-    assert_eq!(allocations(|| play(after)), 0);
-    assert!(frames > 50, "{frames} frames");
 }
 
 #[test]

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::{Context, Result};
-use morec::live::vmc::Bundling;
 use morec::live::{SessionOptions, Threading};
+use morec_live::vmc::Bundling;
 use morec_live::{Accidents, pin_thread};
 
 /// Recognise clips round and round and see whether memory stays flat, every lap finds the same, and everything is on time.

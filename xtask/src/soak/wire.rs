@@ -11,8 +11,8 @@ use anyhow::{Context, Result, anyhow};
 use morec::kinematics::WorldPose;
 use morec::labels::{ClipLength, Labels, Sample};
 use morec::live::Model;
-use morec::live::vmc::{VmcOptions, VmcSender};
 use morec::live::{OverflowPolicy, Phase, Session, SessionOptions, wall_now_secs};
+use morec_live::vmc::{VmcOptions, VmcSender};
 
 use super::args::{Args, stop_on_ctrl_c};
 use morec_live::NamedEvent;
@@ -186,7 +186,7 @@ fn samples(path: &std::path::Path, clips: &[PlayableClip], model: &Model) -> Res
 fn perform(
     clips: &[PlayableClip],
     to: SocketAddr,
-    (bundle, accidents): (morec::live::vmc::Bundling, morec_live::Accidents),
+    (bundle, accidents): (morec_live::vmc::Bundling, morec_live::Accidents),
     stop: &AtomicBool,
 ) -> Result<Vec<f64>> {
     let socket = UdpSocket::bind(SocketAddr::from(([127, 0, 0, 1], 0)))?;

@@ -11,9 +11,9 @@ use morec::features::all_bones_of_clip;
 use morec::import::{ImportOptions, Take};
 use morec::index::MotionIndex;
 use morec::labels::{FOUND_HEADER, FoundLine};
-use morec::live::vmc::Bundling;
 use morec::live::{Detection, Model, PoseExtractor, RecognizerCache, recognize_clip_in_session};
 use morec::templates::PerformerKind;
+use morec_live::vmc::Bundling;
 
 use super::send::bundling;
 use crate::files::{ReadArgs, expand, mapping, open, rate, read, say_doubts};

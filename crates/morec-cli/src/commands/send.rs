@@ -8,9 +8,9 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, bail};
 use morec::kinematics::WorldPose;
-use morec::live::axis::AxisSender;
-use morec::live::vmc::{Bundling, VmcSender};
 use morec::roles::RoleMap;
+use morec_live::axis::AxisSender;
+use morec_live::vmc::{Bundling, VmcSender};
 
 use crate::files::{ReadArgs, expand, mapping, rate};
 use crate::interrupt::stop_on_ctrl_c;

@@ -1,10 +1,10 @@
 //! A clip recognised as if it had come over VMC, without a network: the same accidents every time.
 
 use morec::kinematics::WorldPose;
-use morec::live::vmc::{Bundling, VmcOptions, VmcReceiver, VmcSender};
 use morec::live::{
     Detection, Event, EventOptions, Frame, Model, Performer, Phase, SourceCounts, SourceEvent,
 };
+use morec_live::vmc::{Bundling, VmcOptions, VmcReceiver, VmcSender};
 
 use morec_live::{Accidents, Network, PlayableClip};
 

@@ -12,7 +12,6 @@
 //! stream is cut into pushes. In sessions and pools frames travel over bounded wait-free rings; when one is full,
 //! [`OverflowPolicy`] says who gives way, and everything that is dropped is counted in [`Status`].
 
-pub mod axis;
 mod broadcast;
 mod clock;
 mod detection;
@@ -25,7 +24,6 @@ mod feed;
 mod frame;
 mod of_clip;
 mod of_index;
-pub mod osc;
 mod performer;
 mod performer_table;
 mod pipeline;
@@ -43,7 +41,6 @@ mod status;
 mod svrdm;
 mod sync;
 mod template_pipeline;
-pub mod vmc;
 mod waits;
 mod waker;
 mod worker;

@@ -1,12 +1,12 @@
 //! The skeleton that a set of bones makes, and what stands in for bones that are not sent.
 
-use crate::clip::{Joint, Skeleton};
-use crate::humanoid::{
+use morec::clip::{Joint, Skeleton};
+use morec::humanoid::{
     BoneMask, HUMANOID, HUMANOID_BONES, bone_of_name, parent_among, standard_offset,
 };
-use crate::live::Rig;
-use crate::math::Vec3;
-use crate::roles::{Role, RoleMap};
+use morec::live::Rig;
+use morec::math::Vec3;
+use morec::roles::{Role, RoleMap};
 
 /// A neck for senders that have none: it moves with the bone that the head hangs on, and lies on the way to the head
 /// as far along as a neck does.

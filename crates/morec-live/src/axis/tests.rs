@@ -5,12 +5,12 @@ use proptest::prelude::*;
 use super::decoder::{HEADER, WITH_POSITIONS, WITHOUT_POSITIONS, values_of};
 use super::sender::angles;
 use super::*;
-use crate::formats::{Limits, bvh};
-use crate::kinematics::WorldPose;
-use crate::live::{Frame, PerformerId, SourceEvent};
-use crate::math::{Axis, Quat, Vec3};
-use crate::roles::{Role, RoleMap};
-use crate::synth::{Person, Script};
+use morec::formats::{Limits, bvh};
+use morec::kinematics::WorldPose;
+use morec::live::{Frame, PerformerId, SourceEvent};
+use morec::math::{Axis, Quat, Vec3};
+use morec::roles::{Role, RoleMap};
+use morec::synth::{Person, Script};
 
 /// A frame with these numbers.
 fn raw(avatar: u32, number: u32, flags: [u8; 2], values: &[f32]) -> Vec<u8> {
@@ -212,12 +212,12 @@ fn frames_without_positions_are_of_the_skeleton_that_was_given() {
     let own = AxisSkeleton::default();
     let longer = own.skeleton.joints().iter().cloned();
     let longer = longer
-        .map(|joint| crate::clip::Joint {
+        .map(|joint| morec::clip::Joint {
             offset: joint.offset * 1.5,
             ..joint
         })
         .collect();
-    let skeleton = crate::clip::Skeleton::new(longer).unwrap();
+    let skeleton = morec::clip::Skeleton::new(longer).unwrap();
     let options = AxisOptions {
         skeleton: AxisSkeleton::of_clip(&skeleton, &own.roles).unwrap(),
         actors: 1,

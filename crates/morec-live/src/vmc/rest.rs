@@ -1,8 +1,8 @@
 //! The pose that avatars stand in when nobody moves them.
 
-use crate::features::KeyPose;
-use crate::math::Vec3;
-use crate::roles::Role;
+use morec::features::KeyPose;
+use morec::math::Vec3;
+use morec::roles::Role;
 
 /// Arms are stretched out to the side as exactly as this (2°): people who try are farther off with some part.
 const ARMS: f64 = 0.999_39;

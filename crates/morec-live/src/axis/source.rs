@@ -9,8 +9,9 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::thread;
 use std::time::Duration;
 
+use super::bones::AxisSkeleton;
+use super::receiver::{AxisOptions, AxisReceiver};
 use morec::files;
-use morec::live::axis::{AxisOptions, AxisReceiver, AxisSkeleton};
 use morec::live::{Frame, Source, SourceCounts, SourceEvent, wall_now_secs};
 
 use crate::error::Context;

@@ -1,11 +1,11 @@
 //! Frames to packets.
 
 use super::message::{position_from_unity, rotation_to_unity};
-use crate::humanoid::{HUMANOID, HUMANOID_BONES, joint_of, standard_offset};
-use crate::kinematics::WorldPose;
-use crate::live::osc::{Arg, begin_bundle, write_element, write_message};
-use crate::math::{Quat, Vec3};
-use crate::roles::RoleMap;
+use crate::osc::{Arg, begin_bundle, write_element, write_message};
+use morec::humanoid::{HUMANOID, HUMANOID_BONES, joint_of, standard_offset};
+use morec::kinematics::WorldPose;
+use morec::math::{Quat, Vec3};
+use morec::roles::RoleMap;
 
 /// Distribution of a frame's messages over datagrams; all of this is found in the wild.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

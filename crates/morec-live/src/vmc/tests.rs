@@ -3,12 +3,12 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::features::{Hand, KeyPose};
-use crate::kinematics::WorldPose;
-use crate::live::osc::{Arg, begin_bundle, write_element, write_message};
-use crate::live::{Frame, PerformerId, Rig, SourceEvent};
-use crate::math::{Axis, Quat, Vec3};
-use crate::roles::{Role, RoleMap};
+use crate::osc::{Arg, begin_bundle, write_element, write_message};
+use morec::features::{Hand, KeyPose};
+use morec::kinematics::WorldPose;
+use morec::live::{Frame, PerformerId, Rig, SourceEvent};
+use morec::math::{Axis, Quat, Vec3};
+use morec::roles::{Role, RoleMap};
 
 /// A person made of the humanoid's own joints, role by role, with an arm that swings.
 fn swinging(secs: f64) -> WorldPose {

@@ -1,8 +1,8 @@
 //! Messages of VMC, in right-handed axes.
 
-use crate::humanoid::{bone_of_name, mirrored};
-use crate::live::osc::{Arg, Message};
-use crate::math::{Quat, Vec3, rotation_of_xyzw};
+use crate::osc::{Arg, Message};
+use morec::humanoid::{bone_of_name, mirrored};
+use morec::math::{Quat, Vec3, rotation_of_xyzw};
 
 /// A message that concerns recognition.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -94,15 +94,16 @@ pub fn seen_in_mirror(bone: usize, position: Vec3, rotation: Quat) -> (usize, Ve
 
 /// Reflected at the plane of Y and Z.
 pub fn mirror(position: Vec3, rotation: Quat) -> (Vec3, Quat) {
-    let [x, y, z, w] = [rotation.i, -rotation.j, -rotation.k, rotation.w];
-    let rotation = Quat::new_unchecked(nalgebra::Quaternion::new(w, x, y, z));
-    (Vec3::new(-position.x, position.y, position.z), rotation)
+    let mut reflected = rotation;
+    let q = reflected.as_mut_unchecked();
+    (q.j, q.k) = (-rotation.j, -rotation.k);
+    (Vec3::new(-position.x, position.y, position.z), reflected)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::Axis;
+    use morec::math::Axis;
     use proptest::prelude::*;
 
     /// Unity, facing +Z, has its left at −X. Its left arm reaches out to the left in a T-pose; turned by +90° about

@@ -1,8 +1,8 @@
 //! The bones of the broadcast, in its order, and where they are in a person nobody measured.
 
-use crate::clip::{Joint, Skeleton};
-use crate::math::Vec3;
-use crate::roles::{Role, RoleMap};
+use morec::clip::{Joint, Skeleton};
+use morec::math::Vec3;
+use morec::roles::{Role, RoleMap};
 
 /// Number of bones.
 pub const AXIS_BONE_COUNT: usize = 59;

@@ -4,7 +4,7 @@ use std::io::ErrorKind;
 use std::net::{SocketAddr, UdpSocket};
 use std::time::Duration;
 
-use morec::live::vmc::{VmcOptions, VmcReceiver};
+use super::receiver::{VmcOptions, VmcReceiver};
 use morec::live::{Frame, Source, SourceCounts, SourceEvent, wall_now_secs};
 
 use crate::address::openness;

@@ -1,7 +1,7 @@
 //! VMC, the protocol in which trackers and avatars tell each other poses: OSC messages over UDP, bone by bone.
 //!
-//! After the specification V3.1 (sh-akira/VirtualMotionCaptureProtocol). Everything here takes bytes and gives bytes;
-//! whoever has a socket feeds it. [`VmcReceiver`] makes frames of packets, [`VmcSender`] packets of frames.
+//! After the specification V3.1 (sh-akira/VirtualMotionCaptureProtocol). [`VmcReceiver`] makes frames of packets,
+//! [`VmcSender`] packets of frames: both take and give bytes, whoever has the socket. [`VmcSource`] is a receiver with a socket.
 
 mod clock;
 mod message;
@@ -10,14 +10,16 @@ mod receiver;
 mod rest;
 mod sender;
 mod skeleton;
+mod source;
 #[cfg(test)]
 mod tests;
 
-pub use crate::humanoid::{HUMANOID, HUMANOID_BONES, HumanoidBone, bone_of_name};
 pub use message::{
     VmcMessage, mirror, position_from_unity, rotation_from_unity, rotation_to_unity, understand,
 };
+pub use morec::humanoid::{HUMANOID, HUMANOID_BONES, HumanoidBone, bone_of_name};
 pub use peers::Peer;
 pub use receiver::{VmcOptions, VmcReceiver};
 pub use rest::is_t_pose;
 pub use sender::{Bundling, VmcSender};
+pub use source::VmcSource;

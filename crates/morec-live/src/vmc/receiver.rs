@@ -18,10 +18,10 @@ use super::message::{VmcMessage, mirror, seen_in_mirror, understand};
 use super::peers::{Peer, Ports};
 use super::rest::is_t_pose;
 use super::skeleton::{AssumedNeck, assumed_neck, bones_of, local_position, place, rig_of};
-use crate::humanoid::{BoneMask, HUMANOID_BONES, is_body, parent_among};
-use crate::live::osc::{self, Message};
-use crate::live::{Arrival, Frame, PerformerId, PerformerTable, Rig, SourceCounts, SourceEvent};
-use crate::math::{Quat, Vec3};
+use crate::osc::{self, Message};
+use morec::humanoid::{BoneMask, HUMANOID_BONES, is_body, parent_among};
+use morec::live::{Arrival, Frame, PerformerId, PerformerTable, Rig, SourceCounts, SourceEvent};
+use morec::math::{Quat, Vec3};
 
 /// (d) of the rules.
 const QUIET_SECS: f64 = 0.005;
@@ -43,7 +43,7 @@ const LATE_SECS: f64 = 1.0;
 pub struct VmcOptions {
     /// Exchange left and right: for senders that show their performer as a mirror would.
     pub mirrored: bool,
-    /// Performers that are followed at once, at most [`MAX_PERFORMERS`](crate::live::MAX_PERFORMERS); packets of others are counted and left.
+    /// Performers that are followed at once, at most [`MAX_PERFORMERS`](morec::live::MAX_PERFORMERS); packets of others are counted and left.
     pub actors: usize,
     /// Leave out frames that show a T-pose too exact to be a person's.
     pub skip_t_pose: bool,

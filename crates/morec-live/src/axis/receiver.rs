@@ -6,10 +6,10 @@ use std::sync::Arc;
 use super::clock::FrameClock;
 use super::decoder::{AxisDecoder, AxisError, AxisFrame};
 use super::{AXIS_BONE_COUNT, AxisSkeleton};
-use crate::live::{
+use morec::live::{
     Arrival, Frame, PerformerId, PerformerTable, Rig, SourceCounts, SourceEvent, largest_holder,
 };
-use crate::math::{Axis, Quat, Vec3};
+use morec::math::{Axis, Quat, Vec3};
 
 /// An avatar that has been silent for so long has stopped, for now.
 const GONE_SECS: f64 = 1.0;
@@ -23,7 +23,7 @@ const LATE_FRAMES: u32 = 100;
 pub struct AxisOptions {
     /// Parents of the bones, and their lengths where frames have none.
     pub skeleton: AxisSkeleton,
-    /// Performers that are followed at once, at most [`MAX_PERFORMERS`](crate::live::MAX_PERFORMERS); frames of others are counted and left.
+    /// Performers that are followed at once, at most [`MAX_PERFORMERS`](morec::live::MAX_PERFORMERS); frames of others are counted and left.
     pub actors: usize,
 }
 

@@ -21,14 +21,15 @@
 //! So there are 180 without positions, 354 with; 6 more with a reference. Axes are right-handed, Y up; turned by nothing
 //! a person stands in a T-pose and faces +Z, the left side at +X.
 //!
-//! Everything here takes bytes and gives bytes; whoever has a socket feeds it. [`AxisDecoder`] makes frames of bytes,
-//! [`AxisReceiver`] poses of frames, [`AxisSender`] bytes of poses.
+//! [`AxisDecoder`] makes frames of bytes, [`AxisReceiver`] poses of frames, [`AxisSender`] bytes of poses, whoever has the
+//! connection. [`AxisSource`] is a receiver with one.
 
 mod bones;
 mod clock;
 mod decoder;
 mod receiver;
 mod sender;
+mod source;
 #[cfg(test)]
 mod tests;
 
@@ -37,3 +38,4 @@ pub use clock::FrameClock;
 pub use decoder::{AxisDecoder, AxisError, AxisFrame, MAX_VALUES};
 pub use receiver::{AxisOptions, AxisReceiver};
 pub use sender::AxisSender;
+pub use source::{AxisSource, axis_skeleton};

@@ -2,7 +2,7 @@
 
 use std::net::UdpSocket;
 
-use morec::live::osc::{Arg, write_message};
+use super::packet::{Arg, write_message};
 
 use crate::error::Context;
 use crate::{Address, LiveError, NamedEvent, Sink};

@@ -2,9 +2,9 @@
 
 use super::decoder::{BEGIN, END, HEADER, VERSION, values_of};
 use super::{AXIS_BONE_COUNT, AXIS_BONES};
-use crate::kinematics::WorldPose;
-use crate::math::{Quat, Vec3};
-use crate::roles::RoleMap;
+use morec::kinematics::WorldPose;
+use morec::math::{Quat, Vec3};
+use morec::roles::RoleMap;
 
 /// Makes frames of posed skeletons.
 ///
