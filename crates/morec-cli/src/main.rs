@@ -21,7 +21,6 @@ mod output;
 mod poses;
 mod print;
 mod progress;
-mod share;
 mod show;
 mod stats;
 mod table;

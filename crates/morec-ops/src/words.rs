@@ -1,4 +1,4 @@
-//! Words of a command line for the enumerations of libraries, which know nothing of it.
+//! What a command line has in words: choices of libraries, which know nothing of it, and shares.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use serde::de::DeserializeOwned;
@@ -12,4 +12,16 @@ pub(crate) fn choices<T: DeserializeOwned + Clone + Send + Sync + 'static>(
     let words: Vec<PossibleValue> = words.into_iter().map(word).collect();
     PossibleValuesParser::new(words)
         .try_map(|word| serde_json::from_value::<T>(Value::String(word)))
+}
+
+/// A share on the command line.
+///
+/// # Errors
+/// No number from 0 to 1.
+pub fn share(text: &str) -> Result<f64, String> {
+    let value = text
+        .parse()
+        .ok()
+        .filter(|value| (0.0..=1.0).contains(value));
+    value.ok_or_else(|| "expected a number from 0 to 1".to_owned())
 }

@@ -9,10 +9,11 @@ use morec::labels::{ClipLength, Sample};
 use morec::pivots::PivotSet;
 use morec_db::labels::{NewSample, SampleFilter, SampleState};
 use morec_db::search::{Example, SearchIndex};
-use morec_db::{
-    ClipFilter, ClipId, ClipInfo, ClipUpdate, DbError, ImportOutcome, MotionDb, ProposeOptions,
+use morec_db::{ClipFilter, ClipId, ClipInfo, ClipUpdate, DbError, ImportOutcome, MotionDb};
+use morec_ops::{
+    CutSettings, GroupSettings, ProposeSettings, SearchSettings, example_of_clip,
+    example_of_database, largest_first,
 };
-use morec_ops::{CutSettings, SearchSettings, example_of_clip, example_of_database};
 use pyo3::exceptions::{PyFileExistsError, PyFileNotFoundError, PyKeyError, PyPermissionError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -426,30 +427,57 @@ impl PyDatabase {
         table(py, &["clip", "secs", "cuts_secs", "still"], rows)
     }
 
+    /// Groups of stretches that are alike, the largest first; a row for each stretch.
+    #[pyo3(signature = (*, progress=None, **settings))]
+    fn group<'py>(
+        &self,
+        py: Python<'py>,
+        progress: Option<&Bound<'py, PyAny>>,
+        settings: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let settings: GroupSettings = keywords(settings)?;
+        let (stretches, groups, names) = job::run(py, progress, |progress| {
+            let db = held(&self.db);
+            let Some(db) = db.as_ref() else {
+                return Err(value_error("the database is closed"));
+            };
+            let stretches = settings.stretches(db, progress).map_err(db_error)?;
+            let clusters = settings.clusters(stretches.iter().map(|of| &of.rows));
+            let groups = largest_first(&clusters.map_err(operation_error)?);
+            Ok((stretches, groups, names(db).map_err(db_error)?))
+        })??;
+        let mut rows = Vec::new();
+        for (number, group) in groups.iter().enumerate() {
+            for of in group.iter().map(|at| &stretches[*at]) {
+                let row = PyDict::new(py);
+                row.set_item("group", number + 1)?;
+                row.set_item("clip", names.get(&of.clip))?;
+                row.set_item("class", of.sample.as_ref().map(|(_, class)| class))?;
+                row.set_item("start_secs", of.span.start_secs)?;
+                row.set_item("stop_secs", of.span.stop_secs)?;
+                rows.push(row);
+            }
+        }
+        let columns = ["group", "clip", "class", "start_secs", "stop_secs"];
+        table(py, &columns, rows)
+    }
+
     /// Other samples of the classes that are labelled, the surest first; they are kept as proposed.
-    #[pyo3(signature = (*, classes=vec![], progress=None))]
+    #[pyo3(signature = (*, progress=None, **settings))]
     fn propose<'py>(
         &self,
         py: Python<'py>,
-        classes: Vec<String>,
         progress: Option<&Bound<'py, PyAny>>,
+        settings: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let options = ProposeOptions {
-            classes,
-            ..ProposeOptions::default()
-        };
+        let settings: ProposeSettings = keywords(settings)?;
         let (proposals, names) = job::run(py, progress, |progress| {
             let mut db = held(&self.db);
             let Some(db) = db.as_mut() else {
                 return Err(value_error("the database is closed"));
             };
-            options
-                .classes
-                .iter()
-                .try_for_each(|class| db.need_class(class))
-                .and_then(|()| db.propose_and_keep(&options, progress))
-                .and_then(|proposals| Ok((proposals, names(db)?)))
-                .map_err(db_error)
+            let proposals = settings.run(db, progress).map_err(db_error)?;
+            Ok((proposals, names(db).map_err(db_error)?))
         })??;
         let mut rows = Vec::new();
         for p in &proposals {

@@ -48,7 +48,11 @@ def test_labels_search_cut_and_propose(db: morec.Database, labels: morec.Table, 
     assert abs(hits[0]["start_secs"] - example["start_secs"]) < 0.2
     by_name = db.search(clips[0].name, example["start_secs"], example["stop_secs"], limit=5, mirror=True)
     assert len(by_name) == 5
+    groups = db.group(of="labels", method="hierarchy", groups=3)
+    assert set(groups.column("group")) == {1, 2, 3} and len(groups) == len(first)
+    assert set(groups.column("class")) == {row["class"] for row in first}
     cuts = db.cut()
+    assert len(db.group()) > 3
     assert len(cuts) == 3 and all(row["cuts_secs"] for row in cuts)
     proposed = db.propose()
     assert len(proposed) > 3 and proposed.column("score") == sorted(proposed.column("score"), reverse=True)
@@ -75,6 +79,10 @@ def test_mistakes_are_plain_errors(db: morec.Database, tmp_path: Path) -> None:
         db.cut(method="scissors")
     with pytest.raises(KeyError):
         db.propose(classes=["nothing"])
+    with pytest.raises(KeyError):
+        db.group(of="labels", classes=["nothing"])
+    with pytest.raises(ValueError, match="at least one direction"):
+        db.group(of="clips", method="kwas", k=0)
     with pytest.raises(FileNotFoundError):
         morec.Database(tmp_path / "nowhere.mdb")
     (tmp_path / "no.mdb").write_text("not a database at all, but long enough to be looked at as if it were one" * 20)

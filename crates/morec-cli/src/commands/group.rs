@@ -12,14 +12,14 @@ use std::process::ExitCode;
 use anyhow::{Result, bail};
 
 pub use args::Args;
-use args::GroupMethod;
+use morec_ops::GroupMethod;
 
 use crate::database;
 
 /// Groups samples of clips or of a database.
 pub fn run(args: &Args) -> Result<ExitCode> {
     let inputs: Vec<PathBuf> = args.inputs.iter().chain(&args.clips).cloned().collect();
-    match (database::only(&inputs)?, args.method) {
+    match (database::only(&inputs)?, args.settings.method) {
         (Some(db), _) => stored::run(db, args),
         (None, GroupMethod::Kwas) => kwas::run(&inputs, args),
         (None, _) => files::run(&inputs, args),

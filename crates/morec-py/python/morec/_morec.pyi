@@ -463,6 +463,32 @@ class Database:
         Table
             Columns clip, secs, cuts_secs, still.
         """
+    def group(
+        self,
+        *,
+        of: str | None = None,
+        classes: Sequence[str] = (),
+        method: str = "affinity",
+        preference: float | None = None,
+        groups: int | None = None,
+        height: float | None = None,
+        tau: float | None = None,
+        k: int | None = None,
+        normalised: bool = False,
+        progress: _Progress = None,
+    ) -> Table:
+        """Groups of stretches that are alike, the largest first; what ``morec group`` does.
+
+        Parameters
+        ----------
+        of : "cuts" (the default), "labels" or "clips"
+        method : "affinity", "hierarchy" (cut into ``groups``, or at a ``height``) or "kwas"
+
+        Returns
+        -------
+        Table
+            Columns group (from 1), clip, class (of labels), start_secs, stop_secs.
+        """
     def propose(self, *, classes: Sequence[str] = (), progress: _Progress = None) -> Table:
         """Other samples of the classes that are labelled, the surest first; they are kept as proposed.
 

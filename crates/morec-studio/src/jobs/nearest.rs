@@ -3,12 +3,11 @@
 use std::collections::BTreeMap;
 
 use morec::cluster::{resampled, squared_distance};
-use morec::features::{BoneSet, FeatureParams, Rows};
+use morec::features::{BoneSet, FeatureParams, RowLayout, Rows};
 use morec::train::align as warp;
 use morec_db::labels::{SampleFilter, SampleState};
 use morec_db::{ClipId, DbError, MotionDb};
 
-use super::group::only;
 use super::progress::JobProgress;
 use crate::stretch::Stretch;
 
@@ -45,7 +44,10 @@ pub fn label_of(
         let (all, theirs) = *rows.get(&other.clip)?;
         let common = bones.and(theirs);
         let directions: Vec<usize> = (0..3 * common.len()).collect();
-        let of_bones = |rows: &Rows, bones| only(rows, bones, common).columns(&directions);
+        let of_bones = |rows: &Rows, bones| {
+            rows.columns(&RowLayout::kept_columns(bones, common))
+                .columns(&directions)
+        };
         let other = of_bones(&cut(all, other, &params), theirs);
         let own = of_bones(&own, bones);
         let is_some = !own.is_empty() && !other.is_empty() && !directions.is_empty();

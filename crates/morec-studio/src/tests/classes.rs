@@ -1,8 +1,10 @@
 //! Classes are named, renamed, removed; samples are dragged between them; groups follow a slider.
 
 use egui::Key;
+use morec::features::Rows;
 use morec_db::MotionDb;
 use morec_db::labels::{NewSample, SampleState as Judged};
+use morec_ops::Shapes;
 
 use super::{Person, made};
 use crate::jobs::group::ClusteredItems;
@@ -102,6 +104,31 @@ fn groups_follow_the_slider_and_become_classes() {
 }
 
 #[test]
+fn a_label_that_holds_no_tick_is_left_out_of_groups() {
+    let (_folder, mut person) = labelling(2);
+    let path = person.state().store.as_ref().unwrap().path().to_owned();
+    let mut db = MotionDb::open(&path).unwrap();
+    let shortest = NewSample {
+        clip: db.clips(&Default::default()).unwrap()[0].id,
+        class: "wave".to_owned(),
+        start_secs: 0.001,
+        stop_secs: 0.012,
+        whole_clip: false,
+        state: Judged::Accepted,
+        score: None,
+    };
+    db.add_samples(&[shortest], "test").unwrap();
+    person.goes_to(Panel::Classes);
+    person.click("Group labels");
+    person.settle();
+    let groups = person.state().classes.groups.clone().unwrap();
+    assert_eq!(
+        groups.at(3).iter().map(|g| g.members.len()).sum::<usize>(),
+        12
+    );
+}
+
+#[test]
 fn cuts_are_grouped_and_a_group_becomes_labels() {
     let (_folder, mut person) = labelling(0);
     person.click("Cut all clips");
@@ -139,7 +166,8 @@ fn a_group_is_shown_from_its_outliers_to_what_is_usual() {
         2 => -6.0,
         _ => 0.01 * at as f32,
     };
-    let shapes = (0..items.len()).map(|at| vec![place(at); 16]).collect();
+    let rows = (0..items.len()).map(|at| Rows::from_values(1, vec![place(at); 16]));
+    let shapes = Shapes::of(rows.collect::<Vec<_>>().iter());
     let classes = &mut person.window.state_mut().state.classes;
     classes.groups = Some(ClusteredItems::of(items.clone(), shapes, 0));
     classes.grouping += 1;

@@ -7,13 +7,13 @@ use std::process::ExitCode;
 use anyhow::Result;
 use morec::TimeSpan;
 use morec_db::labels::{JudgedCounts, SampleFilter, SampleState};
-use morec_db::{ClipFilter, ClipId, MotionDb, Proposal, ProposeOptions, most_informative};
+use morec_db::{ClipFilter, ClipId, MotionDb, Proposal, most_informative};
+use morec_ops::{ProposeSettings, share};
 use serde::Serialize;
 
 use crate::database;
 use crate::print;
 use crate::progress::StageBar;
-use crate::share::share;
 use crate::table::TextTable;
 
 /// Propose the other samples of the classes that are labelled
@@ -35,9 +35,8 @@ pub struct Args {
     /// The database
     #[arg(value_name = "DB")]
     db: PathBuf,
-    /// Only these classes, separated by commas
-    #[arg(long, value_delimiter = ',', value_name = "CLASSES")]
-    classes: Vec<String>,
+    #[command(flatten)]
+    settings: ProposeSettings,
     /// Accept the proposals that are there with at least this score, 0 to 1 (those of groups have 0)
     #[arg(long, value_name = "SCORE", value_parser = share)]
     accept: Option<f64>,
@@ -60,11 +59,8 @@ pub struct Args {
 
 /// Judges, or proposes anew; then lists.
 pub fn run(args: &Args) -> Result<ExitCode> {
-    if !args.classes.is_empty() {
-        let db = database::open_read_only(&args.db)?;
-        args.classes
-            .iter()
-            .try_for_each(|class| db.need_class(class))?;
+    if !args.settings.classes.is_empty() {
+        args.settings.check(&database::open_read_only(&args.db)?)?;
     }
     if args.accept.is_some() || args.reject.is_some() {
         return judge(args);
@@ -73,11 +69,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         return list(args, &database::open_read_only(&args.db)?);
     }
     let mut db = database::open(&args.db)?;
-    let options = ProposeOptions {
-        classes: args.classes.clone(),
-        ..ProposeOptions::default()
-    };
-    let proposals = db.propose_and_keep(&options, &StageBar::stoppable()?)?;
+    let proposals = args.settings.run(&mut db, &StageBar::stoppable()?)?;
     show(args, &db, proposals)
 }
 
@@ -90,7 +82,7 @@ fn proposed(db: &MotionDb) -> Result<Vec<morec_db::labels::DbSample>> {
 
 fn judge(args: &Args) -> Result<ExitCode> {
     let mut db = database::open(&args.db)?;
-    let judged = db.judge_by_score(&args.classes, (args.accept, args.reject), "user")?;
+    let judged = db.judge_by_score(&args.settings.classes, (args.accept, args.reject), "user")?;
     if args.json {
         print::print_json(&judged)?;
     } else {

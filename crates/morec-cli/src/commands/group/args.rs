@@ -3,11 +3,10 @@
 use std::path::PathBuf;
 
 use clap::ValueEnum;
-use morec::cluster::{AffinityParams, KwasParams};
+use morec_ops::GroupSettings;
 use serde::Serialize;
 
 use crate::poses::PoseArgs;
-use crate::share::share;
 
 /// Group samples or segments that are alike, of clips or of a database
 ///
@@ -33,33 +32,8 @@ pub struct Args {
     /// start, stop (frames, stop exclusive) or start_secs, stop_secs, or neither: then the whole clip is one sample
     #[arg(long, value_name = "FILE|DIR")]
     pub(super) labels: Option<PathBuf>,
-    /// Stretches to group [default: labelled samples if --labels are given, else cuts]
-    #[arg(long, value_enum)]
-    pub(super) of: Option<Grouping>,
-    /// Samples of these classes only, separated by commas
-    #[arg(long, value_delimiter = ',', value_name = "CLASSES")]
-    pub(super) classes: Vec<String>,
-    /// Method of grouping
-    #[arg(long, value_enum, default_value = "affinity")]
-    pub(super) method: GroupMethod,
-    /// Preference of a sample to represent a group, as a quantile of similarities (affinity)
-    #[arg(long, value_name = "Q", value_parser = share, default_value_t = AffinityParams::default().preference)]
-    pub(super) preference: f64,
-    /// Cut the hierarchy into N groups
-    #[arg(long, value_name = "N", conflicts_with = "height")]
-    pub(super) groups: Option<usize>,
-    /// Cut the hierarchy where groups are so far apart on average
-    #[arg(long, value_name = "DISTANCE")]
-    pub(super) height: Option<f64>,
-    /// Similarity above which two are of one group, 0 to 1 (kwas)
-    #[arg(long, value_name = "TAU", value_parser = share, default_value_t = KwasParams::default().tau)]
-    pub(super) tau: f64,
-    /// Principal directions of a sample that count (kwas)
-    #[arg(short, long, value_name = "N", default_value_t = KwasParams::default().k)]
-    pub(super) k: usize,
-    /// Scale similarity so that a sample is 1 like itself, however few directions count (kwas)
-    #[arg(long)]
-    pub(super) normalised: bool,
+    #[command(flatten)]
+    pub(super) settings: GroupSettings,
     /// Point on which samples are centred before they are compared (kwas, clips in files)
     #[arg(long, value_enum, default_value = "database")]
     pub(super) centre: Centre,
@@ -90,26 +64,4 @@ pub enum Centre {
     Database,
     /// Nothing, and all dimensions are kept: the mean pose counts, samples are more alike, and --tau belongs near 1
     None,
-}
-
-/// Stretches to group.
-#[derive(clap::ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Grouping {
-    /// Segments that morec cut found
-    Cuts,
-    /// Labelled samples
-    Labels,
-    /// Whole clips
-    Clips,
-}
-
-/// A method of grouping.
-#[derive(clap::ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
-pub enum GroupMethod {
-    /// Affinity propagation over evenly resampled rows
-    Affinity,
-    /// Average linkage over evenly resampled rows
-    Hierarchy,
-    /// Principal directions of poses, as in the thesis of 2009
-    Kwas,
 }

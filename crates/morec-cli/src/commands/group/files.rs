@@ -5,12 +5,14 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail};
-use morec::features::{BoneSet, FeatureParams, Rows, rows_of_clip};
+use morec::features::{BoneSet, FeatureParams, RowLayout, Rows, rows_of_clip};
 use morec::labels::ClipLength;
 use morec::segment::{KernelParams, kernel_cuts};
 
-use super::args::{Args, Grouping};
-use super::members::{GroupList, GroupMember, GroupedSample, labelled, only};
+use morec_ops::Grouping;
+
+use super::args::Args;
+use super::members::{GroupList, GroupMember, GroupedSample, labelled};
 
 /// A clip as feature rows.
 struct RowedClip {
@@ -47,7 +49,7 @@ pub fn run(paths: &[PathBuf], args: &Args) -> Result<ExitCode> {
     if items.is_empty() {
         bail!("nothing to group: no sample holds a tick of motion");
     }
-    GroupList::of(&items, args, args.labels.is_some()).print(args)?;
+    GroupList::of(&items, &args.settings, args.labels.is_some())?.print(args)?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -59,11 +61,15 @@ fn samples(
 ) -> Result<Vec<GroupedSample>> {
     if let Some(path) = &args.labels {
         let length = |(name, clip): (&String, &RowedClip)| (name.clone(), clip.length);
-        return labelled(path, &args.classes, &clips.iter().map(length).collect());
+        return labelled(
+            path,
+            &args.settings.classes,
+            &clips.iter().map(length).collect(),
+        );
     }
     let mut samples = Vec::new();
     for (name, clip) in clips {
-        let cuts = match args.of {
+        let cuts = match args.settings.of {
             Some(Grouping::Labels) => bail!("--of labels: which? Give --labels"),
             Some(Grouping::Clips) => Vec::new(),
             None | Some(Grouping::Cuts) => {
@@ -89,7 +95,10 @@ fn items(
     let item = |sample: GroupedSample| {
         let clip = clips.get(&sample.clip)?;
         let ticks = (sample.span).frames_among(clip.rows.len(), params.tick_hz());
-        let rows = (!ticks.is_empty()).then(|| only(&clip.rows.slice(ticks), clip.bones, bones))?;
+        let rows = (!ticks.is_empty()).then(|| {
+            let kept = RowLayout::kept_columns(clip.bones, bones);
+            clip.rows.slice(ticks).columns(&kept)
+        })?;
         Some(GroupMember {
             sample,
             id: None,

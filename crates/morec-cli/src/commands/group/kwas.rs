@@ -7,11 +7,12 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail};
 use morec::cluster::{
-    Clusters, KwasForm, KwasParams, PairCounts, Spectrum, adjusted_rand_index, kwas_clusters,
+    Clusters, KwasParams, PairCounts, Spectrum, adjusted_rand_index, kwas_clusters,
 };
 use morec::features::Rows;
 use morec::pca::{ComponentCount, Moments, Pca};
 use morec::segment::{PpcaParams, segment};
+use morec_ops::largest_first;
 use serde::Serialize;
 
 use super::args::{Args, Centre};
@@ -45,13 +46,17 @@ pub fn run(paths: &[PathBuf], args: &Args) -> Result<ExitCode> {
         .dims
         .map_or(ComponentCount::Quality(args.quality), ComponentCount::Dims);
     keep.check().map_err(anyhow::Error::msg)?;
-    let kwas = args.kwas()?;
+    let kwas = args.settings.kwas()?;
     let reader = args.poses.reader()?;
     let clips = read_clips(paths, &reader)?;
     let samples = match &args.labels {
         Some(path) => {
             let length = |(name, clip): (&String, &PosedClip)| (name.clone(), clip.length);
-            labelled(path, &args.classes, &clips.iter().map(length).collect())?
+            labelled(
+                path,
+                &args.settings.classes,
+                &clips.iter().map(length).collect(),
+            )?
         }
         None => cut(&reader, &clips)?,
     };
@@ -66,8 +71,8 @@ pub fn run(paths: &[PathBuf], args: &Args) -> Result<ExitCode> {
         .is_some()
         .then(|| Agreement::of(&samples, &clusters));
     let take = |members: Vec<usize>| members.into_iter().map(|i| samples[i].clone()).collect();
-    let mut clusters: Vec<Vec<GroupedSample>> = clusters.members().into_iter().map(take).collect();
-    clusters.sort_by_key(|cluster| std::cmp::Reverse(cluster.len()));
+    let groups = largest_first(&clusters).into_iter();
+    let clusters: Vec<Vec<GroupedSample>> = groups.map(take).collect();
     let (dims, quality) = pca.map_or((reader.set.row_dim(), 1.0), |pca| {
         (pca.dims(), pca.quality())
     });
@@ -87,24 +92,6 @@ pub fn run(paths: &[PathBuf], args: &Args) -> Result<ExitCode> {
     }
     out.flush()?;
     Ok(ExitCode::SUCCESS)
-}
-
-impl Args {
-    pub(super) fn kwas(&self) -> Result<KwasParams> {
-        if self.k == 0 {
-            bail!("--k 0: at least one direction must count");
-        }
-        let form = if self.normalised {
-            KwasForm::Normalised
-        } else {
-            KwasForm::Printed
-        };
-        Ok(KwasParams {
-            k: self.k,
-            tau: self.tau,
-            form,
-        })
-    }
 }
 
 fn read_clips(paths: &[PathBuf], reader: &PoseReader<'_>) -> Result<BTreeMap<String, PosedClip>> {

@@ -5,16 +5,14 @@ use std::path::Path;
 
 use anyhow::{Result, bail};
 use morec::TimeSpan;
-use morec::cluster::{
-    AffinityParams, Clusters, Hierarchy, KwasParams, PairCounts, Spectrum, adjusted_rand_index,
-    affinity_propagation, kwas_clusters, resampled, squared_distance,
-};
-use morec::features::{BoneSet, RowLayout, Rows};
+use morec::cluster::{PairCounts, adjusted_rand_index};
+use morec::features::Rows;
 use morec::labels::ClipLength;
 use morec_db::ClipId;
+use morec_ops::{GroupSettings, largest_first};
 use serde::Serialize;
 
-use super::args::{Args, GroupMethod};
+use super::args::Args;
 use crate::files::some_of;
 use crate::labels;
 use crate::print::{print_json, print_table};
@@ -61,7 +59,7 @@ pub struct GroupMember {
     pub rows: Rows,
 }
 
-/// GroupList, the largest first.
+/// Groups, the largest first.
 #[derive(Serialize)]
 pub struct GroupList {
     pub groups: Vec<Vec<GroupMember>>,
@@ -71,13 +69,10 @@ pub struct GroupList {
     adjusted_rand_index: Option<f64>,
 }
 
-/// Rows that a sample of any length becomes.
-const POINTS: usize = 16;
-
 impl GroupList {
-    /// GroupList `items` as `args` say, and holds the groups against the classes if there are any.
-    pub fn of(items: &[GroupMember], args: &Args, has_classes: bool) -> Self {
-        let clusters = clusters(items, args);
+    /// Groups `items`, and holds the groups against the classes if there are any.
+    pub fn of(items: &[GroupMember], settings: &GroupSettings, has_classes: bool) -> Result<Self> {
+        let clusters = settings.clusters(items.iter().map(|item| &item.rows))?;
         let mut groups = Self {
             groups: Vec::new(),
             rand_index: None,
@@ -93,14 +88,11 @@ impl GroupList {
             groups.rand_index = Some(PairCounts::count(&classes, &clusters.of).rand_index());
             groups.adjusted_rand_index = Some(adjusted_rand_index(&classes, &clusters.of));
         }
-        let members = clusters.members().into_iter();
+        let members = largest_first(&clusters).into_iter();
         groups.groups = members
             .map(|m| m.into_iter().map(|i| items[i].clone()).collect())
             .collect();
-        groups
-            .groups
-            .sort_by_key(|group: &Vec<GroupMember>| std::cmp::Reverse(group.len()));
-        groups
+        Ok(groups)
     }
 
     /// Prints the groups as a table, or as JSON if `args` say so.
@@ -108,49 +100,6 @@ impl GroupList {
         match args.json {
             true => print_json(self),
             false => print(self),
-        }
-    }
-}
-
-/// The columns of some of the bones, and of the root.
-pub fn only(rows: &Rows, of: BoneSet, wanted: BoneSet) -> Rows {
-    rows.columns(&RowLayout::kept_columns(of, wanted))
-}
-
-fn clusters(items: &[GroupMember], args: &Args) -> Clusters {
-    let points: Vec<Vec<f32>> = items
-        .iter()
-        .map(|item| resampled(&item.rows, POINTS))
-        .collect();
-    let apart = |a: usize, b: usize| squared_distance(&points[a], &points[b], POINTS);
-    match args.method {
-        GroupMethod::Affinity => {
-            let params = AffinityParams {
-                preference: args.preference,
-                ..AffinityParams::default()
-            };
-            affinity_propagation(items.len(), |a, b| -apart(a, b), &params)
-        }
-        GroupMethod::Hierarchy => {
-            let tree = Hierarchy::average(items.len(), |a, b| apart(a, b).sqrt());
-            match (args.groups, args.height) {
-                (Some(count), _) => tree.into_clusters(count),
-                (None, Some(height)) => tree.at_height(height),
-                (None, None) => tree.into_clusters((items.len() as f64).sqrt().ceil() as usize),
-            }
-        }
-        GroupMethod::Kwas => {
-            let spectra: Vec<Spectrum> = items
-                .iter()
-                .map(|item| Spectrum::of_rows(&item.rows))
-                .collect();
-            kwas_clusters(
-                &spectra,
-                &KwasParams {
-                    tau: args.tau,
-                    ..KwasParams::default()
-                },
-            )
         }
     }
 }

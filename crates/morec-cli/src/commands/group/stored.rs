@@ -5,14 +5,12 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use anyhow::{Result, bail};
-use morec::TimeSpan;
-use morec::features::{BoneSet, FeatureParams};
-use morec_db::labels::{GROUPED_BY, NewSample, SampleFilter, SampleState};
-use morec_db::{ClipFilter, ClipId, MotionDb, SegmentKind};
+use morec_db::labels::{GROUPED_BY, NewSample, SampleState};
+use morec_db::{ClipFilter, ClipId, MotionDb};
+use morec_ops::{GroupSettings, GroupedStretch, Grouping};
 
-use super::args::{Args, Grouping};
-use super::members::GroupedSample;
-use super::members::{GroupList, GroupMember, only};
+use super::args::Args;
+use super::members::{GroupList, GroupMember, GroupedSample};
 use crate::commands::db::page::{self, Page};
 use crate::database;
 use crate::progress::StageBar;
@@ -30,15 +28,12 @@ pub fn run(path: &Path, args: &Args) -> Result<ExitCode> {
     if let Some(path) = &args.report {
         page::check(path)?;
     }
-    args.classes
-        .iter()
-        .try_for_each(|class| db.need_class(class))?;
-    let of = args.of.unwrap_or(Grouping::Cuts);
-    let items = items(&db, of, args)?;
+    let items = items(&db, &args.settings)?;
     if items.is_empty() {
         bail!("nothing to group (morec cut finds segments, morec db label sets samples)");
     }
-    let grouped = GroupList::of(&items, args, of == Grouping::Labels);
+    let has_classes = args.settings.of == Some(Grouping::Labels);
+    let grouped = GroupList::of(&items, &args.settings, has_classes)?;
     if let Some(name) = &args.name_as {
         propose(&mut db, &grouped.groups, name)?;
     }
@@ -49,54 +44,23 @@ pub fn run(path: &Path, args: &Args) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn items(db: &MotionDb, of: Grouping, args: &Args) -> Result<Vec<GroupMember>> {
-    let params = FeatureParams::default();
-    let rows = db.rows_kept_if_writable(&params, &StageBar::stoppable()?)?;
+fn items(db: &MotionDb, settings: &GroupSettings) -> Result<Vec<GroupMember>> {
+    let stretches = settings.stretches(db, &StageBar::stoppable()?)?;
     let clips = db.clips(&ClipFilter::default())?;
-    let names: BTreeMap<ClipId, &str> = clips.iter().map(|c| (c.id, c.name.as_str())).collect();
-    let spans: Vec<(ClipId, TimeSpan, Option<String>)> = match of {
-        Grouping::Clips => clips
-            .iter()
-            .map(|c| (c.id, TimeSpan::new(0.0, c.duration_secs()), None))
-            .collect(),
-        Grouping::Cuts => {
-            let moving = db
-                .segments()?
-                .into_iter()
-                .filter(|s| s.kind == SegmentKind::Motion);
-            moving.map(|s| (s.clip, s.span, None)).collect()
-        }
-        Grouping::Labels => {
-            let samples = db.samples(&SampleFilter {
-                state: Some(SampleState::Accepted),
-                ..Default::default()
-            })?;
-            let wanted = samples
-                .into_iter()
-                .filter(|s| args.classes.is_empty() || args.classes.contains(&s.class));
-            wanted.map(|s| (s.clip, s.span(), Some(s.class))).collect()
-        }
-    };
-    let rows: BTreeMap<ClipId, _> = rows.into_iter().map(|r| (r.clip, r)).collect();
-    // Only bones that every one of them shows.
-    let bones = spans
-        .iter()
-        .filter_map(|s| rows.get(&s.0))
-        .map(|r| r.bones)
-        .reduce(BoneSet::and);
-    let bones = bones.unwrap_or(BoneSet::NONE);
-    let item = |(id, span, class): (ClipId, TimeSpan, Option<String>)| {
-        let of = rows.get(&id)?;
-        let ticks = span.frames_among(of.rows.len(), params.tick_hz());
-        let rows = (!ticks.is_empty()).then(|| only(&of.rows.slice(ticks), of.bones, bones))?;
-        let clip = (*names.get(&id)?).to_owned();
+    let names: BTreeMap<ClipId, String> = clips.into_iter().map(|c| (c.id, c.name)).collect();
+    let member = |of: GroupedStretch| {
+        let sample = GroupedSample {
+            clip: names.get(&of.clip)?.clone(),
+            span: of.span,
+            class: of.sample.map(|(_, class)| class),
+        };
         Some(GroupMember {
-            sample: GroupedSample { clip, span, class },
-            id: Some(id),
-            rows,
+            sample,
+            id: Some(of.clip),
+            rows: of.rows,
         })
     };
-    Ok(spans.into_iter().filter_map(item).collect())
+    Ok(stretches.into_iter().filter_map(member).collect())
 }
 
 fn propose(db: &mut MotionDb, groups: &[Vec<GroupMember>], name: &str) -> Result<()> {

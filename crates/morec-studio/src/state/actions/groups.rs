@@ -1,6 +1,7 @@
 //! Groups of what is alike, and what of them becomes classes.
 
 use morec_db::labels::{NewSample, SampleId, SampleState as Judged};
+use morec_ops::ProposeSettings;
 
 use super::lines::ShownCommand;
 use crate::jobs::{JobOutcome, group, propose};
@@ -11,7 +12,8 @@ impl State {
     pub(in crate::state) fn propose(&mut self) {
         let Some(store) = &self.store else { return };
         let db = store.path().to_owned();
-        self.show_line(ShownCommand::new("morec db propose").word(&db));
+        let line = ShownCommand::new("morec db propose").word(&db);
+        self.show_line(line.settings(&ProposeSettings::default()));
         self.jobs.start(
             "Looking for more",
             true,
@@ -24,9 +26,8 @@ impl State {
     pub(in crate::state) fn group(&mut self, cuts: bool) {
         let Some(store) = &self.store else { return };
         let db = store.path().to_owned();
-        let of = if cuts { "cuts" } else { "labels" };
-        let line = ShownCommand::new("morec group").word(&db).with("--of", of);
-        self.show_line(line.with("--method", "hierarchy"));
+        let line = ShownCommand::new("morec group").word(&db);
+        self.show_line(line.settings(&group::settings(cuts)));
         self.jobs.start(
             "Grouping",
             true,
