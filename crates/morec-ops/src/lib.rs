@@ -12,6 +12,7 @@ mod group;
 mod material;
 mod params;
 mod propose;
+mod recognize;
 mod search;
 mod text;
 mod train;
@@ -25,6 +26,7 @@ pub use group::{GroupMethod, GroupSettings, GroupedStretch, Grouping, Shapes, la
 pub use material::{accepted_labels, clips_to_train, training_data};
 pub use params::{Param, ParamError, from_fields};
 pub use propose::ProposeSettings;
+pub use recognize::RecognizeSettings;
 pub use search::{SearchSettings, example_of_clip, example_of_database};
 pub use train::{Method, TrainSettings, Unlabelled};
 pub use words::share;

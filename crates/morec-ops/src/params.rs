@@ -107,7 +107,12 @@ fn set<P: Serialize + DeserializeOwned>(params: P, param: &Param) -> Result<P, S
         return Err(format!("{name} is not set"));
     };
     let before = std::mem::replace(place, param.value.clone());
-    serde_json::from_value(tree).map_err(|error| format!("{error} (it is {before})"))
+    // What is not set as usual says nothing of what a value looks like.
+    let usual = match before.is_null() {
+        true => String::new(),
+        false => format!(" (it is {before})"),
+    };
+    serde_json::from_value(tree).map_err(|error| format!("{error}{usual}"))
 }
 
 /// The parameters in which `params` is not `usual`, of the same type.

@@ -8,9 +8,10 @@ use morec::features::{all_bones_of_clip, rows_of_clip};
 use morec::import::SignedAxis;
 use morec::index::MotionIndex;
 use morec::live::{Model, RecognizerCache, StartError};
-use morec::templates::{MatchGate, Matcher, Metric, PerformerKind, Stretches};
+use morec::templates::{MatchGate, Matcher, Metric, Stretches};
+use morec_ops::RecognizeSettings;
 use pyo3::prelude::*;
-use pyo3::types::PyBytes;
+use pyo3::types::{PyBytes, PyDict};
 use rayon::prelude::*;
 
 use crate::arrays::owned;
@@ -18,6 +19,7 @@ use crate::clip::PyClip;
 use crate::clip_data::ClipData;
 use crate::errors::{library_error, morec_error, value_error, warn};
 use crate::job;
+use crate::material::{keywords, operation_error};
 use crate::recognizer::{PointLayout, PyRecognizer};
 use crate::tables::{FoundWithDeviation, detections, plain};
 
@@ -79,34 +81,14 @@ fn completed(index: &MotionIndex, data: &Arc<ClipData>) -> ClipData {
 }
 
 impl PyIndex {
-    /// The index at another sensitivity, and for the performer that is expected.
-    fn tuned(
-        &self,
-        sensitivity: Option<f64>,
-        performer: Option<&str>,
-    ) -> PyResult<Arc<MotionIndex>> {
-        if sensitivity.is_none() && performer.is_none() {
+    /// The index as settings of recognition say.
+    fn tuned(&self, settings: Option<&Bound<'_, PyDict>>) -> PyResult<Arc<MotionIndex>> {
+        let settings: RecognizeSettings = keywords(settings)?;
+        if settings == RecognizeSettings::default() {
             return Ok(self.index.clone());
         }
-        let mut model = self.index.model.clone();
-        if let Some(alarms) = sensitivity {
-            let changed = model.with_sensitivity(alarms);
-            model = changed.map_err(|e| value_error(format!("sensitivity: {e}")))?;
-        }
-        if let Some(name) = performer {
-            let kind = match name {
-                "auto" => PerformerKind::Auto,
-                "teacher" => PerformerKind::Teacher,
-                "anyone" => PerformerKind::Anyone,
-                other => {
-                    return Err(value_error(format!(
-                        "performer: expected auto, teacher or anyone, found {other:?}"
-                    )));
-                }
-            };
-            let changed = model.with_performer(kind);
-            model = changed.map_err(|e| value_error(format!("performer: {e}")))?;
-        }
+        let model = settings.tuned(&self.index.model);
+        let model = model.map_err(operation_error)?;
         Ok(Arc::new(MotionIndex {
             model,
             ..(*self.index).clone()
@@ -150,17 +132,16 @@ impl PyIndex {
     }
 
     /// Everything that is recognised in clips, frame by frame as in a live stream.
-    #[pyo3(signature = (clips, *, sensitivity=None, performer=None, deviation=false, progress=None))]
+    #[pyo3(signature = (clips, *, deviation=false, progress=None, **settings))]
     fn recognize<'py>(
         &self,
         py: Python<'py>,
         clips: &Bound<'py, PyAny>,
-        sensitivity: Option<f64>,
-        performer: Option<&str>,
         deviation: bool,
         progress: Option<&Bound<'py, PyAny>>,
+        settings: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let index = self.tuned(sensitivity, performer)?;
+        let index = self.tuned(settings)?;
         let clips: Vec<Arc<ClipData>> = clips_of(clips)?
             .iter()
             .map(|clip| clip.get().data.clone())
@@ -198,17 +179,16 @@ impl PyIndex {
     }
 
     /// A recogniser for a live stream of joint positions.
-    #[pyo3(signature = (joints, *, roles=None, up=None, sensitivity=None, performer=None))]
+    #[pyo3(signature = (joints, *, roles=None, up=None, **settings))]
     fn recognizer(
         &self,
         py: Python<'_>,
         joints: &Bound<'_, PyAny>,
         roles: Option<&Bound<'_, PyAny>>,
         up: Option<&str>,
-        sensitivity: Option<f64>,
-        performer: Option<&str>,
+        settings: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<PyRecognizer> {
-        let index = self.tuned(sensitivity, performer)?;
+        let index = self.tuned(settings)?;
         let up: SignedAxis = up
             .unwrap_or("y")
             .parse()

@@ -9,7 +9,7 @@ use anyhow::{Context, Result};
 use morec::index::MotionIndex;
 use morec::live::{EventOptions, EventReader, Session, SessionOptions, Status, StatusHandle};
 
-use super::recognize::{SensitivityArgs, open_index};
+use super::recognize::open_index;
 use crate::interrupt::stop_on_ctrl_c;
 use crate::live::advice::{self, Advice};
 use crate::live::layout::LayoutArg;
@@ -21,6 +21,7 @@ use morec_live::Address;
 use morec_live::NamedEvent;
 use morec_live::Notices;
 use morec_live::summary;
+use morec_ops::RecognizeSettings;
 
 /// Recognise motions live, from a tracker to an event.
 ///
@@ -61,7 +62,7 @@ pub struct Args {
     /// The index, as `morec train` writes it
     index: PathBuf,
     #[command(flatten)]
-    sensitivity: SensitivityArgs,
+    settings: RecognizeSettings,
     /// Source of poses
     #[arg(long, required = true, value_name = "SOURCE")]
     listen: Vec<Address>,
@@ -101,7 +102,7 @@ struct Listening {
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
     let mut index = open_index(&args.index)?;
-    args.sensitivity.apply(&mut index)?;
+    index.model = args.settings.tuned(&index.model)?;
     let mut outlets = match args.emit.as_slice() {
         [] => vec![CountedSink::open(
             &"terminal:-".parse().map_err(anyhow::Error::msg)?,

@@ -12,8 +12,8 @@ use morec::import::{ImportOptions, Take};
 use morec::index::MotionIndex;
 use morec::labels::{FOUND_HEADER, FoundLine};
 use morec::live::{Detection, Model, PoseExtractor, RecognizerCache, recognize_clip_in_session};
-use morec::templates::PerformerKind;
 use morec_live::vmc::Bundling;
+use morec_ops::RecognizeSettings;
 
 use super::send::bundling;
 use crate::files::{ReadArgs, expand, mapping, open, rate, read, say_doubts};
@@ -57,7 +57,7 @@ pub struct Args {
     #[arg(long)]
     stats: bool,
     #[command(flatten)]
-    sensitivity: SensitivityArgs,
+    settings: RecognizeSettings,
     /// Roles of joints, where inference fails: lines of `role<TAB>joint name`
     #[arg(long, value_name = "FILE")]
     roles: Option<PathBuf>,
@@ -85,52 +85,6 @@ enum OutputFormat {
     Jsonl,
 }
 
-/// Readiness to report motions.
-#[derive(clap::Args, Debug, Clone, Copy)]
-pub struct SensitivityArgs {
-    /// False alarms a minute that background motion may raise, as in training: 0.1 is strict, 1 is generous [default:
-    /// as trained, usually 0.3]
-    #[arg(long, value_name = "ALARMS")]
-    sensitivity: Option<f64>,
-    /// Who performs what one or two people taught: auto is more generous once four recognised motions show a performer
-    /// unlike the teacher, anyone is so from the first frame, teacher never [default: auto]
-    #[arg(long, value_enum)]
-    performer: Option<PerformerArg>,
-}
-
-/// [`PerformerKind`] on the command line.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum PerformerArg {
-    Auto,
-    Teacher,
-    Anyone,
-}
-
-impl From<PerformerArg> for PerformerKind {
-    fn from(arg: PerformerArg) -> Self {
-        match arg {
-            PerformerArg::Auto => Self::Auto,
-            PerformerArg::Teacher => Self::Teacher,
-            PerformerArg::Anyone => Self::Anyone,
-        }
-    }
-}
-
-impl SensitivityArgs {
-    /// Sets the index's sensitivity and performer, if they were given.
-    pub fn apply(&self, index: &mut MotionIndex) -> Result<()> {
-        if let Some(alarms_per_minute) = self.sensitivity {
-            let changed = index.model.with_sensitivity(alarms_per_minute);
-            index.model = changed.context("--sensitivity")?;
-        }
-        if let Some(performer) = self.performer {
-            let changed = index.model.with_performer(performer.into());
-            index.model = changed.context("--performer")?;
-        }
-        Ok(())
-    }
-}
-
 /// Opens an index file; errors begin with its path.
 pub fn open_index(path: &Path) -> Result<MotionIndex> {
     let bytes = read(path)?;
@@ -140,7 +94,7 @@ pub fn open_index(path: &Path) -> Result<MotionIndex> {
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
     let mut index = open_index(&args.index)?;
-    args.sensitivity.apply(&mut index)?;
+    index.model = args.settings.tuned(&index.model)?;
     let mapping = mapping(args.roles.as_deref())?;
     let options = ImportOptions {
         mapping,

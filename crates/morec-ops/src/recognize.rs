@@ -1,0 +1,50 @@
+//! Recognition: how readily motions are reported, and for whom.
+
+use morec::live::Model;
+use morec::templates::PerformerKind;
+use serde::{Deserialize, Serialize};
+
+use crate::OperationError;
+use crate::words::choices;
+
+/// Readiness to report motions.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, clap::Args)]
+#[serde(default, deny_unknown_fields)]
+pub struct RecognizeSettings {
+    /// False alarms a minute that background motion may raise, as in training: 0.1 is strict, 1 is generous [default:
+    /// as trained, usually 0.3]
+    #[arg(long, value_name = "ALARMS")]
+    pub sensitivity: Option<f64>,
+    /// Who performs what one or two people taught: auto is more generous once four recognised motions show a performer
+    /// unlike the teacher, anyone is so from the first frame, teacher never [default: auto]
+    #[arg(long, value_parser = choices::<PerformerKind>([
+        ("auto", "Whoever it is"),
+        ("teacher", "The person who taught"),
+        ("anyone", "Somebody else"),
+    ]))]
+    pub performer: Option<PerformerKind>,
+}
+
+impl RecognizeSettings {
+    /// The model at this sensitivity, for this performer.
+    ///
+    /// # Errors
+    /// The model notes no rates of false alarms, has no gate for others than the teacher, or the sensitivity makes no sense.
+    pub fn tuned(&self, model: &Model) -> Result<Model, OperationError> {
+        let setting = |name: &'static str| {
+            move |error: &dyn std::fmt::Display| {
+                OperationError::Settings(format!("{name}: {error}"))
+            }
+        };
+        let mut tuned = model.clone();
+        if let Some(alarms_per_minute) = self.sensitivity {
+            let changed = tuned.with_sensitivity(alarms_per_minute);
+            tuned = changed.map_err(|e| setting("sensitivity")(&e))?;
+        }
+        if let Some(performer) = self.performer {
+            let changed = tuned.with_performer(performer);
+            tuned = changed.map_err(|e| setting("performer")(&e))?;
+        }
+        Ok(tuned)
+    }
+}
