@@ -158,7 +158,7 @@ impl SearchIndex {
     }
 }
 
-/// The sketch of a clip for a [`SearchPlan`]: 196 bytes, and 43 for four rows; `None` without rows, or of rows out of all measure.
+/// The sketch of a clip for a [`SearchPlan`]: 307 bytes, and 43 for two rows; `None` without rows, or of rows out of all measure.
 pub fn sketch_of(clip: &ClipRows) -> Option<Vec<u8>> {
     let laid = to_canonical(&clip.rows, clip.bones);
     sketch::sketch(&laid.rows).filter(|_| !clip.rows.is_empty())

@@ -30,21 +30,15 @@ impl RecognizeSettings {
     ///
     /// # Errors
     /// The model notes no rates of false alarms, has no gate for others than the teacher, or the sensitivity makes no sense.
-    pub fn tuned(&self, model: &Model) -> Result<Model, OperationError> {
-        let setting = |name: &'static str| {
-            move |error: &dyn std::fmt::Display| {
-                OperationError::Settings(format!("{name}: {error}"))
-            }
-        };
-        let mut tuned = model.clone();
+    pub fn tuned(&self, mut model: Model) -> Result<Model, OperationError> {
         if let Some(alarms_per_minute) = self.sensitivity {
-            let changed = tuned.with_sensitivity(alarms_per_minute);
-            tuned = changed.map_err(|e| setting("sensitivity")(&e))?;
+            let changed = model.with_sensitivity(alarms_per_minute);
+            model = changed.map_err(|e| OperationError::Settings(format!("sensitivity: {e}")))?;
         }
         if let Some(performer) = self.performer {
-            let changed = tuned.with_performer(performer);
-            tuned = changed.map_err(|e| setting("performer")(&e))?;
+            let changed = model.with_performer(performer);
+            model = changed.map_err(|e| OperationError::Settings(format!("performer: {e}")))?;
         }
-        Ok(tuned)
+        Ok(model)
     }
 }

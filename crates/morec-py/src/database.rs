@@ -7,6 +7,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use morec::files::{FileReader, list};
 use morec::labels::{ClipLength, Sample};
 use morec::pivots::PivotSet;
+use morec::progress::Progress;
 use morec_db::labels::{NewSample, SampleFilter, SampleState};
 use morec_db::search::{Example, SearchIndex};
 use morec_db::{ClipFilter, ClipId, ClipInfo, ClipUpdate, DbError, ImportOutcome, MotionDb};
@@ -62,6 +63,19 @@ impl PyDatabase {
             Some(db) => work(db).map_err(db_error),
             None => Err(value_error(format!("{}: closed", self.path.display()))),
         })
+    }
+
+    /// Does `work` that takes long, with reports of its progress.
+    fn run<T: Send>(
+        &self,
+        py: Python<'_>,
+        progress: Option<&Bound<'_, PyAny>>,
+        work: impl FnOnce(&mut MotionDb, &dyn Progress) -> PyResult<T> + Send,
+    ) -> PyResult<T> {
+        job::run(py, progress, |progress| match held(&self.db).as_mut() {
+            Some(db) => work(db, progress),
+            None => Err(value_error("the database is closed")),
+        })?
     }
 
     fn changed(&self) {
@@ -176,12 +190,10 @@ impl PyDatabase {
             remove_tags: Vec::new(),
         };
         self.changed();
-        let report = job::run(py, progress, |progress| match held(&self.db).as_mut() {
-            Some(db) => db
-                .import(&files, &reader, &about, progress)
-                .map_err(db_error),
-            None => Err(value_error("the database is closed")),
-        })??;
+        let report = self.run(py, progress, |db, progress| {
+            let imported = db.import(&files, &reader, &about, progress);
+            imported.map_err(db_error)
+        })?;
         let mut rows = Vec::new();
         for (path, outcome) in &report.files {
             let row = PyDict::new(py);
@@ -406,13 +418,11 @@ impl PyDatabase {
             name,
             ..ClipFilter::default()
         };
-        let report = job::run(py, progress, |progress| match held(&self.db).as_mut() {
-            Some(db) => db
-                .find_clips(&filter)
-                .and_then(|clips| db.cut(&clips, &cutter, progress))
-                .map_err(db_error),
-            None => Err(value_error("the database is closed")),
-        })??;
+        let report = self.run(py, progress, |db, progress| {
+            let clips = db.find_clips(&filter);
+            let cut = clips.and_then(|clips| db.cut(&clips, &cutter, progress));
+            cut.map_err(db_error)
+        })?;
         warn(
             py,
             report
@@ -436,16 +446,12 @@ impl PyDatabase {
         settings: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let settings: GroupSettings = keywords(settings)?;
-        let (stretches, groups, names) = job::run(py, progress, |progress| {
-            let db = held(&self.db);
-            let Some(db) = db.as_ref() else {
-                return Err(value_error("the database is closed"));
-            };
+        let (stretches, groups, names) = self.run(py, progress, |db, progress| {
             let stretches = settings.stretches(db, progress).map_err(db_error)?;
             let clusters = settings.clusters(stretches.iter().map(|of| &of.rows));
             let groups = largest_first(&clusters.map_err(operation_error)?);
             Ok((stretches, groups, names(db).map_err(db_error)?))
-        })??;
+        })?;
         let mut rows = Vec::new();
         for (number, group) in groups.iter().enumerate() {
             for of in group.iter().map(|at| &stretches[*at]) {
@@ -471,14 +477,10 @@ impl PyDatabase {
         settings: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let settings: ProposeSettings = keywords(settings)?;
-        let (proposals, names) = job::run(py, progress, |progress| {
-            let mut db = held(&self.db);
-            let Some(db) = db.as_mut() else {
-                return Err(value_error("the database is closed"));
-            };
+        let (proposals, names) = self.run(py, progress, |db, progress| {
             let proposals = settings.run(db, progress).map_err(db_error)?;
             Ok((proposals, names(db).map_err(db_error)?))
-        })??;
+        })?;
         let mut rows = Vec::new();
         for p in &proposals {
             let row = PyDict::new(py);

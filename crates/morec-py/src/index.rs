@@ -87,7 +87,7 @@ impl PyIndex {
         if settings == RecognizeSettings::default() {
             return Ok(self.index.clone());
         }
-        let model = settings.tuned(&self.index.model);
+        let model = settings.tuned(self.index.model.clone());
         let model = model.map_err(operation_error)?;
         Ok(Arc::new(MotionIndex {
             model,

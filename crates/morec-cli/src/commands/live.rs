@@ -102,7 +102,7 @@ struct Listening {
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
     let mut index = open_index(&args.index)?;
-    index.model = args.settings.tuned(&index.model)?;
+    index.model = args.settings.tuned(index.model)?;
     let mut outlets = match args.emit.as_slice() {
         [] => vec![CountedSink::open(
             &"terminal:-".parse().map_err(anyhow::Error::msg)?,

@@ -94,7 +94,7 @@ pub fn open_index(path: &Path) -> Result<MotionIndex> {
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
     let mut index = open_index(&args.index)?;
-    index.model = args.settings.tuned(&index.model)?;
+    index.model = args.settings.tuned(index.model)?;
     let mapping = mapping(args.roles.as_deref())?;
     let options = ImportOptions {
         mapping,

@@ -12,8 +12,7 @@ use rayon::prelude::*;
 
 use super::boxes::BoxView;
 use super::candidates::{length_cost, pace_range, step, window_lengths};
-use super::probe::{SIDE, SharedLanes, SketchProbe};
-use super::rank::probes;
+use super::probe::{SIDE, SharedLanes, SketchProbes};
 use super::sketch::{Sketch, SketchBytes, SketchTables};
 use super::summary::WEIGHTS;
 use super::window_sketch::{PARTS, WindowSketch, asinh};
@@ -61,11 +60,8 @@ pub fn lower_bounds<'a>(
     reach: f32,
     clips: impl IndexedParallelIterator<Item = SketchedClip<'a>>,
 ) -> Vec<f32> {
-    let probes = probes(example, options, None);
     let query = SketchQuery {
-        probes: probes.iter().map(SketchProbe::new).collect(),
-        rows: example.laid.rows.len(),
-        whole: probes.iter().any(|probe| probe.whole),
+        example: SketchProbes::of(example, options),
         tables: SketchTables::new(),
     };
     // What is beyond it stays so after rounding.
@@ -79,9 +75,7 @@ pub fn lower_bounds<'a>(
 
 /// An example as sketches are compared with it.
 struct SketchQuery {
-    probes: Vec<SketchProbe>,
-    rows: usize,
-    whole: bool,
+    example: SketchProbes,
     tables: SketchTables,
 }
 
@@ -95,11 +89,10 @@ impl SketchQuery {
         beyond: f32,
     ) -> f32 {
         if work.bones != Some(clip.bones) {
-            let shared = self.probes.iter().map(|p| p.bones.and(clip.bones));
-            work.shared = shared.map(SharedLanes::of).collect();
+            work.shared = self.example.shared(clip.bones);
             work.bones = Some(clip.bones);
         }
-        if work.shared.iter().any(|shared| shared.bones.is_empty()) {
+        if work.shared.is_empty() {
             return f32::INFINITY;
         }
         let least = least_bound(self, work, clip.sketch, depth, beyond);
@@ -118,19 +111,15 @@ impl SketchQuery {
     ) -> Option<f32> {
         let bytes = SketchBytes::of(bytes)?;
         let rows = bytes.rows;
-        let excess = if self.whole {
-            length_cost(self.rows, rows, 1.4)
-        } else {
-            0.0
-        };
+        let excess = self.example.excess(rows);
         // The lengths of all windows.
         let mut lengths = [0; 4];
         let mut count = 0;
         if rows >= 3 {
-            lengths[..3].copy_from_slice(&window_lengths(self.rows, rows));
+            lengths[..3].copy_from_slice(&window_lengths(self.example.rows, rows));
             count = 3;
         }
-        if self.whole {
+        if self.example.whole {
             lengths[count] = rows;
             count += 1;
         }
@@ -141,7 +130,7 @@ impl SketchQuery {
         }
         work.sketch.read(&bytes, &self.tables);
         for length in lengths {
-            let cost = length_cost(*length, self.rows, pace_range()) + excess;
+            let cost = length_cost(*length, self.example.rows, pace_range()) + excess;
             let (step, last) = (step(*length), rows - length);
             let mut start = 0;
             while start <= last {
@@ -167,13 +156,13 @@ impl SketchQuery {
     ) -> f32 {
         let within = BoxView::new(bytes.within);
         let mut least = f32::INFINITY;
-        for at in 0..self.probes.len() {
-            let (probe, shared) = (&self.probes[at], &work.shared[at]);
+        for at in 0..self.example.probes.len() {
+            let (probe, shared) = (&self.example.probes[at], &work.shared[at]);
             let pose = within.pose(&probe.pose.0, &shared.mask.0).sqrt();
             let travel = within.travel(&probe.travel).sqrt();
             let still = excess + WEIGHTS.pose * shared.scale * pose + WEIGHTS.travel * travel;
             for length in lengths {
-                let cost = length_cost(*length, self.rows, pace_range());
+                let cost = length_cost(*length, self.example.rows, pace_range());
                 let octaves = within.octaves(*length, &probe.roots, &shared.bone_mask);
                 let motion = WEIGHTS.motion * shared.scale * octaves.sqrt();
                 least = least.min(still + cost + motion);
@@ -202,8 +191,8 @@ impl SketchQuery {
         let travels = asinh(&travels);
         for at in 0..count {
             let window = &mut windows[at];
-            for probe in 0..self.probes.len() {
-                let (probe, shared) = (&self.probes[probe], &shared[probe]);
+            for probe in 0..self.example.probes.len() {
+                let (probe, shared) = (&self.example.probes[probe], &shared[probe]);
                 // Each part of the distance is a bound of the whole: as soon as they exceed what is known, the rest is not
                 // computed. Pose and travel need the window's ends alone, and tell most windows from most examples.
                 let travel = WEIGHTS.travel * window.travel(probe, &travels, TRAVEL * at);

@@ -10,9 +10,7 @@ use multiversion::multiversion;
 use rayon::prelude::*;
 
 use super::bound::{SketchedClip, SketchedClips};
-use super::candidates::length_cost;
-use super::probe::{OCTAVES, SIDE, SharedLanes, SketchProbe};
-use super::rank::probes;
+use super::probe::{OCTAVES, SIDE, SharedLanes, SketchProbe, SketchProbes};
 use super::sketch::{Sketch, SketchBytes, SketchLanes, SketchTables};
 use super::summary::WEIGHTS;
 use super::window_sketch::{PARTS, WindowSketch, asinh};
@@ -62,16 +60,11 @@ impl SketchCodes {
         options: &SearchOptions,
         clips: &impl SketchedClips,
     ) -> Vec<f32> {
-        let probes = probes(example, options, None);
-        let query = CodeQuery {
-            probes: probes.iter().map(SketchProbe::new).collect(),
-            rows: example.laid.rows.len(),
-            whole: probes.iter().any(|probe| probe.whole),
-        };
+        let query = SketchProbes::of(example, options);
         let groups = self.groups(query.rows, clips);
         groups
             .par_iter()
-            .flat_map_iter(|group| query.estimates(group))
+            .flat_map_iter(|group| group.estimates(&query))
             .collect()
     }
 
@@ -94,6 +87,7 @@ impl SketchCodes {
 impl CodeGroup {
     fn of<'a>(level: usize, clips: impl Iterator<Item = SketchedClip<'a>>) -> Self {
         let (mut sketch, tables) = (Sketch::default(), SketchTables::new());
+        let mut window = WindowSketch::default();
         let mut group = Self::default();
         for clip in clips {
             let mut rows = 0;
@@ -104,16 +98,39 @@ impl CodeGroup {
                 let last = rows - length;
                 let starts = (0..last).step_by((length / 2).max(1));
                 for start in starts.chain([last]) {
-                    let mut window = WindowSketch::default();
                     window.turn(start, length);
-                    group
-                        .codes
-                        .push(code_of_window(&mut window, &sketch, &tables));
+                    let code = code_of_window(&mut window, &sketch, &tables);
+                    group.codes.push(code);
                 }
             }
             group.clips.push((clip.bones, rows, group.codes.len()));
         }
         group
+    }
+
+    /// About how far the nearest window of each clip is.
+    fn estimates(&self, query: &SketchProbes) -> Vec<f32> {
+        let (mut of_bones, mut probes) = (None, Vec::new());
+        let mut begin = 0;
+        let mut estimates = Vec::with_capacity(self.clips.len());
+        for (bones, rows, end) in &self.clips {
+            // Most clips show the same bones.
+            if of_bones != Some(*bones) {
+                let shared = query.shared(*bones);
+                let pairs = query.probes.iter().zip(&shared);
+                probes = pairs.map(|(p, shared)| ProbeCode::of(p, shared)).collect();
+                of_bones = Some(*bones);
+            }
+            let codes = &self.codes[begin..*end];
+            begin = *end;
+            estimates.push(match (probes.is_empty(), codes.is_empty()) {
+                (true, _) => f32::INFINITY,
+                // Nothing is known of it: it is looked at first.
+                (false, true) => 0.0,
+                (false, false) => query.excess(*rows) + nearest(&probes, codes),
+            });
+        }
+        estimates
     }
 }
 
@@ -154,53 +171,6 @@ fn code(octaves: &[SketchLanes; OCTAVES], travel: &[f32]) -> [u8; VALUES] {
         code[MOTION + i] = (travel[i] / UNITS.1 + 128.5) as u8;
     }
     code
-}
-
-/// An example as codes are compared with it.
-struct CodeQuery {
-    probes: Vec<SketchProbe>,
-    rows: usize,
-    whole: bool,
-}
-
-impl CodeQuery {
-    fn estimates(&self, group: &CodeGroup) -> Vec<f32> {
-        let mut shared: Option<(BoneSet, Vec<ProbeCode>)> = None;
-        let mut begin = 0;
-        let mut estimates = Vec::with_capacity(group.clips.len());
-        for (bones, rows, end) in &group.clips {
-            if shared.as_ref().is_none_or(|(of, _)| of != bones) {
-                shared = Some((*bones, self.codes(*bones)));
-            }
-            let codes = &group.codes[begin..*end];
-            begin = *end;
-            let probes = shared.as_ref().map_or(&[][..], |(_, codes)| codes);
-            let excess = match self.whole {
-                true => length_cost(self.rows, *rows, 1.4),
-                false => 0.0,
-            };
-            estimates.push(match (probes.is_empty(), codes.is_empty()) {
-                (true, _) => f32::INFINITY,
-                // Nothing is known of it: it is looked at first.
-                (false, true) => 0.0,
-                (false, false) => excess + nearest(probes, codes),
-            });
-        }
-        estimates
-    }
-
-    /// The example, and its mirror image, for clips of some bones; nothing if one shares none with them.
-    fn codes(&self, bones: BoneSet) -> Vec<ProbeCode> {
-        let shared = |probe: &SketchProbe| SharedLanes::of(probe.bones.and(bones));
-        let of_probes: Vec<_> = self.probes.iter().map(|p| (p, shared(p))).collect();
-        if of_probes.iter().any(|(_, shared)| shared.bones.is_empty()) {
-            return Vec::new();
-        }
-        let of_probes = of_probes.iter();
-        of_probes
-            .map(|(p, shared)| ProbeCode::of(p, shared))
-            .collect()
-    }
 }
 
 impl ProbeCode {

@@ -9,10 +9,10 @@ use super::{Example, Hit, SearchIndex, SearchOptions};
 use crate::ClipId;
 use crate::rows::ClipRows;
 
-/// Of this many clips the likeliest is looked at before all others.
-const LIKELIEST: usize = 20;
-/// At least this many are, for each window that is wanted.
-const LIKELY: usize = 8;
+/// One clip in this many, the likeliest, is bound closely before all others.
+const LIKELY_ONE_IN: usize = 20;
+/// At least this many clips are, for each window that is wanted.
+const LIKELY_PER_WINDOW: usize = 8;
 
 /// Clips that are read at once: this many may be read in vain.
 const BATCH: usize = 128;
@@ -82,7 +82,7 @@ impl SearchPlan {
         let estimates = codes.estimates(&self.example, &self.options, clips);
         let is_searched = |at: &usize| estimates[*at] < f32::INFINITY;
         self.left = (0..estimates.len()).filter(is_searched).collect();
-        let count = (clips.count() / LIKELIEST).max(LIKELY * self.wanted);
+        let count = (clips.count() / LIKELY_ONE_IN).max(LIKELY_PER_WINDOW * self.wanted);
         least(&estimates, &mut self.left, count);
         self.bound(BoundDepth::Eighths, clips);
         self.likeliest.clone_from(&self.left);

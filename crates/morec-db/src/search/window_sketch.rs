@@ -129,15 +129,8 @@ impl WindowSketch {
     #[inline(always)]
     pub fn halves(&self, probe: &SketchProbe, shared: &SharedLanes) -> f32 {
         let mut squares = SketchLanes::ZERO;
-        let [first, middle, last] = [0, PARTS / 2, PARTS].map(|part| &self.ends[part].0);
-        for lane in 0..LANES {
-            // Of one pair the deviation is its size, without a root.
-            let h = (2.0 * middle[lane] - first[lane] - last[lane]) * self.per_row;
-            let apart = probe.octaves[0].0[lane] - h.abs();
-            squares.0[lane] = apart * apart;
-        }
-        let error = self.errors[0][0] + 2.0 * self.errors[PARTS / 2][0] + self.errors[PARTS][0];
-        (masked_sum(&squares, shared).sqrt() - error * self.per_row).max(0.0)
+        let moved = self.octave(0, probe, &mut squares);
+        (masked_sum(&squares, shared).sqrt() - moved.sqrt()).max(0.0)
     }
 
     /// Distance of the deviations in the upper octaves, at least: of as many as give most.
