@@ -65,18 +65,6 @@ pub fn mapping(path: Option<&Path>) -> Result<Option<Mapping>> {
     ))
 }
 
-/// The first few of many names.
-pub fn some_of<'a>(names: impl ExactSizeIterator<Item = &'a String>) -> String {
-    const SHOWN: usize = 5;
-    let more = names.len().saturating_sub(SHOWN);
-    let shown: Vec<&str> = names.take(SHOWN).map(String::as_str).collect();
-    if more == 0 {
-        shown.join(", ")
-    } else {
-        format!("{} and {more} more", shown.join(", "))
-    }
-}
-
 /// Says on standard error what folders hold besides clips; whether motion is among it.
 pub fn say_left_out(listing: &Listing) -> bool {
     for FileError { path, kind } in &listing.left_out {

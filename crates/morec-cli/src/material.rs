@@ -3,18 +3,18 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, anyhow, bail};
+use anyhow::{Context, Result, bail};
 use clap::Args;
 use morec::formats::Warning;
 use morec::import::{ImportOptions, Take};
-use morec::labels::{Label, Labels, read_people};
-use morec::train::{DataError, StreamKind, TrainClip, TrainingData};
-use morec_db::{BACKGROUND, ClipFilter, ClipInfo, MotionDb, hint};
-use morec_ops::{TrainSettings, accepted_labels, clips_to_train};
+use morec::labels::{Labels, People, read_people};
+use morec::train::{StreamKind, TrainClip, TrainingData, TrainingMaterial};
+use morec_db::ClipFilter;
+use morec_ops::{MaterialBeside, TrainSettings, training_data};
 use rayon::prelude::*;
 
 use crate::database;
-use crate::files::{ReadArgs, expand, mapping, read, some_of, takes};
+use crate::files::{ReadArgs, expand, mapping, read, takes};
 use crate::labels;
 
 /// Training data: clips, labels, background.
@@ -54,9 +54,7 @@ pub struct MaterialArgs {
 pub struct ClipMaterial {
     /// Labelled and background clips, and the samples in them.
     pub data: TrainingData,
-    /// Clips that hold none of the classes, for testing.
-    pub unknown: Vec<TrainClip>,
-    /// Bytes that the labelled clips would take as BVH.
+    /// Bytes of the files of the labelled clips.
     pub labelled_bytes: u64,
 }
 
@@ -72,28 +70,41 @@ impl MaterialArgs {
     /// Loads everything; `unknown` are paths like those of `--background`. What is left out is said on standard
     /// error.
     pub fn load(&self, unknown: &[PathBuf]) -> Result<ClipMaterial> {
-        if let Some(db) = &self.db {
-            return self.load_db(db, unknown);
-        }
+        let loaded = match &self.db {
+            Some(db) => self.load_db(db, unknown),
+            None => self.load_files(unknown),
+        }?;
+        say_notes(&loaded.data);
+        Ok(loaded)
+    }
+
+    fn load_files(&self, unknown: &[PathBuf]) -> Result<ClipMaterial> {
         let (labels, people) = self.labels()?;
         let taught = expand(&self.clips)?;
         let background = self.named(&taught, &self.background)?;
         let unknown = self.named(&taught, unknown)?;
-        let excluded: BTreeSet<&str> = self.exclude.iter().map(String::as_str).collect();
-        let mut paths = taught.clone();
+        let mut paths = taught;
         paths.extend(background.iter().chain(&unknown).cloned());
         let mut clips = load_clips(&paths, &self.read, &self.import_options()?)?;
-        clips.retain(|c| !excluded.contains(c.clip.name.as_str()));
-        for loaded in &mut clips {
-            loaded.clip.person = people.get(&loaded.clip.name).cloned();
+        clips.retain(|loaded| !self.exclude.contains(&loaded.clip.name));
+        let background = names_in(&clips, &background);
+        for LoadedClip { clip, .. } in &mut clips {
+            if background.contains(&clip.name) {
+                clip.source = StreamKind::Background;
+            }
         }
-        sort_out(
-            clips,
-            &labels,
-            &self.settings.classes,
-            &set_of(&background),
-            &set_of(&unknown),
-        )
+        let material = TrainingMaterial {
+            labels: &labels,
+            people: people.as_ref(),
+            classes: &self.settings.classes,
+            unknown: &names_in(&clips, &unknown),
+        };
+        let bytes = bytes_by_name(&clips);
+        let data = material.sort_out(clips.into_iter().map(|loaded| loaded.clip).collect())?;
+        Ok(ClipMaterial {
+            labelled_bytes: data.labelled().map(|clip| bytes[&clip.name]).sum(),
+            data,
+        })
     }
 
     /// Clips that are only tested, with the labels that lie in them, of `classes`.
@@ -102,103 +113,66 @@ impl MaterialArgs {
         paths: &[PathBuf],
         labels: &Path,
         classes: &[String],
-    ) -> Result<ClipMaterial> {
+    ) -> Result<TrainingData> {
         let text = labels::read(labels)?;
         warn(labels, &text.warnings);
-        let people: BTreeMap<String, String> = text
-            .rows
-            .iter()
-            .filter_map(|r| Some((r.clip.clone(), r.person.clone()?)))
-            .collect();
-        let mut clips = load_clips(&expand(paths)?, &self.read, &self.import_options()?)?;
-        for loaded in &mut clips {
-            loaded.clip.person = people.get(&loaded.clip.name).cloned();
-        }
-        let none = BTreeSet::new();
-        sort_out(clips, &text, classes, &none, &none)
+        let clips = load_clips(&expand(paths)?, &self.read, &self.import_options()?)?;
+        let material = TrainingMaterial {
+            labels: &text,
+            people: None,
+            classes,
+            unknown: &BTreeSet::new(),
+        };
+        let data = material.sort_out(clips.into_iter().map(|loaded| loaded.clip).collect())?;
+        say_notes(&data);
+        Ok(data)
     }
 
     /// The same from a database: its clips that hold samples, and those marked or named as background, or named as unknown.
-    /// A clip's path is its name here.
     fn load_db(&self, path: &Path, unknown: &[PathBuf]) -> Result<ClipMaterial> {
         let db = database::open_read_only(path)?;
-        let mut infos = db.clips(&ClipFilter::default())?;
-        let (mut files, mut names) = (Vec::new(), BTreeSet::new());
-        let mut aside = |given: &[PathBuf]| -> Result<BTreeSet<PathBuf>> {
-            let mut set = BTreeSet::new();
-            for path in given {
-                if infos.iter().any(|info| Path::new(&info.name) == path) {
-                    names.insert(path.to_string_lossy().into_owned());
-                    set.insert(path.clone());
-                } else {
-                    let found = expand(std::slice::from_ref(path))?;
-                    set.extend(found.iter().map(|p| canonical(p)));
-                    files.extend(found);
-                }
-            }
-            Ok(set)
+        let infos = db.clips(&ClipFilter::default())?;
+        let stored = |path: &PathBuf| infos.iter().any(|info| Path::new(&info.name) == path);
+        let apart = |given: &[PathBuf]| -> Result<(BTreeSet<String>, Vec<PathBuf>)> {
+            let (names, files): (Vec<_>, Vec<_>) = given.iter().cloned().partition(stored);
+            let name = |path: PathBuf| path.to_string_lossy().into_owned();
+            Ok((names.into_iter().map(name).collect(), expand(&files)?))
         };
-        let (mut background, unknown) = (aside(&self.background)?, aside(unknown)?);
-        for name in self.marked(&db)? {
-            background.insert(PathBuf::from(&name));
-            names.insert(name);
-        }
-        let labels = accepted_labels(&db)?;
-        names.extend(labels.rows.iter().map(|row| row.clip.clone()));
-        infos.retain(|info| names.contains(&info.name) && !self.exclude.contains(&info.name));
-        let loaded = |(info, clip): (ClipInfo, TrainClip)| LoadedClip {
-            path: PathBuf::from(&info.name),
-            file_bytes: std::fs::metadata(&info.path).map_or(0, |m| m.len()),
-            clip,
+        let (mut background, background_files) = apart(&self.background)?;
+        let (mut unknown, unknown_files) = apart(unknown)?;
+        let files = [background_files.as_slice(), &unknown_files].concat();
+        let clips = match files.as_slice() {
+            [] => Vec::new(),
+            files => load_clips(files, &self.read, &self.import_options()?)?,
         };
-        let stored = clips_to_train(&db, infos)?;
-        let mut clips: Vec<LoadedClip> = stored.into_iter().map(loaded).collect();
-        if !files.is_empty() {
-            clips.extend(load_clips(&files, &self.read, &self.import_options()?)?);
-        }
-        sort_out(
-            clips,
-            &labels,
-            &self.settings.classes,
-            &background,
-            &unknown,
-        )
+        background.extend(names_in(&clips, &background_files));
+        unknown.extend(names_in(&clips, &unknown_files));
+        let beside = MaterialBeside {
+            background,
+            unknown,
+            exclude: self.exclude.iter().cloned().collect(),
+            clips: clips.into_iter().map(|loaded| loaded.clip).collect(),
+        };
+        let data = training_data(&db, &self.settings.classes, beside)?;
+        let labelled: BTreeSet<&str> = data.labelled().map(|clip| clip.name.as_str()).collect();
+        let labelled = infos.iter().filter(|i| labelled.contains(i.name.as_str()));
+        Ok(ClipMaterial {
+            labelled_bytes: labelled.map(|info| file_bytes(Path::new(&info.path))).sum(),
+            data,
+        })
     }
 
-    /// Names of the clips of a database that are marked as background. Those that hold samples of the classes are said on
-    /// standard error and left out.
-    fn marked(&self, db: &MotionDb) -> Result<Vec<String>> {
-        let name = |info: ClipInfo| info.name;
-        let marked = db.background(&self.settings.classes)?;
-        if !marked.labelled.is_empty() {
-            let names: Vec<String> = marked.labelled.into_iter().map(name).collect();
-            eprintln!(
-                "morec: {} clips have the tag {BACKGROUND}, but hold samples of the classes: they are used as labelled clips: {}",
-                names.len(),
-                some_of(names.iter())
-            );
-        }
-        Ok(marked.clips.into_iter().map(name).collect())
-    }
-
-    /// The labels, and who is seen in which clip, labelled or not.
-    fn labels(&self) -> Result<(Labels, BTreeMap<String, String>)> {
+    /// The labels, and the table of people.
+    fn labels(&self) -> Result<(Labels, Option<People>)> {
         let path = self.labels.as_deref().context("--labels: which?")?;
-        let mut labels = labels::read(path)?;
+        let labels = labels::read(path)?;
         warn(path, &labels.warnings);
-        let mut by_clip = BTreeMap::new();
-        if let Some(path) = &self.people {
-            let people = read_people(&read(path)?).with_context(|| shown(path))?;
-            warn(path, &people.warnings);
-            labels.add_people(&people);
-            by_clip = people.by_clip;
-        }
-        let labelled = labels
-            .rows
-            .iter()
-            .filter_map(|r| Some((r.clip.clone(), r.person.clone()?)));
-        by_clip.extend(labelled);
-        Ok((labels, by_clip))
+        let Some(path) = &self.people else {
+            return Ok((labels, None));
+        };
+        let people = read_people(&read(path)?).with_context(|| shown(path))?;
+        warn(path, &people.warnings);
+        Ok((labels, Some(people)))
     }
 
     fn import_options(&self) -> Result<ImportOptions> {
@@ -278,7 +252,7 @@ pub fn load_clips(
 }
 
 fn load_file(path: &Path, args: &ReadArgs, options: &ImportOptions) -> Result<Vec<LoadedClip>> {
-    let file_bytes = std::fs::metadata(path).map_or(0, |m| m.len());
+    let file_bytes = file_bytes(path);
     let loaded = |take: Take| LoadedClip {
         clip: take.into(),
         path: canonical(path),
@@ -290,87 +264,26 @@ fn load_file(path: &Path, args: &ReadArgs, options: &ImportOptions) -> Result<Ve
         .collect())
 }
 
-/// Gives every clip its part.
-fn sort_out(
-    mut clips: Vec<LoadedClip>,
-    labels: &Labels,
-    classes: &[String],
-    background: &BTreeSet<PathBuf>,
-    unknown: &BTreeSet<PathBuf>,
-) -> Result<ClipMaterial> {
-    let mut unknown_clips = Vec::new();
-    let mut tested_only = BTreeSet::new();
-    for LoadedClip { clip, path, .. } in &mut clips {
-        let (is_background, is_unknown) = (background.contains(path), unknown.contains(path));
-        if is_unknown {
-            unknown_clips.push(clip.clone());
-        }
-        if is_unknown && !is_background {
-            tested_only.insert(clip.name.clone());
-        }
-        // Labels in clips that are said to hold no class do not count.
-        if is_background || is_unknown {
-            clip.source = StreamKind::Background;
-        }
-    }
-    say_ignored(&clips, labels, classes);
-    let bytes: BTreeMap<String, u64> = clips
-        .iter()
-        .map(|c| (c.clip.name.clone(), c.file_bytes))
-        .collect();
-    let clips = clips.into_iter().map(|loaded| loaded.clip).collect();
-    let mut data = TrainingData::new(clips, labels, classes).map_err(|error| {
-        let DataError::NoSampleOf(name) = &error else {
-            return error.into();
-        };
-        let known: BTreeSet<&String> = labels.rows.iter().map(|row| &row.class).collect();
-        let known: Vec<String> = known.into_iter().cloned().collect();
-        anyhow!("{error}{}", hint(name, &known))
-    })?;
-    data.clips.retain(|clip| !tested_only.contains(&clip.name));
+fn say_notes(data: &TrainingData) {
     data.notes
         .iter()
         .for_each(|note| eprintln!("morec: {note}"));
-    if !data.unused.is_empty() {
-        eprintln!(
-            "morec: {} clips hold no sample of the classes and are not used (--background if they hold none): {}",
-            data.unused.len(),
-            some_of(data.unused.iter())
-        );
-    }
-    let labelled_bytes = data.labelled().map(|clip| bytes[&clip.name]).sum();
-    Ok(ClipMaterial {
-        data,
-        unknown: unknown_clips,
-        labelled_bytes,
-    })
 }
 
-/// Says which labels do not count because their clip is background.
-fn say_ignored(clips: &[LoadedClip], labels: &Labels, classes: &[String]) {
-    let background: BTreeSet<&str> = clips
-        .iter()
-        .filter(|loaded| loaded.clip.source == StreamKind::Background)
-        .map(|loaded| loaded.clip.name.as_str())
-        .collect();
-    let wanted = |row: &&Label| classes.is_empty() || classes.contains(&row.class);
-    let ignored = labels.rows.iter().filter(wanted);
-    let ignored: Vec<&String> = ignored
-        .map(|row| &row.clip)
-        .filter(|clip| background.contains(clip.as_str()))
-        .collect();
-    if !ignored.is_empty() {
-        let clips: BTreeSet<&String> = ignored.iter().copied().collect();
-        eprintln!(
-            "morec: {} labels do not count, because their clips are named as background or unknown: {}",
-            ignored.len(),
-            some_of(clips.into_iter())
-        );
-    }
+/// Names of the clips that come from `paths`.
+fn names_in(clips: &[LoadedClip], paths: &[PathBuf]) -> BTreeSet<String> {
+    let paths: BTreeSet<PathBuf> = paths.iter().map(|path| canonical(path)).collect();
+    let from = clips.iter().filter(|loaded| paths.contains(&loaded.path));
+    from.map(|loaded| loaded.clip.name.clone()).collect()
 }
 
-fn set_of(paths: &[PathBuf]) -> BTreeSet<PathBuf> {
-    paths.iter().map(|p| canonical(p)).collect()
+fn bytes_by_name(clips: &[LoadedClip]) -> BTreeMap<String, u64> {
+    let bytes = |loaded: &LoadedClip| (loaded.clip.name.clone(), loaded.file_bytes);
+    clips.iter().map(bytes).collect()
+}
+
+fn file_bytes(path: &Path) -> u64 {
+    std::fs::metadata(path).map_or(0, |m| m.len())
 }
 
 fn canonical(path: &Path) -> PathBuf {

@@ -58,7 +58,6 @@ pub use import::{ImportCounts, ImportLog, ImportOutcome, Refused};
 pub use indexes::{IndexInfo, training_data};
 pub use kept::{KeptClip, KeptFile, NotKept, clip_rows, packed_rows, rows_recipe, stored_clip};
 pub use motion::StoredClip;
-pub use names::hint;
 pub use propose::{Proposal, ProposeOptions, most_informative};
 pub use replace::Replaced;
 pub use rows::bones_of_bits;

@@ -23,7 +23,7 @@ pub use crossval::{CrossvalMeasures, CrossvalSettings, LeftOut};
 pub use cut::{CutMethod, CutSettings};
 pub use error::OperationError;
 pub use group::{GroupMethod, GroupSettings, GroupedStretch, Grouping, Shapes, largest_first};
-pub use material::{accepted_labels, clips_to_train, training_data};
+pub use material::{MaterialBeside, accepted_labels, training_data};
 pub use params::{Param, ParamError, from_fields};
 pub use propose::ProposeSettings;
 pub use recognize::RecognizeSettings;

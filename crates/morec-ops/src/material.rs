@@ -2,10 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use morec::labels::{Extent, Label, Labels};
-use morec::train::{StreamKind, TrainClip, TrainingData};
+use morec::labels::{Extent, Label, Labels, some_of};
+use morec::train::{StreamKind, TrainClip, TrainingData, TrainingMaterial};
 use morec_db::labels::{DbSample, SampleFilter, SampleState};
-use morec_db::{ClipFilter, ClipId, ClipInfo, DbError, MotionDb, StoredClip};
+use morec_db::{BACKGROUND, ClipFilter, ClipId, ClipInfo, DbError, MotionDb, StoredClip};
 
 use crate::OperationError;
 
@@ -35,54 +35,78 @@ pub fn accepted_labels(db: &MotionDb) -> Result<Labels, DbError> {
     })
 }
 
-/// Clips of a database, as labelled ones.
+/// What is used of a database, and with it, besides accepted samples and the clips that are marked as background.
+#[derive(Debug, Clone, Default)]
+pub struct MaterialBeside {
+    /// Names of clips that are background, of the database or of `clips`.
+    pub background: BTreeSet<String>,
+    /// Names of clips that hold none of the classes and are only tested.
+    pub unknown: BTreeSet<String>,
+    /// Names of clips that are left out.
+    pub exclude: BTreeSet<String>,
+    /// Clips that are not in the database.
+    pub clips: Vec<TrainClip>,
+}
+
+/// The accepted samples of `classes` (all, if none are named), the clips they lie in, those that are marked as background,
+/// and what is named beside.
 ///
 /// # Errors
-/// The database cannot be read.
-pub fn clips_to_train(
+/// The database cannot be read, or holds no sample of one of the classes.
+pub fn training_data(
     db: &MotionDb,
-    infos: Vec<ClipInfo>,
-) -> Result<Vec<(ClipInfo, TrainClip)>, DbError> {
+    classes: &[String],
+    beside: MaterialBeside,
+) -> Result<TrainingData, OperationError> {
+    let MaterialBeside {
+        mut background,
+        unknown,
+        exclude,
+        clips: mut all,
+    } = beside;
+    let marked = db.background(classes)?;
+    background.extend(marked.clips.into_iter().map(|info| info.name));
+    let labels = accepted_labels(db)?;
+    let taught = labels.rows.iter();
+    let taught = taught.filter(|row| classes.is_empty() || classes.contains(&row.class));
+    let mut names: BTreeSet<&str> = taught.map(|row| row.clip.as_str()).collect();
+    names.extend(background.iter().chain(&unknown).map(String::as_str));
+    let mut infos = db.clips(&ClipFilter::default())?;
+    infos.retain(|info| names.contains(info.name.as_str()) && !exclude.contains(&info.name));
+    all.splice(..0, clips_of(db, infos)?);
+    for clip in &mut all {
+        if background.contains(&clip.name) {
+            clip.source = StreamKind::Background;
+        }
+    }
+    let material = TrainingMaterial {
+        labels: &labels,
+        people: None,
+        classes,
+        unknown: &unknown,
+    };
+    let mut data = material.sort_out(all)?;
+    if !marked.labelled.is_empty() {
+        data.notes.push(format!(
+            "{} clips have the tag {BACKGROUND}, but hold samples of the classes: they are used as labelled clips: {}",
+            marked.labelled.len(),
+            some_of(marked.labelled.iter().map(|info| &info.name))
+        ));
+    }
+    Ok(data)
+}
+
+/// Clips of a database, as labelled ones.
+fn clips_of(db: &MotionDb, infos: Vec<ClipInfo>) -> Result<Vec<TrainClip>, DbError> {
     let ids: Vec<ClipId> = infos.iter().map(|info| info.id).collect();
-    let clip = |(info, stored): (ClipInfo, StoredClip)| {
-        let clip = TrainClip {
-            name: info.name.clone(),
-            clip: stored.clip,
-            roles: stored.roles,
-            rest: stored.rest,
-            source: StreamKind::Labelled,
-            person: info.subject.clone(),
-        };
-        (info, clip)
+    let clip = |(info, stored): (ClipInfo, StoredClip)| TrainClip {
+        name: info.name,
+        clip: stored.clip,
+        roles: stored.roles,
+        rest: stored.rest,
+        source: StreamKind::Labelled,
+        person: info.subject,
     };
     let stored = db.stored_clips(&ids)?;
     Ok(infos.into_iter().zip(stored).map(clip).collect())
-}
-
-/// The accepted samples of `classes` (all, if none are named), the clips they lie in, and those that are marked as background.
-/// Classes without an accepted sample are left out.
-///
-/// # Errors
-/// The database cannot be read, or holds no sample of the classes.
-pub fn training_data(db: &MotionDb, classes: &[String]) -> Result<TrainingData, OperationError> {
-    let mut labels = accepted_labels(db)?;
-    let shown = |class: &String| labels.rows.iter().any(|row| row.class == *class);
-    let shown: Vec<String> = classes.iter().filter(|c| shown(c)).cloned().collect();
-    if !classes.is_empty() {
-        labels.rows.retain(|row| classes.contains(&row.class));
-    }
-    let background = db.background(classes)?.clips;
-    let background: BTreeSet<ClipId> = background.iter().map(|info| info.id).collect();
-    let taught: BTreeSet<&str> = labels.rows.iter().map(|row| row.clip.as_str()).collect();
-    let mut infos = db.clips(&ClipFilter::default())?;
-    infos.retain(|info| background.contains(&info.id) || taught.contains(info.name.as_str()));
-    let clips = clips_to_train(db, infos)?.into_iter();
-    let clips = clips.map(|(info, clip)| TrainClip {
-        source: match background.contains(&info.id) {
-            true => StreamKind::Background,
-            false => StreamKind::Labelled,
-        },
-        ..clip
-    });
-    Ok(TrainingData::new(clips.collect(), &labels, &shown)?)
 }

@@ -14,7 +14,7 @@ use pyo3::types::PyDict;
 
 use crate::errors::{io_error, morec_error, value_error};
 use crate::job;
-use crate::material::{TrainingInput, operation_error, settings};
+use crate::material::{operation_error, settings, training_data};
 use crate::tables::{DETECTION, plain, table};
 
 /// Measures of a cross-validation.
@@ -40,20 +40,20 @@ pub fn crossval(
             "by: expected \"person\", \"clip\" or \"half\", found \"own\"",
         ));
     }
-    let given = TrainingInput::new(material, &train.classes)?;
+    let data = training_data(material, &train.classes)?;
     let measures = job::run(py, progress, |progress| {
         let of = CrossvalData {
-            clips: &given.data.clips,
-            samples: &given.data.samples,
-            classes: &given.data.classes,
-            unknown: &given.unknown,
+            clips: &data.clips,
+            samples: &data.samples,
+            classes: &data.classes,
+            unknown: &data.unknown,
             tests: None,
         };
         how.crossval(&of, &train, progress)
     })?;
     Ok(PyCrossval {
         measures: measures.map_err(operation_error)?,
-        training: TrainedClass::count(&given.data.samples, &given.data.classes),
+        training: TrainedClass::count(&data.samples, &data.classes),
         by: how.by,
     })
 }

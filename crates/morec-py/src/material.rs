@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use morec::TimeSpan;
 use morec::labels::{ClipLength, Extent, Label, Labels, People, read_people};
-use morec::train::{StreamKind, TrainClip, TrainingData};
+use morec::train::{StreamKind, TrainClip, TrainingData, TrainingMaterial};
 use morec_ops::OperationError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
@@ -63,85 +63,63 @@ fn people(given: &Bound<'_, PyAny>) -> PyResult<People> {
     })
 }
 
-fn train_clip(data: &ClipData, source: StreamKind, people: &BTreeMap<String, String>) -> TrainClip {
+/// Material under the keys clips, labels, people, background and perhaps unknown, sorted out for training. What was cut or
+/// left out is warned of.
+///
+/// # Errors
+/// Clips and labels that do not fit together.
+pub fn training_data(material: &Bound<'_, PyDict>, classes: &[String]) -> PyResult<TrainingData> {
+    let py = material.py();
+    let get = |name: &str| -> PyResult<Option<Bound<'_, PyAny>>> {
+        Ok(material.get_item(name)?.filter(|value| !value.is_none()))
+    };
+    let clips = |name: &str| -> PyResult<Vec<Bound<'_, PyClip>>> {
+        get(name)?.map_or_else(|| Ok(Vec::new()), |clips| clips.extract())
+    };
+    let given = get("labels")?.ok_or_else(|| value_error("labels: which?"))?;
+    let labels = labels(&given)?;
+    warn(py, labels.warnings.iter().map(|w| format!("labels: {w}")))?;
+    let people = get("people")?.map(|given| people(&given)).transpose()?;
+    let warnings = people.iter().flat_map(|people| &people.warnings);
+    warn(py, warnings.map(|w| format!("people: {w}")))?;
+    let (taught, background, unknown) = (clips("clips")?, clips("background")?, clips("unknown")?);
+    let name = |clip: &Bound<'_, PyClip>| clip.get().data.clip.name.clone();
+    let names = |clips: &[_]| -> BTreeSet<String> { clips.iter().map(name).collect() };
+    // Background and unknown clips may lie among the clips, as for the command.
+    let (there, aside) = (names(&taught), names(&background));
+    let unknown_names = names(&unknown);
+    let others = background
+        .iter()
+        .filter(|clip| !there.contains(&name(clip)));
+    let tested = unknown
+        .iter()
+        .filter(|clip| !there.contains(&name(clip)) && !aside.contains(&name(clip)));
+    let all = taught.iter().chain(others).chain(tested);
+    let all = all
+        .map(|clip| train_clip(&clip.get().data, &aside))
+        .collect();
+    let material = TrainingMaterial {
+        labels: &labels,
+        people: people.as_ref(),
+        classes,
+        unknown: &unknown_names,
+    };
+    let data = material.sort_out(all).map_err(morec_error)?;
+    warn(py, &data.notes)?;
+    Ok(data)
+}
+
+fn train_clip(data: &ClipData, background: &BTreeSet<String>) -> TrainClip {
     TrainClip {
         name: data.clip.name.clone(),
         clip: data.clip.clone(),
         roles: data.roles.clone(),
         rest: data.rest.clone(),
-        source,
-        person: people.get(&data.clip.name).cloned(),
-    }
-}
-
-/// Clips and labels from Python, sorted out for training.
-pub struct TrainingInput {
-    /// Clips, samples and classes that fit together.
-    pub data: TrainingData,
-    /// Clips that hold none of the classes, for testing.
-    pub unknown: Vec<TrainClip>,
-}
-
-impl TrainingInput {
-    /// From the keys clips, labels, people, background and perhaps unknown. What was cut or left out is warned of.
-    ///
-    /// # Errors
-    /// Clips and labels that do not fit together.
-    pub fn new(material: &Bound<'_, PyDict>, classes: &[String]) -> PyResult<Self> {
-        let py = material.py();
-        let get = |name: &str| -> PyResult<Option<Bound<'_, PyAny>>> {
-            Ok(material.get_item(name)?.filter(|value| !value.is_none()))
-        };
-        let clips = |name: &str| -> PyResult<Vec<Bound<'_, PyClip>>> {
-            get(name)?.map_or_else(|| Ok(Vec::new()), |clips| clips.extract())
-        };
-        let given = get("labels")?.ok_or_else(|| value_error("labels: which?"))?;
-        let mut labels = labels(&given)?;
-        let mut by_clip = BTreeMap::new();
-        warn(py, labels.warnings.iter().map(|w| format!("labels: {w}")))?;
-        if let Some(given) = get("people")? {
-            let people = people(&given)?;
-            warn(py, people.warnings.iter().map(|w| format!("people: {w}")))?;
-            labels.add_people(&people);
-            by_clip = people.by_clip;
-        }
-        let named = labels.rows.iter();
-        by_clip.extend(named.filter_map(|r| Some((r.clip.clone(), r.person.clone()?))));
-        let (taught, background, unknown) =
-            (clips("clips")?, clips("background")?, clips("unknown")?);
-        let name = |clip: &Bound<'_, PyClip>| clip.get().data.clip.name.clone();
-        let aside: BTreeSet<String> = background.iter().map(name).collect();
-        let tested: BTreeSet<String> = unknown.iter().map(name).collect();
-        let of = |source: StreamKind| {
-            let by_clip = &by_clip;
-            move |clip: &Bound<'_, PyClip>| train_clip(&clip.get().data, source, by_clip)
-        };
-        // In the order in which the command has them: background may lie among the clips.
-        let mut all: Vec<TrainClip> = Vec::new();
-        for clip in &taught {
-            match (aside.contains(&name(clip)), tested.contains(&name(clip))) {
-                (true, _) => all.push(of(StreamKind::Background)(clip)),
-                (false, false) => all.push(of(StreamKind::Labelled)(clip)),
-                (false, true) => {}
-            }
-        }
-        let there: BTreeSet<String> = taught.iter().map(name).collect();
-        let others = background
-            .iter()
-            .filter(|clip| !there.contains(&name(clip)));
-        all.extend(others.map(of(StreamKind::Background)));
-        let unknown = unknown.iter().map(of(StreamKind::Labelled)).collect();
-        let data = TrainingData::new(all, &labels, classes).map_err(morec_error)?;
-        warn(py, &data.notes)?;
-        if !data.unused.is_empty() {
-            let text = format!(
-                "{} clips hold no sample of the classes and are not used (background if they hold none): {}",
-                data.unused.len(),
-                data.unused.join(", ")
-            );
-            warn(py, [text])?;
-        }
-        Ok(Self { data, unknown })
+        source: match background.contains(&data.clip.name) {
+            true => StreamKind::Background,
+            false => StreamKind::Labelled,
+        },
+        person: None,
     }
 }
 

@@ -9,7 +9,7 @@ use pyo3::types::PyDict;
 use crate::errors::warn;
 use crate::index::PyIndex;
 use crate::job;
-use crate::material::{TrainingInput, operation_error, settings};
+use crate::material::{operation_error, settings, training_data};
 
 /// Trains an index from material as `morec._learn` lays it out.
 #[pyfunction]
@@ -20,10 +20,8 @@ pub fn train(
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<PyIndex> {
     let settings: TrainSettings = self::settings(settings)?;
-    let given = TrainingInput::new(material, &settings.classes)?;
-    let trained = job::run(py, progress, |progress| {
-        settings.train(&given.data, progress)
-    })?;
+    let data = training_data(material, &settings.classes)?;
+    let trained = job::run(py, progress, |progress| settings.train(&data, progress))?;
     let (index, report) = trained.map_err(operation_error)?;
     warn(py, &report.notes)?;
     Ok(PyIndex {

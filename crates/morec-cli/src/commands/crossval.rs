@@ -79,10 +79,10 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         clips: &material.data.clips,
         samples: &material.data.samples,
         classes: &material.data.classes,
-        unknown: &material.unknown,
+        unknown: &material.data.unknown,
         tests: tests.as_ref().map(|tests| Tests {
-            clips: &tests.data.clips,
-            samples: &tests.data.samples,
+            clips: &tests.clips,
+            samples: &tests.samples,
         }),
     };
     let mut settings = args.settings.clone();

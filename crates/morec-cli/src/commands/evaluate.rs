@@ -15,14 +15,14 @@ use morec::explain::{Miss, Performance, deviation, explain};
 use morec::formats::Warning;
 use morec::import::ImportOptions;
 use morec::labels::Mark;
-use morec::labels::{ClipLength, Resolved, read_detections};
+use morec::labels::{ClipLength, Resolved, read_detections, some_of};
 use morec::live::{Detection, Model};
 use morec::report::Report;
 use rayon::prelude::*;
 
 use super::recognize::open_index;
 use crate::figures;
-use crate::files::{self, ReadArgs, some_of};
+use crate::files::{self, ReadArgs};
 use crate::json;
 use crate::labels;
 use crate::lengths::lengths;

@@ -45,7 +45,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         clips: &material.data.clips,
         samples: &material.data.samples,
         classes: &material.data.classes,
-        unknown: &material.unknown,
+        unknown: &material.data.unknown,
         seeds: &args.seed,
         settings: &settings,
     };

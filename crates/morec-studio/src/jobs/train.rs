@@ -6,7 +6,7 @@ use std::sync::Arc;
 use morec::index::MotionIndex;
 use morec::train::{TrainingData, TrainingReport};
 use morec_db::MotionDb;
-use morec_ops::{OperationError, TrainSettings, training_data};
+use morec_ops::{MaterialBeside, OperationError, TrainSettings, training_data};
 
 use super::progress::{JobError, JobProgress};
 
@@ -20,7 +20,11 @@ pub struct TrainedIndex {
 
 /// Samples and clips of the database at `path` for training.
 pub fn material(path: &Path, classes: &[String]) -> Result<TrainingData, OperationError> {
-    training_data(&MotionDb::open_read_only(path)?, classes)
+    training_data(
+        &MotionDb::open_read_only(path)?,
+        classes,
+        MaterialBeside::default(),
+    )
 }
 
 /// Trains an index of the database at `path`.
@@ -32,7 +36,8 @@ pub fn run(
     let begun = std::time::Instant::now();
     let trained = || -> Result<_, OperationError> {
         let data = material(path, &settings.classes)?;
-        let (index, report) = settings.train(&data, progress)?;
+        let (index, mut report) = settings.train(&data, progress)?;
+        report.notes.extend(data.notes);
         Ok((index.to_bytes()?, index, report))
     };
     let (bytes, index, report) =

@@ -96,6 +96,20 @@ fn classes_are_chosen_and_changed_labels_are_said() {
 }
 
 #[test]
+fn without_a_chosen_class_nothing_is_learned() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), 3)]);
+    person.goes_to(Panel::Train);
+    for class in ["bow", "clap", "wave"] {
+        person.click(class);
+    }
+    person.click("Start training");
+    person.settle();
+    assert!(person.sees("Nothing to learn: choose a class that has labels"));
+    assert!(person.state().train.index.is_none());
+}
+
+#[test]
 fn a_cross_validation_is_stopped_and_leaves_what_was_there() {
     let folder = tempfile::tempdir().unwrap();
     let mut person = Person::before(&[made(folder.path(), 3)]);

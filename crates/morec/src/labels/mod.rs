@@ -11,6 +11,7 @@
 
 mod found;
 mod mark;
+mod names;
 mod people;
 mod read;
 mod resolve;
@@ -22,6 +23,7 @@ use crate::formats::Warning;
 
 pub use found::{FOUND_HEADER, FoundLine, FoundRow, FoundTable, ReportedAt, read_detections};
 pub use mark::Mark;
+pub use names::{hint, some_of};
 pub use people::{People, read_people};
 pub use resolve::{ClipLength, Resolved, Sample};
 

@@ -2,10 +2,24 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::labels::{ClipLength, Labels, Sample};
+use crate::labels::{ClipLength, Label, Labels, People, Resolved, Sample, hint, some_of};
 use crate::roles::Role;
 
 use super::{StreamKind, TrainClip};
+
+/// Clips, labels and people as they are given, to learn from and to test on.
+#[derive(Debug, Clone, Copy)]
+pub struct TrainingMaterial<'a> {
+    /// Labelled samples.
+    pub labels: &'a Labels,
+    /// The person of each clip, where the labels do not say.
+    pub people: Option<&'a People>,
+    /// The classes to learn, in order; every class of the labels if empty.
+    pub classes: &'a [String],
+    /// Names of clips that hold none of the classes and are only tested; those of [`StreamKind::Background`] among them also
+    /// teach.
+    pub unknown: &'a BTreeSet<String>,
+}
 
 /// Clips, samples and classes that fit together.
 #[derive(Debug, Clone, Default)]
@@ -16,9 +30,9 @@ pub struct TrainingData {
     pub samples: Vec<Sample>,
     /// The classes, in order.
     pub classes: Vec<String>,
-    /// Names of labelled clips that hold no sample of the classes; they are not used.
-    pub unused: Vec<String>,
-    /// Omissions and cuts, each in a sentence.
+    /// Clips that hold none of the classes, for testing.
+    pub unknown: Vec<TrainClip>,
+    /// What was left out or cut, each in a sentence.
     pub notes: Vec<String>,
 }
 
@@ -30,8 +44,13 @@ pub enum DataError {
     #[error("two clips are called {0}: labels cannot tell them apart")]
     SameName(String),
     /// A class was asked for that the labels do not show.
-    #[error("the class {0} is asked for, but no clip holds a sample of it")]
-    NoSampleOf(String),
+    #[error("the class {class} is asked for, but no clip holds a sample of it{hint}")]
+    NoSampleOf {
+        /// Its name.
+        class: String,
+        /// Classes of the labels that may have been meant.
+        hint: String,
+    },
     /// No label lies in any clip.
     #[error(
         "no sample to learn from: no label names any of these clips (labels name clips by file stem)"
@@ -39,65 +58,136 @@ pub enum DataError {
     NoSample,
 }
 
-impl TrainingData {
-    /// Resolves `labels` against `clips`. Clips of [`StreamKind::Labelled`] teach where labels lie in them; labels in other
-    /// clips are not used. `classes` are those to learn, in order; every class of the labels if empty.
+impl TrainingMaterial<'_> {
+    /// Sorts out which of `clips` teach. Clips of [`StreamKind::Labelled`] teach where labels lie in them; labels in
+    /// background and unknown clips are not used.
     ///
     /// # Errors
     /// Two clips of one name, a class without a sample, no sample at all.
-    pub fn new(
-        clips: Vec<TrainClip>,
-        labels: &Labels,
-        classes: &[String],
-    ) -> Result<Self, DataError> {
-        let mut lengths = BTreeMap::new();
-        for clip in &clips {
-            let length = ClipLength {
-                frames: clip.clip.frames,
-                rate_hz: clip.clip.rate_hz,
-            };
-            if lengths.insert(clip.name.clone(), length).is_some() {
-                return Err(DataError::SameName(clip.name.clone()));
-            }
+    pub fn sort_out(&self, clips: Vec<TrainClip>) -> Result<TrainingData, DataError> {
+        let mut labels = self.labels.clone();
+        let wanted = |row: &Label| self.classes.is_empty() || self.classes.contains(&row.class);
+        labels.rows.retain(wanted);
+        if let Some(people) = self.people {
+            labels.add_people(people);
         }
-        let resolved = labels.resolve(&lengths);
-        let mut notes: Vec<String> = resolved
-            .warnings
+        let resolved = labels.resolve(&lengths(&clips)?);
+        let mut notes = notes(&resolved);
+        let clips = self.with_people(clips, &resolved.samples);
+        let teaches = |clip: &TrainClip| {
+            clip.source == StreamKind::Labelled && !self.unknown.contains(&clip.name)
+        };
+        let teaching: BTreeSet<String> = clips
             .iter()
-            .map(|w| format!("labels, {w}"))
+            .filter(|clip| teaches(clip))
+            .map(|clip| clip.name.clone())
             .collect();
-        if !resolved.absent.is_empty() {
+        let samples = resolved.samples.into_iter();
+        let (samples, ignored): (Vec<_>, Vec<_>) =
+            samples.partition(|s| teaching.contains(&s.clip));
+        if !ignored.is_empty() {
+            let clips: BTreeSet<&String> = ignored.iter().map(|s| &s.clip).collect();
             notes.push(format!(
-                "{} labels are of clips that are not there ({} clips)",
-                resolved.absent.values().sum::<usize>(),
-                resolved.absent.len()
+                "{} labels do not count, because their clips are named as background or unknown: {}",
+                ignored.len(),
+                some_of(clips)
             ));
         }
-        let teaching: BTreeSet<&str> = clips
-            .iter()
-            .filter(|c| c.source == StreamKind::Labelled)
-            .map(|c| c.name.as_str())
-            .collect();
-        let wanted = |s: &Sample| classes.is_empty() || classes.contains(&s.class);
-        let samples: Vec<Sample> = resolved
-            .samples
-            .into_iter()
-            .filter(|s| wanted(s) && teaching.contains(s.clip.as_str()))
-            .collect();
-        let classes = classes_of(&samples, classes)?;
-        let with_samples: BTreeSet<&str> = samples.iter().map(|s| s.clip.as_str()).collect();
-        let (clips, unused): (Vec<_>, Vec<_>) = clips.into_iter().partition(|c| {
-            c.source != StreamKind::Labelled || with_samples.contains(c.name.as_str())
+        let classes = self.learned(&samples)?;
+        let unknown = clips.iter().filter(|c| self.unknown.contains(&c.name));
+        let unknown = unknown.cloned().map(|clip| TrainClip {
+            source: StreamKind::Labelled,
+            ..clip
         });
-        Ok(Self {
+        let unknown = unknown.collect();
+        let with_samples: BTreeSet<&str> = samples.iter().map(|s| s.clip.as_str()).collect();
+        let (clips, unused): (Vec<_>, Vec<_>) = clips.into_iter().partition(|clip| {
+            clip.source != StreamKind::Labelled || with_samples.contains(clip.name.as_str())
+        });
+        let unused = unused.into_iter().map(|clip| clip.name);
+        let unused: Vec<String> = unused.filter(|name| !self.unknown.contains(name)).collect();
+        if !unused.is_empty() {
+            notes.push(format!(
+                "{} clips hold no sample of the classes and are not used (if they hold none, name them as background): {}",
+                unused.len(),
+                some_of(&unused)
+            ));
+        }
+        Ok(TrainingData {
             clips,
             samples,
             classes,
-            unused: unused.into_iter().map(|c| c.name).collect(),
+            unknown,
             notes,
         })
     }
 
+    /// `clips` with who is seen in them, labelled or not.
+    fn with_people(&self, mut clips: Vec<TrainClip>, samples: &[Sample]) -> Vec<TrainClip> {
+        let mut people: BTreeMap<&str, &String> = BTreeMap::new();
+        let by_clip = self.people.iter().flat_map(|people| &people.by_clip);
+        people.extend(by_clip.map(|(clip, person)| (clip.as_str(), person)));
+        let labelled = samples
+            .iter()
+            .filter_map(|s| Some((s.clip.as_str(), s.person.as_ref()?)));
+        people.extend(labelled);
+        for clip in &mut clips {
+            if let Some(person) = people.get(clip.name.as_str()) {
+                clip.person = Some((*person).clone());
+            }
+        }
+        clips
+    }
+
+    /// The classes to learn: those asked for, or all that samples show, by name.
+    fn learned(&self, samples: &[Sample]) -> Result<Vec<String>, DataError> {
+        let present: BTreeSet<&String> = samples.iter().map(|s| &s.class).collect();
+        if let Some(class) = self.classes.iter().find(|c| !present.contains(c)) {
+            let known: BTreeSet<&String> = self.labels.rows.iter().map(|r| &r.class).collect();
+            let known: Vec<String> = known.into_iter().cloned().collect();
+            return Err(DataError::NoSampleOf {
+                class: class.clone(),
+                hint: hint(class, &known),
+            });
+        }
+        match (samples.is_empty(), self.classes.is_empty()) {
+            (true, _) => Err(DataError::NoSample),
+            (_, true) => Ok(present.into_iter().cloned().collect()),
+            _ => Ok(self.classes.to_vec()),
+        }
+    }
+}
+
+/// Lengths of clips, by name.
+fn lengths(clips: &[TrainClip]) -> Result<BTreeMap<String, ClipLength>, DataError> {
+    let mut lengths = BTreeMap::new();
+    for clip in clips {
+        let length = ClipLength {
+            frames: clip.clip.frames,
+            rate_hz: clip.clip.rate_hz,
+        };
+        if lengths.insert(clip.name.clone(), length).is_some() {
+            return Err(DataError::SameName(clip.name.clone()));
+        }
+    }
+    Ok(lengths)
+}
+
+/// What of labels was cut or left out.
+fn notes(resolved: &Resolved) -> Vec<String> {
+    let warnings = resolved.warnings.iter();
+    let mut notes: Vec<String> = warnings.map(|w| format!("labels, {w}")).collect();
+    if !resolved.absent.is_empty() {
+        notes.push(format!(
+            "{} labels are of clips that are not there: {}",
+            resolved.absent.values().sum::<usize>(),
+            some_of(resolved.absent.keys())
+        ));
+    }
+    notes
+}
+
+impl TrainingData {
     /// The clips that hold samples.
     pub fn labelled(&self) -> impl Iterator<Item = &TrainClip> {
         self.clips
@@ -116,15 +206,98 @@ impl TrainingData {
     }
 }
 
-/// The classes to learn: those asked for, or all that samples show, by name.
-fn classes_of(samples: &[Sample], asked: &[String]) -> Result<Vec<String>, DataError> {
-    let present: BTreeSet<&str> = samples.iter().map(|s| s.class.as_str()).collect();
-    if let Some(class) = asked.iter().find(|c| !present.contains(c.as_str())) {
-        return Err(DataError::NoSampleOf(class.clone()));
+#[cfg(test)]
+mod tests {
+    use crate::TimeSpan;
+    use crate::import::Take;
+    use crate::synth::{DatabaseSpec, database};
+
+    use super::*;
+
+    const NAMES: [&str; 4] = ["taught", "resting", "tested", "both"];
+
+    fn clips() -> Vec<TrainClip> {
+        let spec = DatabaseSpec {
+            people: 1,
+            repetitions: 1,
+            classes: vec!["wave"],
+            ..DatabaseSpec::default()
+        };
+        let take = Take::new(database(1, &spec).remove(0).clip).unwrap();
+        let clip = |name: &str| TrainClip {
+            name: name.to_owned(),
+            source: match name {
+                "resting" | "both" => StreamKind::Background,
+                _ => StreamKind::Labelled,
+            },
+            ..take.clone().into()
+        };
+        NAMES.map(clip).into()
     }
-    match (samples.is_empty(), asked.is_empty()) {
-        (true, _) => Err(DataError::NoSample),
-        (_, true) => Ok(present.into_iter().map(str::to_owned).collect()),
-        _ => Ok(asked.to_vec()),
+
+    fn sorted_out(labelled: &[(&str, &str)], classes: &[&str]) -> Result<TrainingData, DataError> {
+        let mut labels = Labels::default();
+        for (clip, class) in labelled {
+            labels.add(clip, class, TimeSpan::new(0.0, 1.0));
+        }
+        let people = People {
+            by_clip: [("resting".to_owned(), "ada".to_owned())].into(),
+            ..People::default()
+        };
+        let material = TrainingMaterial {
+            labels: &labels,
+            people: Some(&people),
+            classes: &classes.iter().map(|c| (*c).to_owned()).collect::<Vec<_>>(),
+            unknown: &["tested", "both"].map(str::to_owned).into(),
+        };
+        material.sort_out(clips())
+    }
+
+    fn names(clips: &[TrainClip]) -> Vec<&str> {
+        clips.iter().map(|clip| clip.name.as_str()).collect()
+    }
+
+    #[test]
+    fn every_clip_has_its_part() {
+        let data = sorted_out(&[("taught", "wave"), ("tested", "wave")], &[]).unwrap();
+        assert_eq!(names(&data.clips), ["taught", "resting", "both"]);
+        assert_eq!(names(&data.unknown), ["tested", "both"]);
+        assert_eq!(data.samples.len(), 1);
+        assert_eq!(data.clips[1].person.as_deref(), Some("ada"));
+        let said =
+            "1 labels do not count, because their clips are named as background or unknown: tested";
+        assert_eq!(data.notes, [said]);
+    }
+
+    #[test]
+    fn clips_and_labels_of_no_use_are_said() {
+        let data = sorted_out(&[("both", "bow"), ("elsewhere", "wave")], &["wave"]);
+        assert!(matches!(data, Err(DataError::NoSampleOf { .. })));
+        let labelled = [("both", "wave"), ("elsewhere", "bow"), ("taught", "bow")];
+        let data = sorted_out(&labelled, &["bow"]).unwrap();
+        let said = "1 labels are of clips that are not there: elsewhere";
+        assert_eq!(data.notes, [said], "labels of other classes are not missed");
+        let mut labels = Labels::default();
+        labels.add("taught", "bow", TimeSpan::new(0.0, 1.0));
+        let material = TrainingMaterial {
+            labels: &labels,
+            people: None,
+            classes: &[],
+            unknown: &BTreeSet::new(),
+        };
+        let data = material.sort_out(clips()).unwrap();
+        assert_eq!(names(&data.clips), ["taught", "resting", "both"]);
+        assert!(data.notes[0].starts_with("1 clips hold no sample of the classes"));
+        assert!(data.notes[0].ends_with("tested"), "{:?}", data.notes);
+    }
+
+    #[test]
+    fn a_class_without_a_sample_is_refused_with_those_that_may_be_meant() {
+        let error = sorted_out(&[("taught", "wave")], &["wvae"]).unwrap_err();
+        assert!(
+            error.to_string().ends_with("; did you mean `wave`?"),
+            "{error}"
+        );
+        assert_eq!(sorted_out(&[], &[]).unwrap_err(), DataError::NoSample);
     }
 }

@@ -33,7 +33,7 @@ mod verifier;
 pub use align::align;
 pub use alike::AlikeClasses;
 pub use clips::train_clips;
-pub use data::{DataError, TrainingData};
+pub use data::{DataError, TrainingData, TrainingMaterial};
 pub use error::TrainError;
 pub use from_clips::{LabelSet, Prepared, TrainClip, build_train_set};
 pub use kind::{ClassKind, ClassLabels};

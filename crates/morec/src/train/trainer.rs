@@ -1,5 +1,7 @@
 //! Training in one call: takes and labels in, an index out.
 
+use std::collections::BTreeSet;
+
 use crate::Error;
 use crate::import::Take;
 use crate::index::{MotionIndex, Provenance};
@@ -7,8 +9,8 @@ use crate::labels::{Labels, People};
 use crate::progress::Progress;
 
 use super::{
-    LabelSet, Recipe, StreamKind, TrainClip, TrainOptions, TrainingData, TrainingReport,
-    train_model,
+    LabelSet, Recipe, StreamKind, TrainClip, TrainOptions, TrainingData, TrainingMaterial,
+    TrainingReport, train_model,
 };
 
 /// Data and options of training. Only the labels must be given.
@@ -115,29 +117,23 @@ impl<'a> Trainer<'a> {
         &self,
         takes: &[Take],
     ) -> Result<(MotionIndex, TrainingReport), Error> {
-        let mut labels = self.labels.cloned().unwrap_or_default();
-        if let Some(people) = self.people {
-            labels.add_people(people);
-        }
-        let person = |name: &str| Some(self.people?.by_clip.get(name)?.clone());
         let clip = |take: &Take, source| TrainClip {
             source,
-            person: person(take.name()),
             ..take.clone().into()
         };
         let taught = takes.iter().map(|take| clip(take, StreamKind::Labelled));
         let background = self.background.iter();
         let background = background.map(|take| clip(take, StreamKind::Background));
-        let clips = taught.chain(background).collect();
-        let data = TrainingData::new(clips, &labels, &self.classes)?;
+        let none = Labels::default();
+        let material = TrainingMaterial {
+            labels: self.labels.unwrap_or(&none),
+            people: self.people,
+            classes: &self.classes,
+            unknown: &BTreeSet::new(),
+        };
+        let data = material.sort_out(taught.chain(background).collect())?;
         let (index, mut report) = train_index(&data, &self.method, self.progress)?;
         report.notes.extend(data.notes);
-        if !data.unused.is_empty() {
-            let names = data.unused.join(", ");
-            report.notes.push(format!(
-                "not used, as no sample of the classes is in them: {names}"
-            ));
-        }
         Ok((index, report))
     }
 }

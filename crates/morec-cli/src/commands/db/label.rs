@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail};
+use morec::labels::some_of;
 use morec_db::exchange::{self, Annotation, ClipLengths, LabelFormat};
 use morec_db::labels::{
     Added, ChangedLabel, LabelChange, LabelOptions, Labelled, NewSample, SampleState,
@@ -14,7 +15,7 @@ use serde::Serialize;
 
 use super::history;
 use crate::database;
-use crate::files::{self, some_of};
+use crate::files;
 use crate::labels;
 use crate::named::by_name;
 use crate::print;

@@ -7,13 +7,12 @@ use anyhow::{Result, bail};
 use morec::TimeSpan;
 use morec::cluster::{PairCounts, adjusted_rand_index};
 use morec::features::Rows;
-use morec::labels::ClipLength;
+use morec::labels::{ClipLength, some_of};
 use morec_db::ClipId;
 use morec_ops::{GroupSettings, largest_first};
 use serde::Serialize;
 
 use super::args::Args;
-use crate::files::some_of;
 use crate::labels;
 use crate::print::{print_json, print_table};
 use crate::table::TextTable;

@@ -4,10 +4,10 @@ use std::path::Path;
 
 use anyhow::{Context, Result, anyhow, bail};
 use morec::clip::{Clip, Skeleton};
+use morec::labels::some_of;
 use morec::report::pictures::channel_chart;
 use morec::smooth::{ChannelKind, CompressedClip};
 
-use crate::files::some_of;
 use crate::output::{check_picture, write_whole};
 
 /// Names of channels, behind that of a joint.

@@ -17,11 +17,10 @@ pub(in crate::state) const MAPPING: &str = "Mapping confidences";
 
 impl State {
     pub(in crate::state) fn train_thesis(&mut self) {
-        let Some(store) = &self.store else { return };
-        if store.snapshot.accepted().next().is_none() {
-            self.complain("Nothing to learn from: label a few motions first");
+        if !self.has_something_to_learn() {
             return;
         }
+        let Some(store) = &self.store else { return };
         let (db, classes) = (store.path().to_owned(), self.chosen());
         self.show_line(train_line(&db, &self.thesis_settings(), "2009.index"));
         let params = self.train.thesis_params.clone();

@@ -52,7 +52,7 @@ impl State {
         }
     }
 
-    /// The classes that are learned; none means all.
+    /// The classes that are learned, which have labels; none means all.
     pub(in crate::state) fn chosen(&self) -> Vec<String> {
         if self.train.without.is_empty() {
             return Vec::new();
@@ -60,10 +60,10 @@ impl State {
         let Some(store) = &self.store else {
             return Vec::new();
         };
-        let names = store.snapshot.classes.iter().map(|c| &c.name);
-        names
-            .filter(|name| !self.train.without.contains(*name))
-            .cloned()
+        let labelled = store.snapshot.classes.iter().filter(|c| c.accepted > 0);
+        labelled
+            .map(|class| class.name.clone())
+            .filter(|name| !self.train.without.contains(name))
             .collect()
     }
 
@@ -87,11 +87,10 @@ impl State {
 
     /// Trains with what is labelled now; a training that is under way starts again.
     pub(in crate::state) fn start_training(&mut self) {
-        let Some(store) = &self.store else { return };
-        if store.snapshot.accepted().next().is_none() {
-            self.complain("Nothing to learn from: label a few motions first");
+        if !self.has_something_to_learn() {
             return;
         }
+        let Some(store) = &self.store else { return };
         for job in self.jobs.running.iter().filter(|j| j.name == TRAINING) {
             job.cancel();
         }
@@ -107,7 +106,26 @@ impl State {
         );
     }
 
+    /// Whether a class that is chosen has labels; if none has, that is said.
+    pub(in crate::state) fn has_something_to_learn(&mut self) -> bool {
+        let Some(store) = &self.store else {
+            return false;
+        };
+        let labelled = store.snapshot.accepted().next().is_some();
+        if labelled && (self.train.without.is_empty() || !self.chosen().is_empty()) {
+            return true;
+        }
+        self.complain(match labelled {
+            true => "Nothing to learn: choose a class that has labels",
+            false => "Nothing to learn from: label a few motions first",
+        });
+        false
+    }
+
     fn start_judging(&mut self, settings: TrainSettings) {
+        if !self.has_something_to_learn() {
+            return;
+        }
         let Some(store) = &self.store else { return };
         let db = store.path().to_owned();
         let accepted = store.snapshot.accepted();
