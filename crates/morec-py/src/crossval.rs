@@ -2,11 +2,8 @@
 
 use std::path::PathBuf;
 
-use morec::TimeSpan;
 use morec::crossval::CrossvalData;
-use morec::eval::{
-    ClipDetection, Evaluation, GroundTruth, MEASURED_OVERLAP, StreamInfo, timelines,
-};
+use morec::eval::{MEASURED_OVERLAP, timelines};
 use morec::report::{Report, TrainedClass};
 use morec_ops::{CrossvalMeasures, CrossvalSettings, LeftOut, TrainSettings};
 use pyo3::prelude::*;
@@ -168,43 +165,4 @@ impl PyCrossval {
         };
         Ok(report.html())
     }
-}
-
-type SpanTuple = (String, String, f64, f64);
-type HitTuple = (String, String, f64, f64, Option<f64>, Option<f64>);
-
-/// Every measure of detections held against labels.
-#[pyfunction]
-pub fn evaluate<'py>(
-    py: Python<'py>,
-    streams: Vec<(String, f64)>,
-    truth: Vec<SpanTuple>,
-    found: Vec<HitTuple>,
-) -> PyResult<Bound<'py, PyAny>> {
-    let stream = |(clip, duration_secs)| StreamInfo {
-        clip,
-        duration_secs,
-        unknown: false,
-    };
-    let label = |(clip, class, start_secs, stop_secs): SpanTuple| GroundTruth {
-        clip,
-        class,
-        span: TimeSpan::new(start_secs, stop_secs),
-    };
-    let hit =
-        |(clip, class, start_secs, stop_secs, score, reported_secs): HitTuple| ClipDetection {
-            clip,
-            class,
-            span: TimeSpan::new(start_secs, stop_secs),
-            score,
-            reported_secs,
-            repetitions: None,
-        };
-    let streams: Vec<_> = streams.into_iter().map(stream).collect();
-    let truth: Vec<_> = truth.into_iter().map(label).collect();
-    let found: Vec<_> = found.into_iter().map(hit).collect();
-    plain(
-        py,
-        &Evaluation::of(&streams, &truth, &found).map_err(value_error)?,
-    )
 }

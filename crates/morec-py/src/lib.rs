@@ -9,6 +9,7 @@ mod crossval;
 mod database;
 mod divided;
 mod errors;
+mod evaluate;
 mod features;
 mod index;
 mod job;
@@ -54,7 +55,7 @@ fn _morec(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(divided::match_kept, module)?)?;
     module.add_function(wrap_pyfunction!(divided::recognize_matched_kept, module)?)?;
     module.add_function(wrap_pyfunction!(crossval::crossval, module)?)?;
-    module.add_function(wrap_pyfunction!(crossval::evaluate, module)?)?;
+    module.add_function(wrap_pyfunction!(evaluate::evaluate, module)?)?;
     module.add_function(wrap_pyfunction!(segment::cut, module)?)?;
     module.add_function(wrap_pyfunction!(synth::synth_database, module)?)?;
     module.add_function(wrap_pyfunction!(synth::synth_everyday, module)?)?;

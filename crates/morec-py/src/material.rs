@@ -109,7 +109,8 @@ pub fn training_data(material: &Bound<'_, PyDict>, classes: &[String]) -> PyResu
     Ok(data)
 }
 
-fn train_clip(data: &ClipData, background: &BTreeSet<String>) -> TrainClip {
+/// A clip as training has it, of nobody that is known.
+pub fn train_clip(data: &ClipData, background: &BTreeSet<String>) -> TrainClip {
     TrainClip {
         name: data.clip.name.clone(),
         clip: data.clip.clone(),

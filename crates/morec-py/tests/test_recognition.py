@@ -247,8 +247,31 @@ def test_cross_validation_measures_and_reports(
         morec.crossval(clips, labels, by="shoe")
     with pytest.raises(ValueError, match="perturb=.*louder"):
         morec.crossval(clips, labels, perturb=["louder"])
-    with pytest.raises(ValueError, match="lies in the stream"):
-        morec.evaluate([{"clip": "x", "class": "a", "start_secs": 0, "stop_secs": 1}], [], {"y": 3.0})
+
+
+def test_detections_are_measured_in_any_form(
+    index: morec.Index, clips: list[morec.Clip], labels: morec.Table, newcomer: morec.Clip, tmp_path: Path
+) -> None:
+    found = [row for clip in clips for row in index.recognize(clip)]
+    measured = morec.evaluate(labels, found, clips, index=index)
+    secs = {clip.name: clip.duration_secs for clip in clips}
+    assert morec.evaluate(labels, found, secs)["thesis"] == measured["thesis"]
+    assert len(measured["missed"]) == measured["totals"]["samples"] - measured["events"]["matched"]
+    path = tmp_path / "found.tsv"
+    columns = ["clip", "class", "start_secs", "stop_secs", "score", "reported_secs"]
+    lines = ["\t".join(columns)] + ["\t".join(str(row[name]) for name in columns) for row in found]
+    path.write_text("\n".join(lines) + "\n")
+    assert morec.evaluate(labels, path, secs)["thesis"] == measured["thesis"]
+    one = morec.evaluate(labels, found, clips, unknown=[newcomer], classes=["wave"])
+    assert one["totals"]["samples"] == sum(row["class"] == "wave" for row in labels)
+    assert one["unknown"]["clips"] == 1
+    label = {"clip": "x", "class": "a", "start_secs": 0, "stop_secs": 1}
+    with pytest.raises(ValueError, match="nothing to measure"):
+        morec.evaluate([label], [], {"y": 3.0})
+    with pytest.raises(ValueError, match="did you mean `wave`"):
+        morec.evaluate(labels, found, secs, classes=["wvae"])
+    with pytest.raises(ValueError, match="dict of lengths"):
+        morec.evaluate(labels, found, secs, index=index)
 
 
 def test_tables_are_lists_and_frames(index: morec.Index, newcomer: morec.Clip) -> None:

@@ -102,7 +102,7 @@ fn tables_report_and_what_was_left_out() {
         assert!(printed.contains(line), "{line} not in\n{printed}");
     }
     assert!(
-        said.contains("1 labels are of clips that --clips does not hold; left out: elsewhere"),
+        said.contains("1 labels are of clips that are not there; left out: elsewhere"),
         "{said}"
     );
     assert!(

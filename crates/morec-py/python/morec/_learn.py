@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any, Union
+from typing import TYPE_CHECKING, Any, Union
 
 from . import _morec
 from ._files import Clips, as_clips
@@ -13,6 +13,13 @@ from ._labels import Labels, People, label_rows, people_rows
 from ._morec import Clip, Crossval, Index
 from ._progress import Progress, listener
 
+if TYPE_CHECKING:
+    import pandas
+
+#: Detections: rows with clip, class, start_secs, stop_secs (a DataFrame or a `Table`, too), or the path of a table.
+Found = Union["pandas.DataFrame", str, "os.PathLike[str]", Iterable[Mapping[str, Any]]]
+#: Clips that were searched, or their lengths in seconds by name.
+Lengths = Union[Clips, Mapping[str, float]]
 #: Clips that hold none of the classes: clips, paths, or names of clips that are given anyway.
 Background = Union[Clips, Iterable[str], None]
 
@@ -216,35 +223,77 @@ def crossval(
 
 
 def evaluate(
-    truth: Iterable[Mapping[str, Any]], found: Iterable[Mapping[str, Any]], clips: Mapping[str, float] | Iterable[Clip]
+    truth: Labels,
+    found: Found,
+    clips: Lengths,
+    *,
+    unknown: Lengths = (),
+    classes: Sequence[str] = (),
+    index: Index | None = None,
 ) -> dict[str, Any]:
     """Hold detections against labels; what ``morec evaluate --json`` prints.
 
     Parameters
     ----------
-    truth, found : tables
-        Rows with clip, class, start_secs, stop_secs; found perhaps with score and reported_secs.
-    clips : dict of name to seconds, or clips
-        The streams that were searched.
+    truth : DataFrame, path, Table or list of spans
+        Labels, as for `train`. In a clip that has some, what has no label counts as none of the classes.
+    found : DataFrame, path, Table or rows
+        Detections: clip, class, start_secs, stop_secs, and perhaps score and reported_secs; the path of a table may say frames.
+    clips : clips, paths, or dict of name to seconds
+        The streams that were searched. Those that no label names are left out.
+    unknown : clips, paths, or dict of name to seconds
+        Streams that hold none of the classes: what is found there counts apart from the rest.
+    classes : sequence of str
+        Classes that count, if not all.
+    index : Index, optional
+        The index that recognised; then ``missed`` says of each missed sample why. `clips` have to be clips for it.
 
     Returns
     -------
     dict
+
+    Raises
+    ------
+    ValueError
+        Nothing can be measured, or no label has one of the classes.
+
+    Warns
+    -----
+    MorecWarning
+        For labels, detections and clips that were left out.
     """
+    if index is not None and isinstance(clips, Mapping):
+        raise ValueError("index: samples that were missed are looked for in the motion; clips is a dict of lengths")
+    return _morec.evaluate(
+        label_rows(truth), _found_rows(found), _lengths(clips), _lengths(unknown), index, classes=list(classes)
+    )
+
+
+def _lengths(clips: Lengths) -> dict[str, float] | list[Clip]:
     if isinstance(clips, Mapping):
-        lengths = [(str(name), float(secs)) for name, secs in clips.items()]
-    else:
-        lengths = [(clip.name, clip.duration_secs) for clip in clips]
-    spans = [(str(t["clip"]), str(t["class"]), float(t["start_secs"]), float(t["stop_secs"])) for t in truth]
-    hits = [
+        return {str(name): float(secs) for name, secs in clips.items()}
+    return as_clips(clips)
+
+
+def _found_rows(found: Found) -> list[tuple[str, str, float, float, float | None, float | None]] | bytes:
+    """Detections as rows, or the bytes of a table."""
+    if isinstance(found, (str, os.PathLike)):
+        with open(found, "rb") as file:
+            return file.read()
+    rows = found.to_dict("records") if hasattr(found, "to_dict") else found
+    return [
         (
-            str(f["clip"]),
-            str(f["class"]),
-            float(f["start_secs"]),
-            float(f["stop_secs"]),
-            f.get("score"),
-            f.get("reported_secs"),
+            str(row["clip"]),
+            str(row["class"]),
+            float(row["start_secs"]),
+            float(row["stop_secs"]),
+            _number(row.get("score")),
+            _number(row.get("reported_secs")),
         )
-        for f in found
+        for row in rows
     ]
-    return _morec.evaluate(lengths, spans, hits)
+
+
+def _number(value: Any) -> float | None:
+    # What a DataFrame lacks is not a number.
+    return None if value is None or value != value else float(value)
