@@ -71,6 +71,14 @@ impl ImportLog {
         }
     }
 
+    /// Names of the clips that are in the database now.
+    pub fn clips(&self) -> impl Iterator<Item = &String> {
+        self.files.iter().flat_map(|(_, outcome)| match outcome {
+            ImportOutcome::Imported { clips, .. } => clips.as_slice(),
+            _ => &[],
+        })
+    }
+
     /// Number of files by outcome.
     pub fn counts(&self) -> ImportCounts {
         let mut counts = ImportCounts::default();

@@ -1,5 +1,6 @@
 //! Settings as the words of a command line.
 
+use clap::{Arg, Args, Command};
 use serde::Serialize;
 use serde_json::Value;
 
@@ -7,8 +8,9 @@ use crate::params::{Param, word};
 
 /// The options with their values that give `settings` on the command line: one for every field that is not as usual.
 ///
-/// A list is one value with commas; a table of parameters is an option for each; what is on or off is an option without a value.
-pub fn arguments<S: Serialize + Default>(settings: &S) -> Vec<(String, Option<String>)> {
+/// A list is one value with commas, or an option for each value, as the option says; a table of parameters is an option for each;
+/// what is on or off is an option without a value.
+pub fn arguments<S: Serialize + Default + Args>(settings: &S) -> Vec<(String, Option<String>)> {
     let fields = |settings: &S| match serde_json::to_value(settings) {
         Ok(Value::Object(fields)) => fields,
         _ => serde_json::Map::new(),
@@ -17,42 +19,47 @@ pub fn arguments<S: Serialize + Default>(settings: &S) -> Vec<(String, Option<St
     let changed = fields(settings)
         .into_iter()
         .filter(|(name, value)| usual.get(name) != Some(value));
+    let command = S::augment_args(Command::new("settings"));
+    let of_field = |name: &str| command.get_arguments().find(|arg| arg.get_id() == name);
     changed
-        .flat_map(|(name, value)| option(&name, value))
+        .flat_map(|(name, value)| of_field(&name).map_or_else(Vec::new, |arg| option(arg, value)))
         .collect()
 }
 
-fn option(name: &str, value: Value) -> Vec<(String, Option<String>)> {
-    let option = format!("--{}", name.replace('_', "-"));
+fn option(arg: &Arg, value: Value) -> Vec<(String, Option<String>)> {
+    let option = format!("--{}", arg.get_long().unwrap_or(arg.get_id().as_str()));
+    let each = |value: String| (option.clone(), Some(value));
     match value {
         Value::Null | Value::Bool(false) => Vec::new(),
         Value::Bool(true) => vec![(option, None)],
         Value::Array(values) => {
-            let values: Vec<String> = values.into_iter().map(word).collect();
-            vec![(option, Some(values.join(",")))]
+            let values = values.into_iter().map(word);
+            match arg.get_value_delimiter() {
+                Some(_) => vec![each(values.collect::<Vec<_>>().join(","))],
+                None => values.map(each).collect(),
+            }
         }
         Value::Object(params) => {
-            let each = option.trim_end_matches('s');
-            let param = |(name, value)| (each.to_owned(), Some(Param { name, value }.to_string()));
+            let param = |(name, value)| each(Param { name, value }.to_string());
             params.into_iter().map(param).collect()
         }
-        value => vec![(option, Some(word(value)))],
+        value => vec![each(word(value))],
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use clap::{Args, Command, FromArgMatches};
+    use clap::FromArgMatches;
     use morec::train::thesis::SvrdmTrainParams;
     use serde::de::DeserializeOwned;
 
     use super::*;
     use crate::{
-        CrossvalSettings, CutMethod, CutSettings, LeftOut, Method, SearchSettings, TrainSettings,
-        from_fields,
+        CrossvalSettings, CutMethod, CutSettings, ImportSettings, LeftOut, Method, SearchSettings,
+        TrainSettings, from_fields,
     };
 
-    fn words<S: Serialize + Default>(settings: &S) -> Vec<String> {
+    fn words<S: Serialize + Default + Args>(settings: &S) -> Vec<String> {
         let options = arguments(settings).into_iter();
         options
             .flat_map(|(option, value)| std::iter::once(option).chain(value))
@@ -85,6 +92,11 @@ mod tests {
             direction: morec::segment::PassDirections::Backward,
             rise: 3.5,
             ..CutMethod::Ppca.into()
+        });
+        returns(&ImportSettings {
+            subject: Some("ada".into()),
+            tags: vec!["walk".into(), "one, two".into()],
+            ..ImportSettings::default()
         });
         returns(&SearchSettings::default());
         returns(&SearchSettings {

@@ -10,9 +10,9 @@ use morec::pivots::PivotSet;
 use morec::progress::Progress;
 use morec_db::labels::{NewSample, SampleFilter, SampleState};
 use morec_db::search::{Example, SearchIndex};
-use morec_db::{ClipFilter, ClipId, ClipInfo, ClipUpdate, DbError, ImportOutcome, MotionDb};
+use morec_db::{ClipFilter, ClipId, ClipInfo, DbError, ImportOutcome, MotionDb};
 use morec_ops::{
-    CutSettings, GroupSettings, ProposeSettings, SearchSettings, example_of_clip,
+    CutSettings, GroupSettings, ImportSettings, ProposeSettings, SearchSettings, example_of_clip,
     example_of_database, largest_first,
 };
 use pyo3::exceptions::{PyFileExistsError, PyFileNotFoundError, PyKeyError, PyPermissionError};
@@ -157,18 +157,15 @@ impl PyDatabase {
     }
 
     /// Adds the clips of files and folders; what is there already is known by its content.
-    #[pyo3(signature = (paths, *, source=None, licence=None, subject=None, tags=vec![], progress=None))]
-    #[allow(clippy::too_many_arguments)] // Keyword arguments of one Python method.
+    #[pyo3(signature = (paths, *, progress=None, **settings))]
     fn import_files<'py>(
         &self,
         py: Python<'py>,
         paths: &Bound<'py, PyAny>,
-        source: Option<String>,
-        licence: Option<String>,
-        subject: Option<String>,
-        tags: Vec<String>,
         progress: Option<&Bound<'py, PyAny>>,
+        settings: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
+        let settings: ImportSettings = keywords(settings)?;
         let given = match paths.extract::<PathBuf>() {
             Ok(path) => vec![path],
             Err(_) => paths.extract()?,
@@ -182,22 +179,15 @@ impl PyDatabase {
                 .map(|error| format!("left out: {error}")),
         )?;
         let (files, reader) = (listing.clips, FileReader::default());
-        let about = ClipUpdate {
-            source,
-            licence,
-            subject,
-            add_tags: tags,
-            remove_tags: Vec::new(),
-        };
         self.changed();
         let report = self.run(py, progress, |db, progress| {
-            let imported = db.import(&files, &reader, &about, progress);
+            let imported = settings.run(db, &files, &reader, progress);
             imported.map_err(db_error)
         })?;
         let mut rows = Vec::new();
-        for (path, outcome) in &report.files {
+        for (path, outcome) in &report.log.files {
             let row = PyDict::new(py);
-            let (what, clips, notes) = match outcome {
+            let (what, clips, mut notes) = match outcome {
                 ImportOutcome::Imported { clips, warnings } => {
                     ("imported", clips.clone(), warnings.clone())
                 }
@@ -207,6 +197,9 @@ impl PyDatabase {
                     ("refused", vec![], vec![refused.reason.clone()])
                 }
             };
+            let copies = report.near_copies.iter();
+            let copies = copies.filter(|c| clips.contains(&c.copy) || clips.contains(&c.of));
+            notes.extend(copies.map(ToString::to_string));
             row.set_item("path", path.to_string_lossy())?;
             row.set_item("outcome", what)?;
             row.set_item("clips", clips)?;

@@ -36,6 +36,21 @@ def test_what_cannot_be_read_is_a_row(db: morec.Database, tmp_path: Path) -> Non
     assert told.column("outcome") == ["refused"] and "line 1" in told[0]["notes"][0]
 
 
+def test_what_is_nearly_there_is_noted(
+    db: morec.Database, clips: list[morec.Clip], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    clips[0][0.0 : 0.9 * clips[0].duration_secs].save(tmp_path / "shorter.bvh")
+    monkeypatch.chdir(tmp_path)
+    told = db.import_files("shorter.bvh", subject="ada", tags=["again"])
+    assert told.column("outcome") == ["imported"]
+    assert any(f"shorter is nearly the same as {clips[0].name}" in note for note in told[0]["notes"])
+    assert db.clips(tag="again", subject="ada").column("clip") == ["shorter"]
+    # The same file is the same path, from whichever folder it is named.
+    assert db.import_files(tmp_path / "shorter.bvh").column("outcome") == ["known"]
+    with pytest.raises(ValueError, match="did you mean `source`"):
+        db.import_files("shorter.bvh", sources="here")  # type: ignore[call-arg]
+
+
 def test_labels_search_cut_and_propose(db: morec.Database, labels: morec.Table, clips: list[morec.Clip]) -> None:
     first = [row for row in labels if row["clip"] == clips[0].name]
     assert db.label(first)["added"] == len(first)

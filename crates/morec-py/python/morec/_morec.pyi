@@ -381,7 +381,8 @@ class Database:
         Returns
         -------
         Table
-            Columns path, outcome (imported, known, copy, refused), clips, notes.
+            Columns path, outcome (imported, known, copy, refused), clips, notes: repairs and doubts, the reason of a
+            refusal, clips that are nearly others.
         """
     def clips(
         self,

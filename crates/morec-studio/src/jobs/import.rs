@@ -1,12 +1,12 @@
 //! Files into the database.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use morec::files::{FileReader, list};
 use morec::progress::Progress;
-use morec_db::search::{SearchIndex, near_duplicates_of};
-use morec_db::{ClipFilter, ClipId, ClipUpdate, DbError, ImportLog, ImportOutcome, MotionDb};
+use morec_db::{ClipFilter, ClipInfo, ImportOutcome, MotionDb};
+use morec_ops::{CopiedClip, ImportSettings};
 
 use super::label_files::{beside, is_labels};
 use super::progress::{JobError, JobProgress};
@@ -102,22 +102,18 @@ pub fn import(
             Err(error) => report.refused.push((path.clone(), error.kind.to_string())),
         }
     }
-    let (reader, about) = (FileReader::default(), ClipUpdate::default());
     let imported = MotionDb::open(db).and_then(|mut db| {
-        let done = db.import(&clips, &reader, &about, progress)?;
-        let copies = copies(&mut db, &done, progress)?;
+        let settings = ImportSettings::default();
+        let done = settings.run(&mut db, &clips, &FileReader::default(), progress)?;
         progress.report("looking for labels", 0, 0);
-        report.beside = beside(&db.clips(&ClipFilter::default())?, &paths);
+        let infos = db.clips(&ClipFilter::default())?;
+        report.copies = copies(&infos, done.near_copies);
+        report.beside = beside(&infos, &paths);
         report.beside.retain(|path| !report.labels.contains(path));
-        Ok((done, copies))
+        Ok(done.log)
     });
-    let done = match imported {
-        Ok((done, copies)) => {
-            report.copies = copies;
-            done
-        }
-        Err(error) => return Err(JobError::Failed(format!("Import stopped: {error}"))),
-    };
+    let stopped = |error| JobError::Failed(format!("Import stopped: {error}"));
+    let done = imported.map_err(stopped)?;
     report.cancelled = done.cancelled || progress.cancelled();
     for (path, outcome) in done.files {
         match outcome {
@@ -134,50 +130,17 @@ pub fn import(
     Ok(report)
 }
 
-/// Finds the imported clips that are nearly others, so that one of the two can be left out.
-fn copies(
-    db: &mut MotionDb,
-    done: &ImportLog,
-    progress: &JobProgress,
-) -> Result<Vec<CopiedStretch>, DbError> {
-    let names: BTreeSet<&String> = done
-        .files
-        .iter()
-        .filter_map(|(_, outcome)| match outcome {
-            ImportOutcome::Imported { clips, .. } => Some(clips),
-            _ => None,
-        })
-        .flatten()
-        .collect();
-    if names.is_empty() || done.cancelled {
-        return Ok(Vec::new());
-    }
-    progress.report("looking for near copies", 0, 0);
-    let clips = db.clips(&ClipFilter::default())?;
-    let new: BTreeSet<ClipId> = clips
-        .iter()
-        .filter(|c| names.contains(&c.name))
-        .map(|c| c.id)
-        .collect();
-    let by_id: BTreeMap<ClipId, _> = clips.iter().map(|c| (c.id, c)).collect();
-    let index = match SearchIndex::of_db(db, progress) {
-        // What was imported is there, whatever is not known of it.
-        Err(DbError::Cancelled) => return Ok(Vec::new()),
-        index => index?,
-    };
-    let found = near_duplicates_of(&index, &new).into_iter();
-    let copies = found.filter_map(|pair| {
-        let (of, copy) = (by_id.get(&pair.of)?, by_id.get(&pair.copy)?);
-        let how = match pair.mirrored {
-            true => "nearly the mirror image of",
-            false => "nearly the same as",
-        };
+/// Imported clips that are nearly others, so that one of the two can be left out.
+fn copies(infos: &[ClipInfo], found: Vec<CopiedClip>) -> Vec<CopiedStretch> {
+    let named = |name: &str| infos.iter().find(|info| info.name == name);
+    let copied = |found: CopiedClip| {
+        let (of, copy) = (named(&found.of)?, named(&found.copy)?);
         Some(CopiedStretch {
-            text: format!("{} is {how} {}", copy.name, of.name),
             copy: Stretch::new(copy.id, 0.0..copy.duration_secs()),
-            of: Stretch::new(of.id, pair.span),
-            mirrored: pair.mirrored,
+            of: Stretch::new(of.id, found.span),
+            mirrored: found.mirrored,
+            text: found.to_string(),
         })
-    });
-    Ok(copies.collect())
+    };
+    found.into_iter().filter_map(copied).collect()
 }

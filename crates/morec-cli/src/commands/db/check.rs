@@ -5,9 +5,9 @@ use std::process::ExitCode;
 
 use anyhow::Result;
 use morec_db::Health;
+use morec_ops::CopiedClip;
 use serde::Serialize;
 
-use super::copies::{self, Copy};
 use crate::database;
 use crate::print;
 use crate::progress::StageBar;
@@ -35,7 +35,7 @@ struct Checked {
     #[serde(flatten)]
     health: Health,
     #[serde(skip_serializing_if = "Option::is_none")]
-    copies: Option<Vec<Copy>>,
+    copies: Option<Vec<CopiedClip>>,
 }
 
 /// Checks and prints.
@@ -46,7 +46,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     }
     let health = database::open_read_only(&args.db)?.check()?;
     let copies = match args.copies {
-        true => Some(copies::find(
+        true => Some(CopiedClip::among(
             &mut database::open_read_only(&args.db)?,
             None,
             &StageBar::stoppable()?,

@@ -1,16 +1,14 @@
 //! `morec db import`: clips into a database.
 
-use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
 
 use anyhow::{Result, bail};
-use morec::files::{FileReader, split_choice};
-use morec_db::{ClipUpdate, ImportCounts, ImportLog, ImportOutcome, MotionDb};
-use serde::Serialize;
+use morec::files::FileReader;
+use morec_db::{ImportCounts, ImportLog, ImportOutcome, MotionDb};
+use morec_ops::ImportSettings;
 
-use super::copies::{self, Copy};
 use super::samples;
 use crate::database;
 use crate::files::{self, ReadArgs};
@@ -48,18 +46,8 @@ pub struct Args {
         conflicts_with_all = ["source", "licence", "subject", "tags"]
     )]
     in_place_of: Option<String>,
-    /// Origin of the material
-    #[arg(long, value_name = "TEXT")]
-    source: Option<String>,
-    /// Under which terms it may be used
-    #[arg(long, value_name = "TEXT")]
-    licence: Option<String>,
-    /// Person in the clips
-    #[arg(long, value_name = "NAME")]
-    subject: Option<String>,
-    /// A word to find the clips by; may be given several times
-    #[arg(long = "tag", value_name = "WORD")]
-    tags: Vec<String>,
+    #[command(flatten)]
+    settings: ImportSettings,
     /// Roles of joints, where inference fails: lines of `role<TAB>joint name`
     #[arg(long, value_name = "FILE")]
     roles: Option<PathBuf>,
@@ -75,7 +63,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let begun = Instant::now();
     let expanded = files::expand_all(&args.clips)?;
     let left_out = files::say_left_out(&expanded);
-    let paths: Vec<PathBuf> = expanded.clips.into_iter().map(absolute).collect();
+    let paths = expanded.clips;
     let mut db = match args.db.exists() {
         true => database::open(&args.db)?,
         false => MotionDb::create(&args.db)?,
@@ -85,27 +73,18 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     if let Some(clip) = &args.in_place_of {
         return replace(args, &mut db, clip, &paths, &reader);
     }
-    let about = ClipUpdate {
-        source: args.source.clone(),
-        licence: args.licence.clone(),
-        subject: args.subject.clone(),
-        add_tags: args.tags.clone(),
-        remove_tags: Vec::new(),
-    };
     let bar = StageBar::stoppable()?;
-    let report = db.import(&paths, &reader, &about, &bar)?;
-    let near_copies = near_copies(&mut db, &report, &bar)?;
+    let report = args.settings.run(&mut db, &paths, &reader, &bar)?;
     if args.json {
-        print::print_json(&Reported {
-            report: &report,
-            near_copies: &near_copies,
-        })?;
+        print::print_json(&report)?;
     } else {
-        print::print(text(&report, paths.len(), begun.elapsed().as_secs_f64()))?;
-        for copy in &near_copies {
+        let secs = begun.elapsed().as_secs_f64();
+        print::print(text(&report.log, paths.len(), secs))?;
+        for copy in &report.near_copies {
             print::print(format_args!("  {copy}\n"))?;
         }
     }
+    let report = report.log;
     if report.cancelled {
         return Ok(interrupt::STOPPED.into());
     }
@@ -150,37 +129,6 @@ fn replace(
     }
 }
 
-#[derive(Serialize)]
-struct Reported<'a> {
-    #[serde(flatten)]
-    report: &'a ImportLog,
-    near_copies: &'a [Copy],
-}
-
-/// Clips of this import that are nearly others.
-fn near_copies(db: &mut MotionDb, report: &ImportLog, bar: &StageBar) -> Result<Vec<Copy>> {
-    let names = report.files.iter().flat_map(|(_, outcome)| match outcome {
-        ImportOutcome::Imported { clips, .. } => clips.as_slice(),
-        _ => &[],
-    });
-    let names: BTreeSet<&str> = names.map(String::as_str).collect();
-    if names.is_empty() || report.cancelled {
-        Ok(Vec::new())
-    } else {
-        copies::find(db, Some(&names), bar)
-    }
-}
-
-/// The same file is the same path, wherever the command is run.
-fn absolute(path: PathBuf) -> PathBuf {
-    let (file, choice) = split_choice(&path);
-    match (file.canonicalize(), choice) {
-        (Ok(file), Some(choice)) => format!("{}#{choice}", file.display()).into(),
-        (Ok(file), None) => file,
-        (Err(_), _) => path,
-    }
-}
-
 fn text(report: &ImportLog, files: usize, secs: f64) -> String {
     const SHOWN: usize = 20;
     let ImportCounts {
@@ -190,14 +138,7 @@ fn text(report: &ImportLog, files: usize, secs: f64) -> String {
         copies,
         refused,
     } = report.counts();
-    let clips: usize = report
-        .files
-        .iter()
-        .map(|(_, outcome)| match outcome {
-            ImportOutcome::Imported { clips, .. } => clips.len(),
-            _ => 0,
-        })
-        .sum();
+    let clips = report.clips().count();
     let mut lines = vec![format!(
         "{imported} files imported ({clips} clips, {with_warnings} files with notes), {known} known, {copies} copies, {refused} refused; {secs:.1} s"
     )];

@@ -3,7 +3,6 @@
 mod check;
 mod classes;
 mod clips;
-mod copies;
 mod cycles;
 mod export;
 mod history;

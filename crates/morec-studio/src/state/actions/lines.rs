@@ -54,7 +54,7 @@ impl ShownCommand {
     }
 
     /// Adds the options of an operation's settings that are not as usual.
-    pub fn settings<S: Serialize + Default>(self, settings: &S) -> Self {
+    pub fn settings<S: Serialize + Default + clap::Args>(self, settings: &S) -> Self {
         let options = morec_ops::arguments(settings).into_iter();
         options.fold(self, |line, (option, value)| match value {
             Some(value) => line.with(&option, value),
