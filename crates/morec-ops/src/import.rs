@@ -31,7 +31,7 @@ pub struct ImportSettings {
 
 /// What became of every file.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
-pub struct ImportReport {
+pub struct ImportedFiles {
     /// Outcomes of the files.
     #[serde(flatten)]
     pub log: ImportLog,
@@ -67,7 +67,7 @@ impl ImportSettings {
         files: &[PathBuf],
         reader: &FileReader,
         progress: &dyn Progress,
-    ) -> Result<ImportReport, DbError> {
+    ) -> Result<ImportedFiles, DbError> {
         let about = ClipUpdate {
             source: self.source.clone(),
             licence: self.licence.clone(),
@@ -86,7 +86,7 @@ impl ImportSettings {
                 found => found?,
             },
         };
-        Ok(ImportReport { log, near_copies })
+        Ok(ImportedFiles { log, near_copies })
     }
 }
 

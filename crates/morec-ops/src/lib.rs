@@ -26,7 +26,7 @@ pub use cut::{CutMethod, CutSettings};
 pub use error::OperationError;
 pub use evaluate::{EvaluateMeasures, EvaluateSettings};
 pub use group::{GroupMethod, GroupSettings, GroupedStretch, Grouping, Shapes, largest_first};
-pub use import::{CopiedClip, ImportReport, ImportSettings};
+pub use import::{CopiedClip, ImportSettings, ImportedFiles};
 pub use material::{MaterialBeside, accepted_labels, training_data};
 pub use params::{Param, ParamError, from_fields};
 pub use propose::ProposeSettings;
