@@ -204,7 +204,7 @@ impl GroupSettings {
     /// No direction counts.
     pub fn kwas(&self) -> Result<KwasParams, OperationError> {
         if self.k == 0 {
-            let none = "--k 0: at least one direction must count";
+            let none = "k is 0: at least one direction must count";
             return Err(OperationError::Settings(none.to_owned()));
         }
         let form = match self.normalised {

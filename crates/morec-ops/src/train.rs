@@ -142,7 +142,7 @@ impl TrainSettings {
     pub fn recipe(&self) -> Result<Recipe, OperationError> {
         let names_kinds = !self.activities.is_empty() || !self.gestures.is_empty();
         if names_kinds && self.method != Method::Auto {
-            let why = "--activities and --gestures are for --method auto";
+            let why = "activities and gestures are for the method auto";
             return Err(OperationError::Settings(why.to_owned()));
         }
         Ok(match self.method {

@@ -5,6 +5,8 @@ use egui::{
     TopBottomPanel, Ui, Vec2, WidgetType,
 };
 use morec::kinematics::WorldPose;
+use morec::templates::PerformerKind;
+use morec_ops::RecognizeSettings;
 
 use super::compare::Other;
 use super::{Out, live_line, padded, teach, view, widgets};
@@ -264,11 +266,27 @@ fn sensitivity(ui: &mut Ui, state: &State, out: Out) {
     }
     ui.add_space(6.0);
     widgets::section(ui, "SENSITIVITY");
-    if !state.live.can_sense() {
+    if state.live.can_sense() {
+        alarms(ui, state, out);
+    } else {
         ui.colored_label(c.muted, "This index has one sensitivity only.");
-        return;
     }
-    let mut alarms = state.live.alarms.unwrap_or(0.3);
+    if state.live.knows_performers() {
+        who_performs(ui, state, out);
+    }
+    if let Some(resensed) = &state.live.resensed {
+        let at = match resensed.settings.sensitivity {
+            Some(alarms) => format!("At {alarms:.2} it"),
+            None => "It".to_owned(),
+        };
+        let count = format::count(resensed.found.len(), "motion");
+        let text = format!("{at} would have found {count} in the minutes below.");
+        ui.label(RichText::new(text).size(12.0));
+    }
+}
+
+fn alarms(ui: &mut Ui, state: &State, out: Out) {
+    let mut alarms = state.live.settings.sensitivity.unwrap_or(0.3);
     ui.spacing_mut().slider_width = ui.available_width() - 60.0;
     let slider = egui::Slider::new(&mut alarms, 0.03..=2.0)
         .logarithmic(true)
@@ -276,21 +294,42 @@ fn sensitivity(ui: &mut Ui, state: &State, out: Out) {
     let response = ui.add(slider);
     widgets::named(&response, WidgetType::Slider, "Sensitivity", false);
     if response.changed() {
-        out.push(Command::Live(LiveCommand::Sensitivity(alarms)));
+        out.push(Command::Live(LiveCommand::Settings(RecognizeSettings {
+            sensitivity: Some((alarms * 100.0).round() / 100.0),
+            ..state.live.settings.clone()
+        })));
     }
-    ui.label(
-        RichText::new("false alarms a minute that are accepted")
-            .size(11.0)
-            .color(c.muted),
-    );
-    if let Some(resensed) = &state.live.resensed {
-        let text = format!(
-            "At {:.2} it would have found {} in the minutes below.",
-            resensed.alarms,
-            format::count(resensed.found.len(), "motion")
+    let said = RichText::new("false alarms a minute that are accepted");
+    ui.label(said.size(11.0).color(Colours::now(ui).muted));
+}
+
+/// The performer that is expected, where one or two people taught.
+fn who_performs(ui: &mut Ui, state: &State, out: Out) {
+    let name = |kind: PerformerKind| match kind {
+        PerformerKind::Auto => "whoever it is",
+        PerformerKind::Teacher => "who taught",
+        PerformerKind::Anyone => "somebody else",
+    };
+    let chosen = state.live.settings.performer.unwrap_or_default();
+    ui.horizontal(|ui| {
+        ui.label("Performer");
+        let combo = ComboBox::from_id_salt("performer").selected_text(name(chosen));
+        let combo = combo.show_ui(ui, |ui| {
+            use PerformerKind::{Anyone, Auto, Teacher};
+            for kind in [Auto, Teacher, Anyone] {
+                if ui.selectable_label(kind == chosen, name(kind)).clicked() {
+                    out.push(Command::Live(LiveCommand::Settings(RecognizeSettings {
+                        performer: Some(kind),
+                        ..state.live.settings.clone()
+                    })));
+                }
+            }
+        });
+        widgets::named(&combo.response, WidgetType::ComboBox, "Performer", false);
+        combo.response.on_hover_text(
+            "Motions of somebody else are accepted more generously. Whoever it is: once four motions show a performer unlike the teacher",
         );
-        ui.label(RichText::new(text).size(12.0));
-    }
+    });
 }
 
 fn performer(ui: &mut Ui, state: &State, out: Out) {

@@ -1,6 +1,7 @@
 //! Teaching from what just happened.
 
 use egui::Key;
+use morec_ops::RecognizeSettings;
 
 use super::{Person, made, takes};
 use crate::state::live::Choice;
@@ -258,6 +259,26 @@ fn the_last_minutes_are_looked_back_at_and_a_detection_is_selected_by_a_click() 
 }
 
 #[test]
+fn somebody_else_is_recognised_more_generously_where_few_people_taught() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), 1)]);
+    person.command(Command::Train(TrainCommand::Train));
+    person.goes_to(Panel::Live);
+    person.key(Key::Space);
+    person.settle();
+    person.frames(60);
+    person.click("Performer");
+    person.click("somebody else");
+    let line = person.state().command_line.clone();
+    assert!(line.ends_with(" --performer anyone"), "{line}");
+    // The next start is with what was chosen, too.
+    person.click("Stop");
+    person.click("Start");
+    let line = person.state().command_line.clone();
+    assert!(line.ends_with(" --performer anyone"), "{line}");
+}
+
+#[test]
 fn the_sensitivity_that_is_shown_last_is_the_one_that_is_tried() {
     let folder = tempfile::tempdir().unwrap();
     let mut person = Person::before(&[made(folder.path(), 2)]);
@@ -268,12 +289,17 @@ fn the_sensitivity_that_is_shown_last_is_the_one_that_is_tried() {
     while person.state().live.now_secs() < takes()[0].clip.duration_secs() - 0.5 {
         person.frames(1);
     }
-    let sense = |alarms| Command::Live(LiveCommand::Sensitivity(alarms));
+    let sense = |alarms| {
+        Command::Live(LiveCommand::Settings(RecognizeSettings {
+            sensitivity: Some(alarms),
+            ..RecognizeSettings::default()
+        }))
+    };
     // Two values at once: the first is still being tried when the second is chosen.
     person.window.state_mut().state.apply(sense(0.03));
     person.command(sense(2.0));
-    let alarms = person.state().live.resensed.as_ref().map(|r| r.alarms);
-    assert_eq!(alarms, Some(2.0));
+    let tried = person.state().live.resensed.as_ref().unwrap();
+    assert_eq!(tried.settings.sensitivity, Some(2.0));
     assert!(person.sees_part("At 2.00 it would have found"));
 }
 

@@ -2,6 +2,7 @@
 
 use morec::features::KeyPose;
 use morec::live::{Detection, Recording};
+use morec_ops::RecognizeSettings;
 
 use super::lines::ShownCommand;
 use super::train::INDEX;
@@ -13,8 +14,8 @@ use crate::state::{LiveCommand, State};
 /// Name of the job that keeps what was marked.
 pub(in crate::state) const TEACHING: &str = "Keeping what was marked";
 
-/// Name of the job that tries a sensitivity on the recorded minutes.
-const TRYING: &str = "Trying the sensitivity";
+/// Name of the job that tries settings on the recorded minutes.
+const TRYING: &str = "Trying the settings";
 
 impl State {
     pub(in crate::state) fn apply_live(&mut self, command: LiveCommand) {
@@ -33,7 +34,7 @@ impl State {
                     run.play_at(speed);
                 }
             }
-            LiveCommand::Sensitivity(alarms) => self.set_sensitivity(alarms),
+            LiveCommand::Settings(settings) => self.recognise_with(settings),
             LiveCommand::Range(range) => self.live.range = range.filter(|r| r.1 - r.0 > 0.05),
             LiveCommand::GoTo(start, stop) => {
                 self.live.range = Some((start, stop));
@@ -66,6 +67,7 @@ impl State {
 
     fn start_live(&mut self) {
         self.stop_live();
+        self.live.follow_index(self.train.index.as_ref());
         match self.live.choice.clone() {
             Choice::Clip(chosen) => {
                 let shown = self.player.motion.as_ref().map(|m| m.id);
@@ -74,14 +76,17 @@ impl State {
                     return;
                 };
                 self.live.choice = Choice::Clip(Some(clip));
-                let line = self.live_line("morec live");
-                self.show_line(line);
+                self.show_live_line();
                 self.live.starting = Some(clip);
                 self.want_motion(clip);
             }
             Choice::Network(address) => self.listen(&address),
         }
-        self.live.follow_index(self.train.index.as_ref());
+    }
+
+    fn show_live_line(&mut self) {
+        let line = self.live_line("morec live");
+        self.show_line(line.map(|line| line.settings(&self.live.used_settings())));
     }
 
     fn listen(&mut self, address: &str) {
@@ -92,8 +97,7 @@ impl State {
         match ThreadFeed::start(opened.source, self.wake.clone()) {
             Ok(feed) => {
                 self.run(Feed::Thread(feed), opened.name);
-                let line = self.live_line("morec live");
-                self.show_line(line);
+                self.show_live_line();
                 if let Some(run) = &mut self.live.run {
                     run.notices = Some(opened.notices);
                 }
@@ -180,8 +184,8 @@ impl State {
         }
     }
 
-    fn set_sensitivity(&mut self, alarms: f64) {
-        self.live.alarms = Some(alarms);
+    fn recognise_with(&mut self, settings: RecognizeSettings) {
+        self.live.settings = settings;
         let Some(model) = self.live.model() else {
             return;
         };
@@ -189,22 +193,21 @@ impl State {
             return;
         };
         run.recognise_with(&model);
-        let line = self.live_line("morec live");
-        self.show_line(line.map(|line| line.with("--sensitivity", format!("{alarms:.2}"))));
-        self.try_sensitivity();
+        self.show_live_line();
+        self.try_settings();
     }
 
-    /// Looks for what the sensitivity that is set would have found in the recorded minutes.
-    fn try_sensitivity(&mut self) {
+    /// Looks for what the settings would have found in the recorded minutes.
+    fn try_settings(&mut self) {
         if self.jobs.is_running(TRYING) {
-            return; // What comes of it is tried again if the slider has moved on.
+            return; // What comes of it is tried again if the settings have changed.
         }
         let (Some(model), Some(run)) = (self.live.model(), &self.live.run) else {
             return;
         };
         let poses: Vec<(f64, KeyPose)> = run.watched().map(|w| w.key_poses()).unwrap_or_default();
         if poses.len() > 30 {
-            self.live.trying = self.live.alarms;
+            self.live.trying = Some(self.live.settings.clone());
             self.jobs
                 .start(TRYING, false, &self.wake, JobOutcome::Resensed, move |_| {
                     recognise::poses(&model, &poses)
@@ -212,15 +215,16 @@ impl State {
         }
     }
 
-    /// What a sensitivity would have found has come.
+    /// What the settings would have found has come.
     pub(in crate::state) fn take_resensed(&mut self, found: Vec<Detection>) {
         // Another index was taken meanwhile: its classes have other numbers.
-        let Some(alarms) = self.live.trying.take() else {
+        let Some(settings) = self.live.trying.take() else {
             return;
         };
-        self.live.resensed = Some(Resensed { alarms, found });
-        if self.live.alarms != Some(alarms) {
-            self.try_sensitivity();
+        let again = settings != self.live.settings;
+        self.live.resensed = Some(Resensed { settings, found });
+        if again {
+            self.try_settings();
         }
     }
 }

@@ -13,7 +13,9 @@ use std::sync::Arc;
 use morec::index::MotionIndex;
 use morec::live::{Detection, Model, PerformerId, Recording};
 use morec::math::Vec3;
+use morec::templates::PerformerKind;
 use morec_db::ClipId;
+use morec_ops::RecognizeSettings;
 
 pub use feed::{ClipFeed, Feed, ThreadFeed};
 
@@ -33,11 +35,10 @@ pub enum Choice {
     Network(String),
 }
 
-/// Detections in the recorded minutes at a sensitivity.
+/// Detections in the recorded minutes with other settings.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Resensed {
-    /// False alarms a minute.
-    pub alarms: f64,
+    pub settings: RecognizeSettings,
     pub found: Vec<Detection>,
 }
 
@@ -50,18 +51,18 @@ pub struct Live {
     pub(super) index: Option<Arc<MotionIndex>>,
     /// Speed at which a clip is played as a source, a multiple of the performance.
     pub speed: f64,
-    /// False alarms a minute that are put up with; `None` as trained.
-    pub alarms: Option<f64>,
+    /// How readily motions are reported, and for whom. An index that knows nothing of one of the two recognises as trained.
+    pub settings: RecognizeSettings,
     /// A stretch of the stream that is selected, on its clock.
     pub range: Option<(f64, f64)>,
     /// The part of the last minutes that is in view.
     pub looking: Looking,
     /// Marked stretches.
     pub marks: Vec<LiveMark>,
-    /// What a sensitivity would have found in the recorded minutes.
+    /// What other settings would have found in the recorded minutes.
     pub resensed: Option<Resensed>,
-    /// False alarms a minute at which the recorded minutes are being tried.
-    pub(super) trying: Option<f64>,
+    /// The settings with which the recorded minutes are being tried.
+    pub(super) trying: Option<RecognizeSettings>,
     /// Something that was marked is being kept.
     pub teaching: bool,
     /// The index is to be trained anew once the mark is in the database.
@@ -82,7 +83,7 @@ impl Default for Live {
             starting: None,
             index: None,
             speed: 1.0,
-            alarms: None,
+            settings: RecognizeSettings::default(),
             range: None,
             looking: Looking::default(),
             marks: Vec::new(),
@@ -107,8 +108,8 @@ pub enum LiveCommand {
     Seek(f64),
     /// Plays the clip that is the source at a multiple of the performance's speed.
     Speed(f64),
-    /// False alarms a minute.
-    Sensitivity(f64),
+    /// How readily motions are reported, and for whom.
+    Settings(RecognizeSettings),
     Range(Option<(f64, f64)>),
     /// Selects a stretch and brings it into view.
     GoTo(f64, f64),
@@ -155,12 +156,17 @@ impl Live {
         performer.body.heading(&performer.pose)
     }
 
-    /// The index, at the sensitivity that was chosen.
+    /// The index with the settings that were chosen.
     pub(super) fn model(&self) -> Option<Model> {
         let model = self.index.as_ref()?.model.clone();
-        match self.alarms.map(|alarms| model.with_sensitivity(alarms)) {
-            Some(Ok(changed)) => Some(changed),
-            _ => Some(model),
+        self.used_settings().tuned(model).ok()
+    }
+
+    /// The settings that were chosen, as far as the index can be set.
+    pub(super) fn used_settings(&self) -> RecognizeSettings {
+        RecognizeSettings {
+            sensitivity: self.settings.sensitivity.filter(|_| self.can_sense()),
+            performer: self.settings.performer.filter(|_| self.knows_performers()),
         }
     }
 
@@ -168,6 +174,12 @@ impl Live {
     pub fn can_sense(&self) -> bool {
         let index = self.index.as_ref();
         index.is_some_and(|index| index.model.with_sensitivity(0.3).is_ok())
+    }
+
+    /// True if the index recognises people unlike its teacher in a way of their own.
+    pub fn knows_performers(&self) -> bool {
+        let index = self.index.as_ref();
+        index.is_some_and(|index| index.model.with_performer(PerformerKind::Anyone).is_ok())
     }
 
     pub fn index(&self) -> Option<&Arc<MotionIndex>> {
