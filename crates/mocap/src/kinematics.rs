@@ -1,4 +1,19 @@
 //! Forward kinematics: from joint rotations to joint positions in the world.
+//!
+//! ```
+//! use mocap::kinematics::WorldPose;
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! # let bytes = include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/testdata/mclip/v1.mclip"));
+//! let clip = mocap::read(bytes, "push.mclip")?.clips.remove(0);
+//! let mut pose = WorldPose::default();
+//! for frame in 0..clip.frames {
+//!     pose.set(&clip, frame);                                           // no allocation after the first
+//!     assert_eq!(pose.positions.len(), clip.skeleton.len());
+//! }
+//! # Ok(())
+//! # }
+//! ```
 
 use crate::clip::{Clip, Points, Span};
 use crate::math::{Quat, Vec3};

@@ -1,4 +1,14 @@
 //! The same motion at another rate.
+//!
+//! ```
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! # let bytes = include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/testdata/mclip/v1.mclip"));
+//! let clip = mocap::read(bytes, "push.mclip")?.clips.remove(0);
+//! let slower = clip.resampled(24.0)?;
+//! assert!((slower.duration_secs() - clip.duration_secs()).abs() < 1.0 / 24.0);
+//! # Ok(())
+//! # }
+//! ```
 
 use crate::clip::{Clip, Gap, JointTrack, Points, Span};
 use crate::math::{same_hemisphere, slerp};

@@ -18,6 +18,38 @@
 //! | cuts where behaviour changes | [`MotionDb::cut`] |
 //! | rows, search by example, near copies | [`rows`], [`search`] |
 //! | the other samples of classes that a few are labelled of | [`MotionDb::propose`], [`most_informative`] |
+//!
+//! ```no_run
+//! use morec::files::FileReader;
+//! use morec_db::search::{Example, SearchIndex, SearchOptions};
+//! use morec_db::labels::{NewSample, SampleState};
+//! use morec_db::{ClipFilter, ClipUpdate, MotionDb, ProposeOptions};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let mut db = MotionDb::create("moves.mdb".as_ref())?;
+//! let clips = morec::files::list(&["recordings/".into()])?.clips;
+//! let log = db.import(&clips, &FileReader::default(), &ClipUpdate::default(), &())?;
+//! println!("{} files imported, {} refused", log.counts().imported, log.counts().refused);
+//!
+//! let walk = db.find_clip("walk_01")?;
+//! let label = NewSample {
+//!     clip: walk.id,
+//!     class: "step".to_owned(),
+//!     start_secs: 1.0,
+//!     stop_secs: 1.6,
+//!     whole_clip: false,
+//!     state: SampleState::Accepted,
+//!     score: None,
+//! };
+//! db.add_samples(&[label], "ada")?;
+//! for proposal in db.propose_and_keep(&ProposeOptions::default(), &())? {       // the surest first
+//!     println!("{proposal:?}");
+//! }
+//! db.undo(None)?;                                                                // takes the proposals back
+//! println!("{} clips with steps", db.clips(&ClipFilter { class: Some("step".to_owned()), ..Default::default() })?.len());
+//! # Ok(())
+//! # }
+//! ```
 
 mod background;
 mod body;

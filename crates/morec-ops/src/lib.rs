@@ -3,6 +3,21 @@
 //! The settings of an operation are one struct. Its fields are the options of the command line (`clap::Args`), the keywords of the
 //! Python function and what the studio's panel sets (serde), and [`arguments`] writes them as the command line that does the
 //! same. The operation is a method of them: material in, progress on the way, a report out.
+//!
+//! ```no_run
+//! use morec_db::MotionDb;
+//! use morec_ops::{MaterialBeside, TrainSettings, arguments, training_data};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let settings = TrainSettings { classes: vec!["wave".to_owned()], ..TrainSettings::default() };
+//! let db = MotionDb::open_read_only("moves.mdb".as_ref())?;
+//! let data = training_data(&db, &settings.classes, MaterialBeside::default())?;
+//! let (index, report) = settings.train(&data, &())?;
+//! println!("{} classes; the same: morec train --db moves.mdb {:?}", report.classes.len(), arguments(&settings));
+//! index.save("wave.index")?;
+//! # Ok(())
+//! # }
+//! ```
 
 mod arguments;
 mod crossval;

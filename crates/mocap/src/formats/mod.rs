@@ -2,6 +2,27 @@
 //!
 //! Readers take bytes, never paths. What can be saved is loaded with a [`Warning`] that names the place; what
 //! cannot is refused with a [`ParseError`] that says where, what was expected and what was found.
+//!
+//! ```
+//! use mocap::formats::{Limits, from_positions};
+//! use mocap::math::Vec3;
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let head = "HIERARCHY\nROOT Hips {\nOFFSET 0 0 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nEnd Site { OFFSET 0 10 0 } }\n";
+//! let cut = format!("{head}MOTION\nFrames: 2\nFrame Time: 0.1\n0 0 0\n90 0\n");
+//! let file = mocap::read(cut.as_bytes(), "turn.bvh")?;                // as much as can be saved, and what could not
+//! assert_eq!(file.clips[0].frames, 1);
+//! assert!(file.warnings[0].to_string().starts_with("line 10: an incomplete last line"));
+//! let error = mocap::read(b"HIERARCHY\nROOT Hips {\nOFFSET 0 up 0\n", "turn.bvh").unwrap_err();
+//! assert!(error.to_string().contains("line 3"), "{error}");            // where, what was expected and what was found
+//!
+//! // What an application has in memory becomes a clip by the same way: points with names, in metres.
+//! let wrist = (0..60).map(|t| Vec3::new(0.0, 1.0 + 0.01 * f64::from(t), 0.0)).collect();
+//! let loaded = from_positions("lift", 30.0, vec![("left_wrist".to_owned(), wrist)], Some(1.0), &Limits::default())?;
+//! assert_eq!((loaded.clips[0].frames, loaded.clips[0].duration_secs()), (60, 2.0));
+//! # Ok(())
+//! # }
+//! ```
 
 pub mod acclaim;
 mod builder;

@@ -119,6 +119,7 @@ fn nodes(rows: &[(u64, &str)], limits: &Limits) -> Result<Vec<SmdNode>, ParseErr
             )
         };
         let parse = || -> Option<(i64, &str, i64)> {
+            // Names have blanks in them, so the quotes divide the line.
             let (id, rest) = text.split_once('"')?;
             let (name, parent) = rest.rsplit_once('"')?;
             Some((id.trim().parse().ok()?, name, parent.trim().parse().ok()?))
@@ -169,6 +170,8 @@ fn frames(
     let mut frames: Vec<Vec<BonePlace>> = Vec::new();
     let mut current = vec![(Vec3::zeros(), Quat::identity()); nodes.len()];
     let mut time: Option<i64> = None;
+    // A frame that is left out repeats the one before: a file of two lines could ask for billions. So many as 64 for each line,
+    // and at least 65,536 places of bones, are believed.
     let most = rows.len().saturating_mul(64).max(1 << 16) / nodes.len().max(1) + 1;
     let mut put = |until: i64, from: i64, pose: &[BonePlace], line: u64| {
         // Times that are left out repeat what was before.
@@ -230,10 +233,12 @@ fn bone(text: &str) -> Option<(i64, BonePlace)> {
     let id = words.next()?.parse().ok()?;
     let mut value = || {
         let value: f64 = words.next()?.parse().ok()?;
+        // No bone is a billion units away: the line is broken.
         (value.abs() < 1e9).then_some(value)
     };
     let place = Vec3::new(value()?, value()?, value()?);
     let [x, y, z] = [value()?, value()?, value()?];
+    // About the fixed axes of the parent, X first.
     let turned = Axis::Z.rotation(z) * Axis::Y.rotation(y) * Axis::X.rotation(x);
     Some((id, (place, turned)))
 }

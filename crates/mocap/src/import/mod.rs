@@ -2,6 +2,23 @@
 //!
 //! Everything is inferred from the motion itself, never from the zero pose, which need not be a pose that anybody
 //! ever stood in; and everything inferred can be overridden in [`ImportOptions`].
+//!
+//! ```
+//! use mocap::roles::Role;
+//! use mocap::{ImportOptions, import::normalize};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! # let bytes = include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/testdata/mclip/v1.mclip"));
+//! let clip = mocap::read(bytes, "push.mclip")?.clips.remove(0);
+//! let take = normalize(clip, &ImportOptions::default())?;
+//! let shin = take.roles.joint(Role::LeftShin).ok_or("no knee")?;      // the joint at its near end
+//! println!("the left knee is {}", take.clip.skeleton.joints()[shin].name);
+//! for (secs, pose) in take.poses() {                                    // as a live source would have sent them
+//!     assert!(secs >= 0.0 && pose.get(Role::Head).is_some());
+//! }
+//! # Ok(())
+//! # }
+//! ```
 
 mod axes;
 mod body;

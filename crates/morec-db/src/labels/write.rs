@@ -26,6 +26,7 @@ pub(super) fn add(
     by: &str,
 ) -> Result<(Change, Others), DbError> {
     check_extent(conn, sample)?;
+    // A class is made with its first sample, in the same step of the history, and goes with it when that is taken back.
     let class = classes::find_or_make(conn, &sample.class)?;
     let extent = params![sample.clip.0, class, sample.start_secs, sample.stop_secs];
     let there: Option<(i64, String)> = conn
@@ -56,6 +57,7 @@ pub(super) fn add(
         };
         return Ok((Change::New, others));
     };
+    // What a person has judged is not proposed again.
     if state == sample.state.name() || sample.state == SampleState::Proposed {
         return Ok((Change::None, Others::default()));
     }
@@ -81,6 +83,7 @@ fn reject_instead(
         class,
         GROUPED_BY
     ];
+    // Before they are deleted: the classes that may be empty afterwards.
     let sql = format!("SELECT class FROM samples WHERE {stretch} AND set_by = ?5");
     let groups: Vec<i64> = conn
         .prepare_cached(&sql)?

@@ -3,6 +3,14 @@
 //!
 //! Notation: `M = AᵀA` of a sample's reduced rows, centred on the mean of the database; `σᵢ, λᵢ` the eigenvalues of two
 //! such matrices (of `M`, not of `A`: Eq. 3.17), `uᵢ, vᵢ` their eigenvectors.
+//!
+//! ```
+//! use morec::cluster::Hierarchy;
+//!
+//! let places: [f64; 5] = [0.0, 0.2, 5.0, 5.1, 0.1];
+//! let tree = Hierarchy::average(places.len(), |a, b| (places[a] - places[b]).abs());
+//! assert_eq!(tree.into_clusters(2).members(), [vec![0, 1, 4], vec![2, 3]]);
+//! ```
 
 mod affinity;
 mod agreement;

@@ -1,4 +1,36 @@
 //! Cross-validation: train without a part of the labels, recognise that part, fold by fold.
+//!
+//! ```
+//! use std::collections::BTreeSet;
+//!
+//! use morec::Labels;
+//! use morec::crossval::{CrossvalData, FoldBy, crossval};
+//! use morec::eval::Evaluation;
+//! use morec::synth::{DatabaseSpec, database};
+//! use morec::train::{TrainOptions, TrainingMaterial};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let spec = DatabaseSpec { people: 3, repetitions: 2, classes: vec!["wave", "bow"], ..Default::default() };
+//! let (mut clips, mut labels) = (Vec::new(), Labels::default());
+//! for made in database(1, &spec) {
+//!     made.labels.iter().for_each(|label| labels.add(&made.clip.name, label.class, label.span));
+//!     clips.push(morec::Take::new(made.clip)?.into());
+//! }
+//! let material = TrainingMaterial { labels: &labels, people: None, classes: &[], unknown: &BTreeSet::new() };
+//! let data = material.sort_out(clips)?;
+//! let of = CrossvalData {
+//!     clips: &data.clips,
+//!     samples: &data.samples,
+//!     classes: &data.classes,
+//!     unknown: &data.unknown,
+//!     tests: None,
+//! };
+//! let tested = crossval(&of, &FoldBy::Clip.into(), &TrainOptions::default().into(), &())?.tested;
+//! let measured = Evaluation::of(&tested.streams, &tested.truths, &tested.founds)?;
+//! assert_eq!(measured.totals.samples, data.samples.len());
+//! # Ok(())
+//! # }
+//! ```
 
 mod folds;
 

@@ -10,6 +10,31 @@
 //! Measures and their sources: thesis accuracy ([`ThesisAccuracy`], §5.4), F1 at overlap ([`OverlapScore`]),
 //! false alarms ([`FalseAlarms`]), delay and boundary errors ([`Delay`], [`Boundaries`]), P_C, P_E and P_R
 //! ([`Classification`], §5.3), time and order ([`FrameScore`]) and the confusion matrix ([`Confusion`]).
+//!
+//! ```
+//! use morec::TimeSpan;
+//! use morec::eval::{ClipDetection, Evaluation, GroundTruth, StreamInfo};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let stream = StreamInfo { clip: "a".to_owned(), duration_secs: 10.0, unknown: false };
+//! let wave = |start_secs| GroundTruth {
+//!     clip: "a".to_owned(),
+//!     class: "wave".to_owned(),
+//!     span: TimeSpan::new(start_secs, start_secs + 1.0),
+//! };
+//! let found = ClipDetection {
+//!     clip: "a".to_owned(),
+//!     class: "wave".to_owned(),
+//!     span: TimeSpan::new(2.1, 3.0),
+//!     score: Some(0.9),
+//!     reported_secs: Some(3.2),
+//!     repetitions: None,
+//! };
+//! let measured = Evaluation::of(&[stream], &[wave(2.0), wave(6.0)], &[found])?;
+//! assert_eq!((measured.events.matched, measured.totals.samples), (1, 2));
+//! # Ok(())
+//! # }
+//! ```
 
 mod alarms;
 mod confusion;

@@ -1,4 +1,9 @@
 //! An index of templates, as words and tables.
+//!
+//! Words ([`Manifest`]) are what a person may want to read or another program to check: classes, parameters, thresholds, where it
+//! comes from. Tables ([`Tensor`]) are rows and matrices. A table that a file lacks was not there when it was written: older files have
+//! no verifier, no held poses, no activities, and give a model without. Pieces of different lengths lie one behind the other in
+//! one table, beside a table of their lengths.
 
 use std::collections::BTreeMap;
 
@@ -181,6 +186,7 @@ pub(super) fn read(manifest: &Manifest, tables: &Tables) -> Result<TemplateModel
         activities: activities(manifest, tables)?,
         step,
     };
+    // Lengths of tables and numbers of classes are those of a file, which may have been made by anybody.
     model
         .check()
         .map_err(|e| IndexError::Content(e.to_string()))?;
@@ -197,6 +203,7 @@ fn verifier(
         return Ok(None);
     };
     let counts = tables.u32s("verifier.counts")?;
+    // Every exemplar has as many rows; a damaged count must not overflow before it is found too large.
     let rows: Option<Vec<u32>> = counts
         .iter()
         .map(|n| n.checked_mul(SHAPE_ROWS as u32))
@@ -251,6 +258,7 @@ fn held(manifest: &Manifest, tables: &Tables) -> Result<Option<HeldPoses>, Index
     let Some(HeldWords { reach, least_ticks }) = manifest.held else {
         return Ok(None);
     };
+    // A held pose has no velocity: its rows are directions alone.
     let dim = RowLayout::of(manifest.bones).directions().len();
     Ok(Some(HeldPoses {
         poses: reference(tables, "held", dim)?,

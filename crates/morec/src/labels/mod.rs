@@ -8,6 +8,22 @@
 //!   `start_secs` and `stop_secs`, or neither: the whole clip is one sample. `person` if it is known.
 //! - People ([`read_people`]): `clip`, `person`.
 //! - Detections ([`read_detections`], [`FoundLine`]): what `morec recognize` writes.
+//!
+//! ```
+//! use std::collections::BTreeMap;
+//!
+//! use morec::TimeSpan;
+//! use morec::labels::{ClipLength, Labels};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let table = Labels::read(b"clip\tclass\tstart\tstop\na\twave\t30\t60\nb\twave\t0\t9\n")?;
+//! let lengths = BTreeMap::from([("a".to_owned(), ClipLength { frames: 300, rate_hz: 30.0 })]);
+//! let resolved = table.resolve(&lengths);
+//! assert_eq!(resolved.samples[0].span, TimeSpan::new(1.0, 2.0));
+//! assert_eq!(resolved.absent["b"], 1);                                  // a label of a clip that is not there
+//! # Ok(())
+//! # }
+//! ```
 
 mod found;
 mod mark;

@@ -11,6 +11,42 @@
 //! allocate, lock, log or fail. A recogniser is owned by one thread at a time. Detections are the same however the
 //! stream is cut into pushes. In sessions and pools frames travel over bounded wait-free rings; when one is full,
 //! [`OverflowPolicy`] says who gives way, and everything that is dropped is counted in [`Status`].
+//!
+//! A session that the caller feeds with places of joints, which know their roles:
+//!
+//! ```no_run
+//! use std::sync::Arc;
+//! use std::time::Duration;
+//!
+//! use morec::MotionIndex;
+//! use morec::live::{Frame, PerformerId, Rig, Session, SessionOptions, wall_now_secs};
+//!
+//! # fn next_pose() -> Option<(f64, morec::KeyPose)> { None }
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let index = MotionIndex::load("signs.index")?;
+//! let (session, mut feed, mut readers) = Session::open(&index.model, &SessionOptions::default())?;
+//! let mut reader = readers.remove(0);
+//! let reporting = std::thread::spawn(move || {
+//!     while !reader.is_ended() {
+//!         if let Some(event) = reader.wait(Duration::from_millis(50)) {
+//!             println!("{event:?}");
+//!         }
+//!     }
+//! });
+//! let performer = PerformerId(0);
+//! feed.set_rig(performer, &Arc::new(Rig::of_roles()));
+//! let mut frame: Box<Frame> = Box::default();
+//! while let Some((secs, pose)) = next_pose() {
+//!     (frame.actor, frame.time_secs, frame.wall_secs) = (performer, secs, wall_now_secs());
+//!     frame.set_key_pose(&pose);
+//!     feed.send(&mut frame);                       // leaves a used frame, so that nothing is allocated
+//! }
+//! drop(feed);                                      // ends the stream: what its last moments hold is reported
+//! println!("{} frames", session.join().frames);
+//! # reporting.join().map_err(|_| "panicked")?;
+//! # Ok(())
+//! # }
+//! ```
 
 mod broadcast;
 mod clock;

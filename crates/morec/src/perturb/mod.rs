@@ -3,6 +3,20 @@
 //! Training learns from such copies what noise does to distances, and
 //! [`crossval`](crate::crossval) measures what recognition loses by them. All randomness is seeded: the same clip
 //! and seed give the same copy on every platform.
+//!
+//! ```
+//! use morec::Take;
+//! use morec::perturb::{Perturbation, perturb};
+//! use morec::synth::{DatabaseSpec, database};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let take = Take::new(database(1, &DatabaseSpec { people: 1, ..Default::default() }).remove(0).clip)?;
+//! let webcam = [Perturbation::Rate(30.0), "cam:1".parse()?];
+//! let worse = perturb(take.poses(), &webcam, 7);
+//! assert!(worse.poses.len() < take.clip.frames);
+//! # Ok(())
+//! # }
+//! ```
 
 mod apply;
 mod device;

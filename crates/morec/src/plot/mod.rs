@@ -2,6 +2,13 @@
 //!
 //! A picture stands alone (its style is inside), follows the reader's light or dark theme, and says in its
 //! title what it shows. Values that are not finite are left out.
+//!
+//! ```
+//! use morec::plot::Chart;
+//!
+//! let chart = Chart::new("distance").axes("seconds", "metres").line("hand", (0..9).map(|t| (f64::from(t), 0.1)));
+//! assert!(chart.svg().starts_with("<svg"));
+//! ```
 
 mod axis;
 mod chart;

@@ -52,6 +52,7 @@ pub(super) fn run(
     let tested = &outcome.tested;
     let evaluation = Evaluation::of(&tested.streams, &tested.truths, &tested.founds)?;
     let mut lines = timelines(&tested.streams, &tested.truths, &tested.founds)?;
+    // Clips with many samples show most; the others would be one bar each.
     lines.sort_by_key(|line| std::cmp::Reverse(line.truths.len()));
     for line in lines.iter().take(DRAWN) {
         pictures.push(timeline_picture(study, *setting, line));

@@ -7,6 +7,17 @@
 //!
 //! Notation: `n` values in a row, `r` dimensions of the model, `λᵢ` its eigenvalues, `λ` the mean of the others, `H` the
 //! mean Mahalanobis distance of the frames ahead. Rows may be of any description at any even rate.
+//!
+//! Change points of a kernel ([`change_points`], [`kernel_cuts`]) are the default beside it:
+//!
+//! ```
+//! use morec::features::Rows;
+//! use morec::segment::change_points;
+//!
+//! let (still, moving) = (vec![0.0f32; 40], vec![1.0f32; 40]);
+//! let rows = Rows::from_values(1, [still, moving].concat());
+//! assert_eq!(change_points(&rows, 1.0, 10), [40]);
+//! ```
 
 mod cuts;
 mod cycles;

@@ -27,6 +27,7 @@ pub fn film(mut actor: Actor, name: &str, rate_hz: f64) -> Clip {
         if f > 0 {
             let previous = &before[(f - 1) * joints..];
             for (local, last) in locals.iter_mut().zip(previous) {
+                // `q` and `-q` are one rotation; of neighbours the nearer is kept, so that curves have no jumps.
                 *local = same_hemisphere(last, *local);
             }
         }
@@ -73,6 +74,7 @@ fn sway(actor: &mut Actor) {
         }
     }
     for (channel, amplitude) in slow.iter().enumerate().filter(|(_, a)| **a > 0.0) {
+        // Waves whose frequencies have no common multiple: their sum does not come back within a clip.
         for octave in [0.1, 0.24, 0.55] {
             let hz = octave * actor.rng.range(0.7, 1.4);
             let phase = actor.rng.range(0.0, std::f64::consts::TAU);
@@ -82,12 +84,14 @@ fn sway(actor: &mut Actor) {
                 .wave(channel, -1.0, secs + 2.0, (hz, phase), share);
         }
     }
+    // 12 to 19 breaths a minute.
     let breath = actor.rng.range(0.2, 0.32);
     actor
         .timeline
         .wave(SPINE, -1.0, secs + 2.0, (breath, 0.0), 0.008);
     for side in LimbSide::BOTH {
         for k in 0..3 {
+            // Physiological tremor of the hand, below a millimetre.
             let hz = actor.rng.range(6.0, 10.0);
             actor.timeline.wave(
                 HAND[side.index()] + k,
@@ -110,6 +114,7 @@ struct Noise {
 
 impl Noise {
     fn new(joints: usize, deviation_rad: f64, rate_hz: f64, mut rng: Rng) -> Self {
+        // A low-pass of first order. `add` keeps the deviation what it is, whatever the rate: Var = keep² Var + add².
         let keep = NOISE_SECS / (NOISE_SECS + 1.0 / rate_hz);
         let state = (0..joints)
             .map(|_| [0; 3].map(|_| deviation_rad * rng.normal()))
@@ -129,6 +134,7 @@ impl Noise {
                 return Quat::identity();
             }
             *error = error.map(|e| keep * e + add * rng.normal());
+            // A small rotation, to first order in its angle.
             Quat::new_normalize(Quaternion::new(
                 1.0,
                 error[0] / 2.0,

@@ -3,6 +3,20 @@
 //!
 //! Tables are made of imported clips: metres, Y up, right-handed; rotations are quaternions `x, y, z, w` that take the
 //! joint's own frame to its parent's; times are seconds.
+//!
+//! ```
+//! use morec::Take;
+//! use morec::synth::{DatabaseSpec, database};
+//! use morec::tables::{Content, write_csv};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let take = Take::new(database(1, &DatabaseSpec { people: 1, ..Default::default() }).remove(0).clip)?;
+//! let mut csv = Vec::new();
+//! write_csv(&take, Content::Positions, &mut csv)?;
+//! assert_eq!(csv.iter().filter(|byte| **byte == b'\n').count(), take.clip.frames + 1);   // and a header
+//! # Ok(())
+//! # }
+//! ```
 
 mod csv;
 mod npz;

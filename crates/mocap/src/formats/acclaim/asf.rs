@@ -20,6 +20,7 @@ pub fn read_asf(bytes: &[u8], limits: &Limits) -> Result<(Asf, Vec<Warning>), Pa
         if first.starts_with(b":") {
             section = first.to_ascii_lowercase();
         }
+        // Sections come in any order, and those that say nothing of a pose (`:version`, `:documentation`, `:skin`) are passed over.
         match section.as_slice() {
             b":units" => reader.unit(line, content)?,
             b":name" => {
@@ -79,6 +80,7 @@ struct RawBone {
 impl<'a> AsfReader<'a> {
     fn new(bytes: &'a [u8], limits: &'a Limits) -> Self {
         use Axis::{X, Y, Z};
+        // Without an `order`: places, then angles, as every file of the CMU and HDM05 libraries has them.
         let root_channels = [X, Y, Z]
             .map(AmcChannel::Translation)
             .into_iter()
@@ -119,6 +121,7 @@ impl<'a> AsfReader<'a> {
                 if length > 0.0 {
                     self.length_unit = length;
                 } else {
+                    // Lengths may be scaled by anything; nothing would remain of a skeleton scaled by 0.
                     let note = format!("a unit of length of {length} says nothing; 1 is used");
                     self.warnings.push(Warning::new(Place::Line(line), note));
                 }
@@ -236,11 +239,14 @@ impl<'a> AsfReader<'a> {
             ));
         }
         let norm = direction.norm();
+        // Directions are written with few decimals: a hundredth is rounding. A direction of length 0 is a bone without extent,
+        // which end effectors have.
         if norm > 0.0 && (norm - 1.0).abs() > 0.01 {
             *direction /= norm;
             let note = format!("the direction of bone {name} has length {norm}; it was made 1");
             self.warnings.push(Warning::new(at, note));
         }
+        // The hierarchy and motions may spell a name in another case.
         let key = name.to_lowercase();
         if key == Asf::ROOT || self.index.contains_key(&key) {
             return Err(ParseError::new(
@@ -249,6 +255,7 @@ impl<'a> AsfReader<'a> {
                 format!("{name} a second time"),
             ));
         }
+        // The root is a joint beside the bones.
         if self.bones.len() + 1 >= self.limits.joints {
             return Err(ParseError::new(
                 at,
@@ -362,6 +369,7 @@ impl<'a> AsfReader<'a> {
         while !left.is_empty() {
             let before = left.len();
             left.retain(|&(parent, child)| {
+                // The root has depth 1. An edge whose parent has no place yet waits for the next pass.
                 let parent_depth = if parent == ROOT {
                     Some(1)
                 } else {
@@ -373,6 +381,7 @@ impl<'a> AsfReader<'a> {
                 }
                 parent_depth.is_none()
             });
+            // A pass that places nothing: a loop, or a limb that hangs on none.
             if left.len() == before {
                 let name = self.bones[left[0].1].name.clone().unwrap_or_default();
                 let at = Place::Line(self.placed[left[0].1].unwrap_or(1));

@@ -131,6 +131,7 @@ impl<'t> Parser<'_, 't> {
             b"offset" => self.offset(),
             b"channels" => self.channels(joint, is_end),
             b"joint" if !is_end => self.open_joint(Some(joint)),
+            // `End Site`, `EndSite`, `End Effector`, `End`.
             _ if lower.starts_with(b"end") && !is_end => self.open_end(joint),
             _ if is_end => Err(self.error("OFFSET or `}` in an End Site", Some(token))),
             _ => Err(self.error("OFFSET, CHANNELS, JOINT, End Site or `}`", Some(token))),
@@ -155,6 +156,7 @@ impl<'t> Parser<'_, 't> {
             let expected = format!("at most {} joints from root to leaf", self.limits.depth);
             return Err(ParseError::new(Place::Line(line), expected, "more"));
         }
+        // A joint without CHANNELS has none; its line, if it comes, widens this.
         let columns = self.found.channels.len();
         self.found.columns.push(columns..columns);
         self.found.lines.push(line);
@@ -168,6 +170,7 @@ impl<'t> Parser<'_, 't> {
     }
 
     fn open_end(&mut self, joint: usize) -> Result<(), ParseError> {
+        // The rest of the line, `Site` or a name of the end: a tip has none.
         self.cursor.name(self.encoding)?;
         self.open_brace(joint, true)
     }
@@ -280,10 +283,12 @@ impl<'t> Parser<'_, 't> {
         let declared = token
             .and_then(|t| std::str::from_utf8(t).ok())
             .and_then(|t| t.parse::<usize>().ok());
+        // The number is held against the names: where they differ, a program has left a channel out of one of the two.
         let Some(declared) = declared else {
             return Err(self.error("a count after CHANNELS", token));
         };
         let line = self.cursor.line;
+        // Columns of a joint lie together; CHANNELS behind a child's would tear them apart.
         if self.found.columns[joint].end != self.found.channels.len() {
             let expected = "CHANNELS before the joint's children";
             return Err(ParseError::new(
@@ -295,6 +300,7 @@ impl<'t> Parser<'_, 't> {
         let before = self.found.channels.len();
         let unknown = self.channel_names()?;
         let named = self.found.channels.len() - before;
+        // `CHANNELS 0` in an End Site is harmless.
         if is_end && named + declared > 0 {
             return Err(ParseError::new(
                 Place::Line(line),
@@ -321,6 +327,7 @@ impl<'t> Parser<'_, 't> {
     /// Appends channel names as far as they go; returns what on the same line is none (and no keyword).
     fn channel_names(&mut self) -> Result<Option<&'t [u8]>, ParseError> {
         loop {
+            // The names may go on over the end of the line, so only the next token says whether there is one more.
             let mut ahead = self.cursor.clone();
             let line = ahead.line;
             let Some(token) = ahead.token()? else {
@@ -380,6 +387,7 @@ fn channel(token: &[u8]) -> Option<Channel> {
 
 /// Gives the second `Hand` of a skeleton the name `Hand.001`.
 fn make_names_unique(joints: &mut [Joint], lines: &[u64], notes: &mut Notes) {
+    // A name that is made must be none that another joint has by itself.
     let originals: HashSet<String> = joints.iter().map(|j| j.name.clone()).collect();
     let mut next: HashMap<String, usize> = HashMap::new();
     for (joint, &line) in joints.iter_mut().zip(lines) {

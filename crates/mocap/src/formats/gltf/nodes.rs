@@ -40,6 +40,7 @@ impl GltfScene {
         for &joint in skins.iter().flatten() {
             nodes[joint].joint = true;
         }
+        // Files of motion alone (VRMA) have a humanoid and no skin.
         for (node, bone) in nodes.iter_mut().zip(&bones) {
             node.joint |= bone.is_some();
         }
@@ -88,6 +89,7 @@ fn nodes(document: &Document) -> Vec<SceneNode> {
     for (parent, json) in list.iter().enumerate() {
         for child in json["children"].as_array().into_iter().flatten() {
             if let Some(child) = index(child).and_then(|child| nodes.get_mut(child)) {
+                // The specification allows one parent; the first that claims a node has it.
                 child.parent.get_or_insert(parent);
             }
         }
@@ -119,6 +121,7 @@ fn of_matrix(m: &[f64; 16]) -> Local {
         linear.column(1).norm(),
         linear.column(2).norm(),
     );
+    // A mirrored frame is no rotation: the mirror goes into the scale.
     if linear.determinant() < 0.0 {
         scale.x = -scale.x;
     }
@@ -190,6 +193,7 @@ fn mark_animated(document: &Document, order: &[usize], character: bool, nodes: &
     }
     for &n in order {
         let below_joint = nodes[n].parent.is_some_and(|p| nodes[p].joint);
+        // Cameras are animated, too.
         let bare = document.list("nodes")[n]["camera"].is_null();
         if animated[n] && bare && (below_joint || !character) {
             nodes[n].joint = true;
@@ -219,6 +223,7 @@ fn one_a_skin(
         let mut of_skin: Vec<usize> = skin.iter().filter_map(|&n| rig_of[n]).collect();
         of_skin.sort_unstable();
         of_skin.dedup();
+        // A skin of a single rig, as nearly all are, keeps it.
         let largest = of_skin.iter().copied().max_by_key(|&k| rigs[k].len());
         for k in of_skin {
             keep[k] &= Some(k) == largest;

@@ -129,6 +129,7 @@ pub(super) fn of_document(
         couplings: Vec::new(),
     };
     let mut coordinate_numbers = HashMap::new();
+    // Before the axes: those of a joint may take coordinates of one that stands after it.
     for joint in &joints {
         add_coordinates(joint.node, &mut built.coordinates, &mut coordinate_numbers)?;
     }
@@ -146,6 +147,7 @@ pub(super) fn of_document(
             slides,
         });
     }
+    // Needs all joints: a coordinate may be declared by one and turn another.
     built.judge_coordinates();
     built.couplings = couplings(model, &coordinate_numbers)?;
     Ok((built, warnings))
@@ -216,6 +218,7 @@ fn placement(
 
 /// The body that a joint's socket leads to, and the joint's frame in it.
 fn joint_frame(joint: Node<'_, '_>, socket: &str) -> Result<(String, BodyPlacement), ParseError> {
+    // Frames stand in frames; models have one or two between a joint and its body. More is a circle.
     const DEEPEST: usize = 8;
     let named = |node: Node<'_, '_>, tags: [&str; 2]| {
         let text = tags.into_iter().find_map(|tag| child(node, tag))?.text()?;
@@ -289,6 +292,7 @@ fn order(
         }
         trees.entry(root).or_default().push((depth, k));
     }
+    // A treadmill or a box, say, stands on the ground by a joint of its own.
     let count = trees.len();
     let largest = trees
         .into_iter()
@@ -405,6 +409,7 @@ fn custom_axes(
         let inputs = inputs(node, "coordinates", numbers_of)?;
         let function = match Function::in_element(node)? {
             Some(function) => function,
+            // An axis without function and coordinate stays at 0.
             None if inputs.is_empty() => continue,
             None => Function::identity(),
         };
@@ -442,6 +447,7 @@ fn inputs(
 ) -> Result<Vec<usize>, ParseError> {
     let text = child(node, tag).and_then(|n| n.text()).unwrap_or_default();
     let number = |name: &str| {
+        // OpenSim 4 may write the path of a coordinate: `/jointset/knee_r/knee_angle_r`.
         let name = name.rsplit('/').next().unwrap_or(name);
         numbers_of.get(name).copied().ok_or_else(|| {
             ParseError::new(

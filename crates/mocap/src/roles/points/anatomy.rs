@@ -302,6 +302,8 @@ const SPELLINGS: [(&str, &[&str]); 18] = [
     ),
 ];
 
+/// Joints from these landmarks, the best measured first: between both sides of a joint, else at the side that has a marker; the
+/// hip's centre from the pelvis by regression, else the trochanter.
 const ANATOMY: PointSet = PointSet {
     name: "anatomical markers",
     points: "",
@@ -337,6 +339,7 @@ pub(super) fn assign(names: &[String]) -> Option<Recognised> {
         known.push(spelt.unwrap_or_else(|| format!("?{name}")));
     }
     let found = ANATOMY.assign(&known)?;
+    // Two roles more than a published set needs: short labels such as `LA` mean other things on other things than people.
     (found.has_hips() && found.roles.len() >= LEAST_ROLES + 2).then_some(found)
 }
 
@@ -352,6 +355,7 @@ fn spelt(name: &str) -> Option<String> {
     if let Some(place) = find(name).filter(|place| MIDDLE.contains(place) || *place == "head") {
         return Some(place.to_owned());
     }
+    // Normalised names have their side in front. Of the middle is only what has no side.
     let side = name.get(..1).filter(|side| ["l", "r"].contains(side))?;
     let place = find(&name[1..]).filter(|place| !MIDDLE.contains(place))?;
     Some(format!("{side}{place}"))

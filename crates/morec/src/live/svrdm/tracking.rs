@@ -83,6 +83,7 @@ impl Tracking {
         let performer = &mut self.performers[actor];
         match message.what {
             What::Segment(window) => {
+                // Segments of all lengths that end with a chunk arrive one by one before the word that the column is whole.
                 performer.column[window.chunks() - self.min_chunks] = message.cell
             }
             What::Column | What::End(_) => {
@@ -107,6 +108,7 @@ impl Tracking {
                 if let What::End(End::Gone) = message.what {
                     tracker.forget();
                 }
+                // Refractory times are kept by performer, the counter is the session's.
                 let suppressed = self.performers.iter().map(|p| p.tracker.suppressed()).sum();
                 self.cells.suppressed.store(suppressed, Relaxed);
             }
