@@ -170,8 +170,8 @@ fn frames(
     let mut frames: Vec<Vec<BonePlace>> = Vec::new();
     let mut current = vec![(Vec3::zeros(), Quat::identity()); nodes.len()];
     let mut time: Option<i64> = None;
-    // A frame that is left out repeats the one before: a file of two lines could ask for billions. So many as 64 for each line,
-    // and at least 65,536 places of bones, are believed.
+    // A time that is left out repeats the frame before: a file of two lines could ask for billions. At most 64 places of bones
+    // for each line are believed, and 65,536 in a small file.
     let most = rows.len().saturating_mul(64).max(1 << 16) / nodes.len().max(1) + 1;
     let mut put = |until: i64, from: i64, pose: &[BonePlace], line: u64| {
         // Times that are left out repeat what was before.
