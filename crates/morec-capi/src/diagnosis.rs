@@ -186,13 +186,7 @@ pub unsafe extern "C" fn morec_recognizer_diagnosis_text(
     needed: *mut usize,
 ) -> MorecStatus {
     guard(|| {
-        let known = handles::find(recognizer)?.diagnosis()?;
-        let lines: Vec<String> = known
-            .findings()
-            .iter()
-            .map(|finding| format!("{}: {finding}", finding.severity()))
-            .collect();
-        let text = lines.join("\n");
+        let text = handles::find(recognizer)?.findings()?.join("\n");
         if !needed.is_null() {
             // SAFETY: as promised to this function.
             unsafe { memory::put(needed, text.len() + 1, "needed") }?;

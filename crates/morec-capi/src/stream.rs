@@ -32,6 +32,7 @@ pub(crate) struct StreamOptions {
 
 /// A recogniser with a queue of events behind it. One thread may push while another polls.
 pub(crate) struct Stream {
+    index: Arc<MotionIndex>,
     declared: Declared,
     convention: Convention,
     input: Mutex<StreamInput>,
@@ -125,6 +126,7 @@ impl Stream {
             sequence: 0,
         };
         Ok(Self {
+            index: index.clone(),
             latency_secs: input.performer.latency_secs().unwrap_or_default(),
             declared,
             convention: options.convention,
@@ -231,6 +233,11 @@ impl Stream {
     pub(crate) fn diagnosis(&self) -> Result<Diagnosis, CallError> {
         let known = turn(&self.input)?.performer.diagnosis();
         Ok(known.unwrap_or_else(|| Diagnoser::live().diagnosis()))
+    }
+
+    /// What is wrong with the stream for its index, a sentence each.
+    pub(crate) fn findings(&self) -> Result<Vec<String>, CallError> {
+        Ok(self.index.findings(&self.diagnosis()?))
     }
 
     fn make_room(&self, input: &StreamInput) -> Result<(), CallError> {

@@ -5,13 +5,13 @@ use std::sync::Arc;
 use morec::clip::Skeleton;
 use morec::features::KeyPose;
 use morec::index::MotionIndex;
-use morec::live::{Event, EventOptions, Frame, Model, Performer, PerformerId, Rig};
+use morec::live::{Event, EventOptions, Frame, Performer, PerformerId, Rig};
 use morec::math::Vec3;
 use morec::roles::RoleMap;
 
 /// Recognises the motions of one performer.
 pub struct PerformerStream {
-    model: Model,
+    index: MotionIndex,
     performer: Performer,
     frame: Frame,
     events: Vec<Event>,
@@ -38,7 +38,7 @@ impl PerformerStream {
         let mut performer = Performer::new(&index.model, PerformerId(0), &options);
         performer.set_rig(&Arc::new(rig), &mut |_| {});
         Self {
-            model: index.model,
+            index,
             performer,
             frame: Frame::default(),
             events: Vec::new(),
@@ -77,15 +77,14 @@ impl PerformerStream {
 
     /// The events that the last frame settled, with the names of their classes.
     pub fn events(&self) -> impl Iterator<Item = (String, Event)> {
-        let named = |event: &Event| (self.model.class_name(event.class).to_owned(), *event);
+        let named = |event: &Event| (self.index.model.class_name(event.class).to_owned(), *event);
         self.events.iter().map(named)
     }
 
-    /// What is wrong with the stream of the last seconds, a sentence each, the gravest first.
+    /// What is wrong with the stream of the last seconds for the index, a sentence each with its severity, the gravest first.
     pub fn findings(&self) -> Vec<String> {
-        let known = self.performer.diagnosis().map(|known| known.findings());
-        let findings = known.iter().flat_map(|findings| findings.iter());
-        findings.map(ToString::to_string).collect()
+        let known = self.performer.diagnosis();
+        known.map_or_else(Vec::new, |known| self.index.findings(&known))
     }
 }
 

@@ -25,6 +25,7 @@
 //! what a source notices is in its [`Notices`].
 
 mod address;
+mod advice;
 pub mod axis;
 mod broadcast;
 mod clip;
@@ -49,6 +50,7 @@ mod webcam;
 mod websocket;
 
 pub use address::Address;
+pub use advice::{Advice, advice_of_status};
 pub use axis::{AxisSource, axis_skeleton};
 pub use broadcast::Broadcast;
 pub use clip::{ClipSource, PAUSE_SECS};

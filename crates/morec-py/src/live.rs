@@ -1,12 +1,15 @@
 //! A session on a live source, event by event.
 
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
+use morec::index::MotionIndex;
 use morec::live::{
-    Event, EventOptions, EventReader, MAX_PERFORMERS, Model, Session, SessionOptions,
+    Event, EventOptions, EventReader, MAX_PERFORMERS, Session, SessionOptions, Status,
 };
-use morec_live::{Address, LiveError, Notices, SourceOptions, open_source};
+use morec_live::{
+    Address, Advice, LiveError, Notices, SourceOptions, advice_of_status, open_source,
+};
 use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -21,9 +24,10 @@ pub struct LiveSession {
     /// Ended by being dropped.
     open: Mutex<Option<Session>>,
     reader: Mutex<EventReader>,
-    model: Model,
+    index: Arc<MotionIndex>,
     address: String,
     notices: Notices,
+    advice: Mutex<Advice>,
 }
 
 fn held<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
@@ -75,14 +79,15 @@ impl LiveSession {
             },
             ..SessionOptions::default()
         };
-        let model = index.index.model.clone();
+        let index = index.index.clone();
         let (session, readers) =
-            Session::start(&model, opened.source, &options).map_err(morec_error)?;
+            Session::start(&index.model, opened.source, &options).map_err(morec_error)?;
         let reader = readers.into_iter().next();
         Ok(Self {
             open: Mutex::new(Some(session)),
             reader: Mutex::new(reader.ok_or_else(|| morec_error("no reader of events"))?),
-            model,
+            index,
+            advice: Mutex::new(Advice::new([opened.name.clone()])),
             address: opened.name,
             notices: opened.notices,
         })
@@ -100,9 +105,14 @@ impl LiveSession {
         event.map(|event| self.row(py, &event)).transpose()
     }
 
-    /// Faults of the data that the source received since the last call, a sentence each.
-    fn notices(&self) -> Vec<String> {
-        self.notices.take()
+    /// Faults of the data that the source received since the last call, and what is newly found wrong with the stream for the
+    /// index, a sentence each.
+    fn notices(&self, py: Python<'_>) -> Vec<String> {
+        let mut notices = self.notices.take();
+        if let Some(status) = self.counts(py) {
+            notices.extend(held(&self.advice).look(&[status], &self.index));
+        }
+        notices
     }
 
     /// True if nothing more can come.
@@ -112,9 +122,8 @@ impl LiveSession {
 
     /// Counts so far.
     fn status<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let status = py.detach(|| held(&self.open).as_ref().map(Session::status));
         let dict = PyDict::new(py);
-        if let Some(status) = status {
+        if let Some(status) = self.counts(py) {
             dict.set_item("frames", status.frames)?;
             dict.set_item("dropped_frames", status.dropped_frames)?;
             dict.set_item("unusable_frames", status.unusable_frames)?;
@@ -122,6 +131,7 @@ impl LiveSession {
             dict.set_item("dropped_events", status.dropped_events)?;
             dict.set_item("motions", status.motions)?;
             dict.set_item("actors", status.actors.len())?;
+            dict.set_item("findings", advice_of_status(&status, &self.index))?;
         }
         Ok(dict)
     }
@@ -134,10 +144,14 @@ impl LiveSession {
 }
 
 impl LiveSession {
+    fn counts(&self, py: Python<'_>) -> Option<Status> {
+        py.detach(|| held(&self.open).as_ref().map(Session::status))
+    }
+
     fn row<'py>(&self, py: Python<'py>, event: &Event) -> PyResult<Bound<'py, PyDict>> {
         let row = PyDict::new(py);
         row.set_item("phase", event.phase.name())?;
-        row.set_item("class", self.model.class_name(event.class))?;
+        row.set_item("class", self.index.model.class_name(event.class))?;
         row.set_item("start_secs", event.span.start_secs)?;
         row.set_item("stop_secs", event.span.stop_secs)?;
         row.set_item("score", event.score)?;

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -48,6 +50,15 @@ def taught() -> morec.Index:
         clips.append(morec.Clip.from_positions(positions, NAMES, RATE, name=f"hand{seed}"))
         spans += [(f"hand{seed}", kind, start, stop) for kind, start, stop in truth]
     return morec.train(clips, spans)
+
+
+def test_an_index_of_hands_says_that_a_body_is_none(taught: morec.Index, newcomer: morec.Clip, tmp_path: Path) -> None:
+    newcomer[0.0:4.0].save(tmp_path / "body.bvh")
+    said = "this index is of a hand; what is shown here is a body"
+    with morec.listen(f"clip://{tmp_path / 'body.bvh'}", taught, timeout=8.0) as events:
+        with pytest.warns(morec.MorecWarning, match=f"error: {said}"):
+            assert list(events) == []
+        assert any(said in finding for finding in events.status["findings"])
 
 
 def test_gestures_of_hands_are_recognised_in_clips_and_live(taught: morec.Index) -> None:

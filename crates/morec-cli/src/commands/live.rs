@@ -11,16 +11,12 @@ use morec::live::{EventOptions, EventReader, Session, SessionOptions, Status, St
 
 use super::recognize::open_index;
 use crate::interrupt::stop_on_ctrl_c;
-use crate::live::advice::{self, Advice};
 use crate::live::layout::LayoutArg;
 use crate::live::open::TrackerArgs;
 use crate::live::sinks::CountedSink;
 use crate::live::status::StatusLine;
 use crate::live::takes::secs;
-use morec_live::Address;
-use morec_live::NamedEvent;
-use morec_live::Notices;
-use morec_live::summary;
+use morec_live::{Address, Advice, NamedEvent, Notices, advice_of_status, summary};
 use morec_ops::RecognizeSettings;
 
 /// Recognise motions live, from a tracker to an event.
@@ -169,7 +165,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         complain(&source.name, &source.notices, &mut line);
         dropped += status.dropped_events;
         eprintln!("morec: {}", summary(&source.name, &status));
-        advice::of_status(&status, &index)
+        advice_of_status(&status, &index)
             .iter()
             .for_each(|text| eprintln!("morec:   {text}"));
     }

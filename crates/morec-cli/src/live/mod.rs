@@ -1,6 +1,5 @@
 //! Live recognition at a terminal: sources and sinks as they are typed, what is said of sessions, takes.
 
-pub mod advice;
 pub mod keep;
 pub mod layout;
 pub mod network;

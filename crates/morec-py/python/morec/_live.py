@@ -47,6 +47,12 @@ class listen:
         sequence, wall_secs (seconds since 1970 at the arrival of the frame that settled it), and of an activity that repeats
         repetitions so far and period_secs (None where nothing is counted).
 
+    Warns
+    -----
+    MorecWarning
+        Once for each fault of what arrives, and for what keeps the index from recognising it: nothing arrives, another kind of
+        performer, missing joints, noise.
+
     Examples
     --------
     >>> with morec.listen("vmc://127.0.0.1:39539", index) as events:
@@ -75,7 +81,7 @@ class listen:
 
     @property
     def status(self) -> dict[str, Any]:
-        """Counts of frames, losses and events so far."""
+        """Counts of frames, losses and events so far; ``findings``: what is wrong with the stream for the index, in sentences."""
         return self._session.status()
 
     def close(self) -> None:

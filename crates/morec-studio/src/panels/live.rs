@@ -245,7 +245,7 @@ fn health(ui: &mut Ui, state: &State) {
             .map_or(String::new(), |h| format!(", {h:.2} m to the head"));
         ui.label(RichText::new(format!("{rate}, {lost}{height}")).size(12.5));
     }
-    let said = run.health();
+    let said = run.health(state.live.index().map(|index| &**index));
     if said.is_empty() {
         ui.colored_label(c.good, "✔ No fault is found.");
     }

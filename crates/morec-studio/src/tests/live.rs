@@ -1,6 +1,10 @@
 //! Teaching from what just happened.
 
 use egui::Key;
+use morec::index::MotionIndex;
+use morec::roles::mapping::Mapping;
+use morec::{ImportOptions, Labels, Trainer};
+use morec_db::MotionDb;
 use morec_ops::RecognizeSettings;
 
 use super::{Person, made, takes};
@@ -368,6 +372,47 @@ fn a_source_that_never_sends_redraws_nothing() {
     person.wait(3.0);
     assert!(person.state().live.run.is_some());
     assert!(!person.is_redrawn());
+}
+
+/// An index of a puppet of seven points whose joints have names that people's have.
+fn index_of_a_puppet() -> MotionIndex {
+    let mapping = "point_1\tHips\npoint_2\tHead\nleft_point_1\tLeftUpLeg\nright_point_1\tRightUpLeg\n\
+        left_point_2\tLeftHand\nright_point_2\tRightHand\nleft_point_3\tLeftForeArm\n";
+    let options = ImportOptions {
+        mapping: Some(Mapping::read(mapping.as_bytes()).unwrap()),
+        ..ImportOptions::default()
+    };
+    let mut labels = Labels::default();
+    let taught = takes().iter().map(|take| {
+        for label in &take.labels {
+            labels.add(&take.clip.name, label.class, label.span);
+        }
+        morec::import::normalize(take.clip.clone(), &options).unwrap()
+    });
+    let taught: Vec<_> = taught.collect();
+    Trainer::new().labels(&labels).train(&taught).unwrap()
+}
+
+#[test]
+fn an_index_of_another_kind_of_performer_is_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = made(folder.path(), 0);
+    let bytes = index_of_a_puppet().to_bytes().unwrap();
+    MotionDb::open(&path)
+        .unwrap()
+        .store_index("puppet", &bytes)
+        .unwrap();
+    let mut person = Person::before(&[path]);
+    person.command(Command::Train(TrainCommand::UseIndex("puppet".to_owned())));
+    person.goes_to(Panel::Live);
+    person.key(Key::Space);
+    person.settle();
+    while person.state().live.now_secs() < 2.0 {
+        person.frames(1);
+    }
+    let said = "This index is of a custom skeleton; what is shown here is a body";
+    assert!(person.sees_part(said));
+    assert!(!person.sees_part("No fault is found"));
 }
 
 #[test]

@@ -1,11 +1,17 @@
 //! Recognition with an index.
 
+use crate::diagnosis::{Diagnosis, Finding, Severity};
 use crate::features::{ALL_BONES, BoneSet};
 use crate::index::MotionIndex;
 use crate::roles::{Role, RoleMap};
 
 use super::start::check_shown;
 use super::{Model, Recognizer, StartError};
+
+/// A shorter stream tells nothing of the kind of performer that it shows.
+const SHOWN_SECS: f64 = 0.9;
+/// A joint that was not seen for so long is not sent.
+const MISSING_SECS: f64 = 2.0;
 
 impl MotionIndex {
     /// Detections of `take`, recognised pose by pose as in a live stream; times from its beginning.
@@ -32,6 +38,32 @@ impl MotionIndex {
             Model::Templates(model) => check_shown(model.bones, bones),
             Model::Svrdm(_) => Ok(()),
         }
+    }
+
+    /// What does not fit in this index and a stream with this `diagnosis`: it is of another kind of performer, or takes the heading
+    /// from what the stream does not show. `None`, too, while too little was seen.
+    pub fn misfit(&self, diagnosis: &Diagnosis) -> Option<(Severity, String)> {
+        let shown = BoneSet::of_seen(|role| diagnosis.seen.contains(role));
+        if let Err(error @ StartError::OtherProfile { .. }) = self.check_shown(shown) {
+            let known = diagnosis.secs >= SHOWN_SECS;
+            return known.then(|| (Severity::Error, error.to_string()));
+        }
+        // Joints that were missing at first may come.
+        let missing = |finding: &Finding| matches!(finding, Finding::JointsMissing { .. });
+        let known = diagnosis.findings().iter().any(missing) || diagnosis.secs >= MISSING_SECS;
+        let doubt = self.heading_doubt(diagnosis.seen).filter(|_| known)?;
+        Some((Severity::Warning, doubt.to_owned()))
+    }
+
+    /// What is wrong with a stream for this index, a sentence each with its severity: its [misfit](Self::misfit), then what else was found,
+    /// the gravest first.
+    pub fn findings(&self, diagnosis: &Diagnosis) -> Vec<String> {
+        let misfit = self.misfit(diagnosis).into_iter();
+        let findings = diagnosis.findings();
+        let findings = findings.iter().map(|f| (f.severity(), f.to_string()));
+        let all = misfit.chain(findings);
+        all.map(|(severity, text)| format!("{severity}: {text}"))
+            .collect()
     }
 
     /// The parts that the index's bones need and a performer with these `roles` lacks, who shows the bones `shown`. Empty of one who shows

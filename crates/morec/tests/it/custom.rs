@@ -1,5 +1,6 @@
 //! Skeletons that are no person's: points that a mapping names are taught and recognised.
 
+use morec::diagnosis::Diagnoser;
 use morec::features::{BoneSet, HeadingLine, Profile, all_bones_of_clip};
 use morec::index::{MotionIndex, Provenance};
 use morec::labels::Sample;
@@ -114,6 +115,22 @@ fn another_kind_of_performer_is_refused_in_words() {
     assert!(matches!(error, StartError::OtherProfile { .. }));
     let said = "this index is of a custom skeleton; what is shown here is a body";
     assert_eq!(error.to_string(), said);
+    // In a stream, once enough was seen of it.
+    let take = morec::Take::new(person).unwrap();
+    let mut diagnoser = Diagnoser::live();
+    let mut first = None;
+    for (secs, pose) in take.poses() {
+        diagnoser.push(secs, secs, &pose);
+        if index.misfit(&diagnoser.diagnosis()).is_some() && first.is_none() {
+            first = Some(secs);
+        }
+    }
+    assert!(
+        first.is_some_and(|secs| (0.5..2.0).contains(&secs)),
+        "{first:?}"
+    );
+    let findings = index.findings(&diagnoser.diagnosis());
+    assert_eq!(findings[0], format!("error: {said}"));
 }
 
 #[test]

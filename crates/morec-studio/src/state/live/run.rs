@@ -3,6 +3,7 @@
 use morec::TimeSpan;
 use morec::classes::ClassId;
 use morec::diagnosis::{Diagnosis, Severity};
+use morec::index::MotionIndex;
 use morec::live::{EarlyDetection, Event, Frame, Model, PerformerId, Phase};
 use morec_db::ClipId;
 
@@ -206,8 +207,8 @@ impl Run {
         }
     }
 
-    /// Health of the stream in sentences, each true if it is a fault.
-    pub fn health(&self) -> Vec<(String, bool)> {
+    /// Health of the stream for the index that recognises it, in sentences, each true if it is a fault.
+    pub fn health(&self, index: Option<&MotionIndex>) -> Vec<(String, bool)> {
         let mut said = Vec::new();
         let nothing = self.performers.iter().all(|p| p.frames.is_empty());
         if self.ended {
@@ -236,6 +237,8 @@ impl Run {
         }
         said.extend(self.noticed.iter().rev().map(|text| (text.clone(), true)));
         if let Some(diagnosis) = self.diagnosis() {
+            let misfit = index.and_then(|index| index.misfit(&diagnosis));
+            said.extend(misfit.map(|(_, text)| (crate::store::sentence(&text), true)));
             for finding in diagnosis.findings().iter() {
                 said.push((
                     crate::store::sentence(&finding.to_string()),

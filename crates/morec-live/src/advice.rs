@@ -2,18 +2,14 @@
 
 use std::time::{Duration, Instant};
 
-use morec::diagnosis::{Diagnosis, Finding, Severity};
-use morec::features::BoneSet;
+use morec::diagnosis::{Finding, Severity};
 use morec::index::MotionIndex;
-use morec::live::{MAX_PERFORMERS, StartError, Status};
+use morec::live::{MAX_PERFORMERS, Status};
 
 /// Nothing has come in so long: say so.
 const SILENCE: Duration = Duration::from_secs(2);
 /// Between two looks.
 const EVERY: Duration = Duration::from_millis(200);
-
-/// A shorter stream tells nothing of what it shows.
-const LEAST_SECS: f64 = 0.9;
 
 /// Said once of a performer for whom the wider gate opened.
 const OPENED: &str = "performs unlike the teacher: a wider gate from now on (--performer teacher keeps the narrow one)";
@@ -28,7 +24,7 @@ struct AdvisedSource {
     /// Performers for whom the wider gate was closed at some look, and of whom it was said that it opened.
     closed: [bool; MAX_PERFORMERS],
     opening_said: [bool; MAX_PERFORMERS],
-    heading_said: bool,
+    misfit_said: bool,
 }
 
 /// Says findings of sources, each once.
@@ -48,7 +44,7 @@ impl Advice {
             silence_said: false,
             closed: [false; MAX_PERFORMERS],
             opening_said: [false; MAX_PERFORMERS],
-            heading_said: false,
+            misfit_said: false,
         };
         let now = Instant::now();
         Self {
@@ -73,7 +69,7 @@ impl Advice {
                 lines.push(format!("{}: {}", source.name, silence(status)));
             }
             source.look(status, &mut lines);
-            source.heading(status, index, &mut lines);
+            source.misfit(status, index, &mut lines);
         }
         lines
     }
@@ -97,54 +93,30 @@ impl AdvisedSource {
                 let bit = finding.bit();
                 if self.seen[at] & bit != 0 && self.said[at] & bit == 0 {
                     self.said[at] |= bit;
-                    lines.push(format!("{}: {}", who(&self.name, at), sentence(finding)));
+                    lines.push(format!(
+                        "{}: {}: {finding}",
+                        who(&self.name, at),
+                        finding.severity()
+                    ));
                 }
             }
             self.seen[at] = findings.bits();
         }
     }
 
-    /// Says once that the index is of another kind of performer than the stream, or was trained with another heading.
-    fn heading(&mut self, status: &Status, index: &MotionIndex, lines: &mut Vec<String>) {
+    /// Says once that the index does not fit, gravest first: another kind of performer, or another heading in training.
+    fn misfit(&mut self, status: &Status, index: &MotionIndex, lines: &mut Vec<String>) {
         let known = status.actors.iter().filter_map(|actor| actor.diagnosis);
-        let doubt = known.filter_map(|d| heading(&d, index)).next();
-        if let Some(doubt) = doubt.filter(|_| !self.heading_said) {
-            self.heading_said = true;
-            lines.push(format!("{}: {doubt}", self.name));
+        let misfit = known.filter_map(|d| index.misfit(&d)).next();
+        if let Some((severity, text)) = misfit.filter(|_| !self.misfit_said) {
+            self.misfit_said = true;
+            lines.push(format!("{}: {severity}: {text}", self.name));
         }
     }
-}
-
-/// An error if the index is of another kind of performer than the stream shows.
-fn other_profile(diagnosis: &Diagnosis, index: &MotionIndex) -> Option<String> {
-    let shown = BoneSet::of_seen(|role| diagnosis.seen.contains(role));
-    match index.check_shown(shown) {
-        Err(error @ StartError::OtherProfile { .. }) if diagnosis.secs >= LEAST_SECS => {
-            Some(format!("error: {error}"))
-        }
-        _ => None,
-    }
-}
-
-/// What does not fit in a stream and an index.
-fn heading(diagnosis: &Diagnosis, index: &MotionIndex) -> Option<String> {
-    let other = other_profile(diagnosis, index);
-    if other.is_some() {
-        return other;
-    }
-    let missing = |finding: &Finding| matches!(finding, Finding::JointsMissing { .. });
-    // Joints that were missing at first may come.
-    let known = diagnosis.findings().iter().any(missing) || diagnosis.secs >= SILENCE.as_secs_f64();
-    let doubt = index.heading_doubt(diagnosis.seen).filter(|_| known);
-    doubt.map(str::to_owned)
 }
 
 fn matters(finding: &Finding) -> bool {
     finding.severity() >= Severity::Warning
-}
-
-fn sentence(finding: &Finding) -> String {
-    format!("{}: {finding}", finding.severity())
 }
 
 fn who(source: &str, actor: usize) -> String {
@@ -169,7 +141,7 @@ fn silence(status: &Status) -> String {
 }
 
 /// Everything found of a source that is compared with `index`, a sentence each, for the end of a session.
-pub fn of_status(status: &Status, index: &MotionIndex) -> Vec<String> {
+pub fn advice_of_status(status: &Status, index: &MotionIndex) -> Vec<String> {
     let mut lines = Vec::new();
     if status.frames == 0 {
         lines.push(silence(status));
@@ -183,8 +155,7 @@ pub fn of_status(status: &Status, index: &MotionIndex) -> Vec<String> {
             actor => format!("performer {actor}"),
         };
         lines.push(format!("{name}: {diagnosis}"));
-        lines.extend(other_profile(&diagnosis, index));
-        lines.extend(diagnosis.findings().iter().map(sentence));
+        lines.extend(index.findings(&diagnosis));
     }
     lines
 }
@@ -233,7 +204,7 @@ mod tests {
         assert_eq!(said(&[false, false]), [""; 0]);
     }
 
-    const INDEX: &[u8] = include_bytes!("../../../morec/testdata/index/v1.index");
+    const INDEX: &[u8] = include_bytes!("../../morec/testdata/index/v1.index");
 
     /// Two seconds of a stream that stays in `pose`.
     fn status_of(pose: &KeyPose) -> Status {
@@ -262,7 +233,7 @@ mod tests {
         let mut source = Advice::new(["json:-".to_owned()]).sources.remove(0);
         let mut said = Vec::new();
         let mut look = |index: &MotionIndex| {
-            source.heading(&status_of(&desk), index, &mut said);
+            source.misfit(&status_of(&desk), index, &mut said);
             said.len()
         };
         assert_eq!(look(&index), 0, "it was learned without legs");
@@ -271,7 +242,7 @@ mod tests {
         }
         assert_eq!(look(&index), 1);
         assert_eq!(look(&index), 1);
-        assert!(said[0].starts_with("json:-: the index takes the heading from the hips"));
+        assert!(said[0].starts_with("json:-: warning: the index takes the heading from the hips"));
     }
 
     #[test]
@@ -287,19 +258,19 @@ mod tests {
             said[0].starts_with("vmc://here, performer 1: error: 100 % of the frames show no body")
         );
         let index = MotionIndex::from_bytes(INDEX).unwrap();
-        assert!(of_status(&status, &index)[1].contains("no body"));
+        assert!(advice_of_status(&status, &index)[1].contains("no body"));
     }
 
     #[test]
     fn silence_has_its_reasons() {
         let index = MotionIndex::from_bytes(INDEX).unwrap();
         let mut status = Status::default();
-        assert!(of_status(&status, &index)[0].contains("nothing has arrived"));
+        assert!(advice_of_status(&status, &index)[0].contains("nothing has arrived"));
         status.source.packets = 9;
-        assert!(of_status(&status, &index)[0].contains("no pose"));
+        assert!(advice_of_status(&status, &index)[0].contains("no pose"));
         status.source.malformed = 8;
-        assert!(of_status(&status, &index)[0].contains("cannot be understood"));
+        assert!(advice_of_status(&status, &index)[0].contains("cannot be understood"));
         status.source.not_motion = 3;
-        assert!(of_status(&status, &index)[0].contains("rest pose"));
+        assert!(advice_of_status(&status, &index)[0].contains("rest pose"));
     }
 }
