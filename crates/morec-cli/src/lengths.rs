@@ -16,10 +16,7 @@ pub fn lengths(paths: &[PathBuf], read: &ReadArgs) -> anyhow::Result<BTreeMap<St
     let mut lengths = BTreeMap::new();
     for file in files {
         for clip in open(&file, read)?.clips {
-            let length = ClipLength {
-                frames: clip.frames,
-                rate_hz: clip.rate_hz,
-            };
+            let length = ClipLength::from(&clip);
             if lengths.insert(clip.name.clone(), length).is_some() {
                 bail!(
                     "{}: a second clip called {}; names must differ",

@@ -136,10 +136,7 @@ impl PoseReader<'_> {
         let rows = pose_rows_of_clip(clip, &self.set, &map, take.rest(), &self.params);
         Ok(PosedClip {
             name: clip.name.clone(),
-            length: ClipLength {
-                frames: clip.frames,
-                rate_hz: clip.rate_hz,
-            },
+            length: clip.into(),
             rows,
         })
     }

@@ -21,7 +21,6 @@
 //!
 //! ```no_run
 //! use morec::files::FileReader;
-//! use morec_db::search::{Example, SearchIndex, SearchOptions};
 //! use morec_db::labels::{NewSample, SampleState};
 //! use morec_db::{ClipFilter, ClipUpdate, MotionDb, ProposeOptions};
 //!

@@ -104,11 +104,13 @@ impl AdvisedSource {
         }
     }
 
-    /// Says once that the index does not fit, gravest first: another kind of performer, or another heading in training.
+    /// Says once that the index does not fit a performer: of another kind, or with another heading in training.
     fn misfit(&mut self, status: &Status, index: &MotionIndex, lines: &mut Vec<String>) {
-        let known = status.actors.iter().filter_map(|actor| actor.diagnosis);
-        let misfit = known.filter_map(|d| index.misfit(&d)).next();
-        if let Some((severity, text)) = misfit.filter(|_| !self.misfit_said) {
+        if self.misfit_said {
+            return;
+        }
+        let mut known = status.actors.iter().filter_map(|actor| actor.diagnosis);
+        if let Some((severity, text)) = known.find_map(|d| index.misfit(&d)) {
             self.misfit_said = true;
             lines.push(format!("{}: {severity}: {text}", self.name));
         }

@@ -97,11 +97,8 @@ fn lengths(given: &Bound<'_, PyAny>) -> PyResult<BTreeMap<String, ClipLength>> {
     let mut lengths = BTreeMap::new();
     for clip in &clips {
         let clip = &clip.get().data.clip;
-        let length = ClipLength {
-            frames: clip.frames,
-            rate_hz: clip.rate_hz,
-        };
-        if lengths.insert(clip.name.clone(), length).is_some() {
+        let again = lengths.insert(clip.name.clone(), clip.into());
+        if again.is_some() {
             let why = format!("two clips are called {}; names must differ", clip.name);
             return Err(value_error(why));
         }

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use morec::TimeSpan;
-use morec::labels::{ClipLength, Extent, Label, Labels, People, read_people};
+use morec::labels::{Extent, Label, Labels, People, read_people};
 use morec::train::{StreamKind, TrainClip, TrainingData, TrainingMaterial};
 use morec_ops::OperationError;
 use pyo3::prelude::*;
@@ -181,11 +181,7 @@ pub fn resolve_labels(
     labels: &Bound<'_, PyAny>,
 ) -> PyResult<Vec<(String, f64, f64)>> {
     let clip = &clip.data.clip;
-    let length = ClipLength {
-        frames: clip.frames,
-        rate_hz: clip.rate_hz,
-    };
-    let lengths = BTreeMap::from([(clip.name.clone(), length)]);
+    let lengths = BTreeMap::from([(clip.name.clone(), clip.into())]);
     let resolved = self::labels(labels)?.resolve(&lengths);
     let samples = resolved.samples.into_iter();
     Ok(samples

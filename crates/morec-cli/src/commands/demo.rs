@@ -120,10 +120,7 @@ fn show(folder: &DemoFolder, cast: &Cast, args: &Args) -> Result<()> {
     let Some(take) = takes.first() else {
         bail!("{}: holds no clip", path.display());
     };
-    let length = ClipLength {
-        frames: take.clip.frames,
-        rate_hz: take.clip.rate_hz,
-    };
+    let length = ClipLength::from(&take.clip);
     let lengths = BTreeMap::from([(cast.name.clone(), length)]);
     let said = said(&folder.found(), &lengths)?;
     let table = Labels::from_path(folder.path("truth.tsv"))?;

@@ -103,13 +103,7 @@ fn labels(path: Option<&Path>, takes: &[Take]) -> Result<BTreeMap<String, Vec<Ma
     let labels = labels::read(path)?;
     let lengths: BTreeMap<String, ClipLength> = takes
         .iter()
-        .map(|take| {
-            let length = ClipLength {
-                frames: take.clip.frames,
-                rate_hz: take.clip.rate_hz,
-            };
-            (take.name().to_owned(), length)
-        })
+        .map(|take| (take.name().to_owned(), (&take.clip).into()))
         .collect();
     let resolved = labels.resolve(&lengths);
     for warning in &resolved.warnings {

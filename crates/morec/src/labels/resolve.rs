@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::{Extent, Label, Labels};
 use crate::TimeSpan;
+use crate::clip::Clip;
 use crate::eval::GroundTruth;
 use crate::formats::{Place, Warning};
 
@@ -14,6 +15,15 @@ pub struct ClipLength {
     pub frames: usize,
     /// Frames a second; positive.
     pub rate_hz: f64,
+}
+
+impl From<&Clip> for ClipLength {
+    fn from(clip: &Clip) -> Self {
+        Self {
+            frames: clip.frames,
+            rate_hz: clip.rate_hz,
+        }
+    }
 }
 
 /// A labelled stretch of a clip, in seconds.

@@ -162,10 +162,7 @@ impl TrainingMaterial<'_> {
 fn lengths(clips: &[TrainClip]) -> Result<BTreeMap<String, ClipLength>, DataError> {
     let mut lengths = BTreeMap::new();
     for clip in clips {
-        let length = ClipLength {
-            frames: clip.clip.frames,
-            rate_hz: clip.clip.rate_hz,
-        };
+        let length = ClipLength::from(&clip.clip);
         if lengths.insert(clip.name.clone(), length).is_some() {
             return Err(DataError::SameName(clip.name.clone()));
         }

@@ -31,10 +31,7 @@ pub fn run(paths: &[PathBuf], args: &Args) -> Result<ExitCode> {
     args.poses.reader()?.each_take(paths, |take| {
         let bones = take.bones();
         let clip = RowedClip {
-            length: ClipLength {
-                frames: take.clip.frames,
-                rate_hz: take.clip.rate_hz,
-            },
+            length: (&take.clip).into(),
             bones,
             rows: rows_of_clip(&take.clip, &take.roles, take.rest(), bones, &params),
         };

@@ -13,7 +13,6 @@ use std::sync::Arc;
 use morec::index::MotionIndex;
 use morec::live::{Detection, Model, PerformerId, Recording};
 use morec::math::Vec3;
-use morec::templates::PerformerKind;
 use morec_db::ClipId;
 use morec_ops::RecognizeSettings;
 
@@ -178,8 +177,9 @@ impl Live {
 
     /// True if the index recognises people unlike its teacher in a way of their own.
     pub fn knows_performers(&self) -> bool {
-        let index = self.index.as_ref();
-        index.is_some_and(|index| index.model.with_performer(PerformerKind::Anyone).is_ok())
+        // Asked in every frame of the window: `Model::with_performer` would copy the model.
+        let model = self.index.as_ref().map(|index| &index.model);
+        matches!(model, Some(Model::Templates(model)) if model.stranger.is_some())
     }
 
     pub fn index(&self) -> Option<&Arc<MotionIndex>> {
