@@ -8,7 +8,7 @@ use crate::features::{BoneSet, FeatureParams};
 use crate::pivots::{PivotSet, PoseParams};
 use crate::roles::Role;
 use crate::svrdm::SvrdmParams;
-use crate::templates::{Calibration, LinearScore, OperatingPoint, StrangerGate};
+use crate::templates::{Calibration, LinearScore, OperatingPoint, PerformerKind, StrangerGate};
 
 use super::Provenance;
 
@@ -52,6 +52,9 @@ pub struct Manifest {
     /// The verifier without its tables, if there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub verifier: Option<VerifierWords>,
+    /// The second look without its tables, if there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub look: Option<LookWords>,
     /// The held poses without their tables, if there are any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub held: Option<HeldWords>,
@@ -62,6 +65,26 @@ pub struct Manifest {
     pub roles: BTreeMap<Role, String>,
     /// Origin of the index.
     pub provenance: Provenance,
+}
+
+/// The second look without its tables.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct LookWords {
+    /// See [`SecondLook::scale`](crate::second_look::SecondLook::scale).
+    pub scale: f32,
+    /// Scores above this are reported.
+    pub bound: f32,
+    /// Bounds for other rates of false alarms.
+    pub operating: Vec<OperatingPoint>,
+    /// Matches farther than this are no candidates.
+    pub reach: f32,
+    /// True if matches are judged, not their growths.
+    pub flows: bool,
+    /// Median score of the taught samples.
+    pub own_score: f32,
+    /// The performer that is expected.
+    #[serde(default)]
+    pub performer: PerformerKind,
 }
 
 /// Held poses without their tables.

@@ -8,12 +8,13 @@
 use std::collections::BTreeMap;
 
 use crate::features::{RowLayout, Rows};
+use crate::second_look::{BodyTrack, SecondLook};
 use crate::templates::{
     Activities, Exemplars, HeldPoses, PackedSymmetric, ReferenceRows, SHAPE_ROWS, TemplateModel,
     TemplateSample, Verifier,
 };
 
-use super::manifest::{ActivityWords, FORMAT, HeldWords, Manifest, VerifierWords};
+use super::manifest::{ActivityWords, FORMAT, HeldWords, LookWords, Manifest, VerifierWords};
 use super::tensors::{Tables, Tensor, class_id};
 use super::{INDEX_VERSION, IndexError, MotionIndex};
 
@@ -38,6 +39,15 @@ pub(super) fn manifest(model: &TemplateModel, index: &MotionIndex) -> Manifest {
             bar: v.bar,
             operating: v.operating.clone(),
             generic: v.generic.clone(),
+        }),
+        look: model.look.as_ref().map(|look| LookWords {
+            scale: look.scale,
+            bound: look.bound,
+            operating: look.operating.clone(),
+            reach: look.reach,
+            flows: look.flows,
+            own_score: look.own_score,
+            performer: look.performer,
         }),
         held: model.held.as_ref().map(|held| HeldWords {
             reach: held.reach,
@@ -84,6 +94,9 @@ pub(super) fn tensors(model: &TemplateModel) -> BTreeMap<String, Tensor> {
     if let Some(verifier) = &model.verifier {
         tensors.extend(exemplars(&verifier.classes, dim, step));
     }
+    if let Some(look) = &model.look {
+        tensors.extend(look_tensors(look));
+    }
     if let Some(held) = &model.held {
         tensors.extend(reference_tensors("held", &held.poses));
     }
@@ -108,6 +121,24 @@ fn reference_tensors(name: &str, reference: &ReferenceRows) -> [(String, Tensor)
         (format!("{name}.ridged"), Tensor::of_f32(ridged.packed())),
         (format!("{name}.total"), Tensor::of_f32(total.packed())),
     ]
+}
+
+/// Taught segments, those of other motion behind them, and their metric.
+fn look_tensors(look: &SecondLook) -> Vec<(String, Tensor)> {
+    let rows = look.segments.iter().chain(look.atlas.iter());
+    let step = look.step.as_deref();
+    let classes = look.classes.iter().map(|class| u32::from(class.0));
+    let lengths = [look.segments.len() as u32, look.atlas.len() as u32];
+    let tables = [
+        ("classes", Tensor::of_u32(classes)),
+        ("lengths", Tensor::of_u32(lengths.into_iter())),
+        ("ridged", Tensor::of_f32(look.ridged.packed())),
+        ("rows", Tensor::of_rows(rows, look.ridged.dim(), step)),
+        ("total", Tensor::of_f32(look.total.packed())),
+    ];
+    let step = step.map(|step| ("step", Tensor::of_f32(step)));
+    let tables = tables.into_iter().chain(step);
+    tables.map(|(name, table)| (format!("look.{name}"), table)).collect()
 }
 
 /// All classes' exemplars, one class after the other.
@@ -183,6 +214,7 @@ pub(super) fn read(manifest: &Manifest, tables: &Tables) -> Result<TemplateModel
         stranger: manifest.stranger.clone(),
         verifier: verifier(manifest, tables, dim, step.as_deref())?,
         held: held(manifest, tables)?,
+        look: look(manifest, tables)?,
         activities: activities(manifest, tables)?,
         step,
     };
@@ -254,6 +286,49 @@ fn verifier(
     }))
 }
 
+fn look(manifest: &Manifest, tables: &Tables) -> Result<Option<SecondLook>, IndexError> {
+    let Some(words) = &manifest.look else {
+        return Ok(None);
+    };
+    let dim = BodyTrack::columns(manifest.bones).len();
+    let step = tables.steps("look.step", dim)?;
+    let lengths = tables.u32s("look.lengths")?;
+    let rows = tables.pieces("look.rows", dim, &lengths, step.as_deref())?;
+    let [segments, atlas] = two_tables("look.lengths", rows)?;
+    let classes = tables.u32s("look.classes")?.into_iter();
+    let LookWords {
+        scale,
+        bound,
+        operating,
+        reach,
+        flows,
+        own_score,
+        performer,
+    } = words.clone();
+    Ok(Some(SecondLook {
+        classes: classes.map(class_id).collect::<Result<_, _>>()?,
+        segments,
+        atlas,
+        ridged: symmetric(tables, "look.ridged", dim)?,
+        total: symmetric(tables, "look.total", dim)?,
+        scale,
+        bound,
+        operating,
+        reach,
+        flows,
+        own_score,
+        performer,
+        step,
+    }))
+}
+
+fn two_tables(lengths: &str, rows: Vec<Rows>) -> Result<[Rows; 2], IndexError> {
+    <[Rows; 2]>::try_from(rows).map_err(|rows| {
+        let found = rows.len();
+        IndexError::Content(format!("{lengths}: expected 2 lengths, found {found}"))
+    })
+}
+
 fn held(manifest: &Manifest, tables: &Tables) -> Result<Option<HeldPoses>, IndexError> {
     let Some(HeldWords { reach, least_ticks }) = manifest.held else {
         return Ok(None);
@@ -284,10 +359,7 @@ fn reference(tables: &Tables, name: &str, dim: usize) -> Result<ReferenceRows, I
     let lengths_name = format!("{name}.lengths");
     let lengths = tables.u32s(&lengths_name)?;
     let rows = tables.pieces(&format!("{name}.rows"), dim, &lengths, None)?;
-    let [rows, others] = <[Rows; 2]>::try_from(rows).map_err(|rows| {
-        let found = rows.len();
-        IndexError::Content(format!("{lengths_name}: expected 2 lengths, found {found}"))
-    })?;
+    let [rows, others] = two_tables(&lengths_name, rows)?;
     let classes = tables.u32s(&format!("{name}.classes"))?.into_iter();
     Ok(ReferenceRows {
         rows,

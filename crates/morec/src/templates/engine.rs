@@ -2,6 +2,7 @@
 
 use crate::decode::{Candidate, Decoder, TickDetection};
 use crate::features::RowLayout;
+use crate::second_look::LookDecoder;
 
 use super::activities::ActivityDetector;
 use super::class_matches::{ClassMatches, MatchReplay};
@@ -24,6 +25,8 @@ pub struct TemplateEngine {
     threshold: f32,
     calibration: Option<Calibration>,
     stranger: Option<Box<PerformerAdaptation>>,
+    /// Decides in the decoder's place, where there is one.
+    looks: Option<Box<LookDecoder>>,
     held: Option<Box<HoldDetector>>,
     activities: Option<Box<ActivityDetector>>,
 }
@@ -168,6 +171,7 @@ impl TemplateEngine {
             threshold: model.threshold,
             calibration: model.calibration_in_use(),
             stranger,
+            looks: LookDecoder::new(model, 2 * longest).map(Box::new),
             held: (model.held.as_ref()).map(|held| Box::new(HoldDetector::new(held))),
             activities: (model.activities.as_ref()).map(|activities| {
                 let layout = RowLayout::of(model.bones);
@@ -210,12 +214,18 @@ impl TemplateEngine {
         if let Some(activities) = &mut self.activities {
             activities.reset();
         }
+        if let Some(looks) = &mut self.looks {
+            looks.reset();
+        }
         self.decoder.reset();
         self.recent.pushed = 0;
     }
 
     /// Forgets how the performer moves: the next row may be another performer's.
     pub fn forget_performer(&mut self) {
+        if let Some(looks) = &mut self.looks {
+            looks.forget_performer();
+        }
         if let Some(stranger) = &mut self.stranger {
             stranger.level = PerformerLevel::new(&stranger.gate);
         }
@@ -259,15 +269,24 @@ impl TemplateEngine {
             }
             Matches::Given(replay) => replay.step(),
         };
-        self.decoder.push(near, negative);
-        self.decode(false);
+        match &mut self.looks {
+            Some(looks) => looks.push(row, near),
+            None => {
+                self.decoder.push(near, negative);
+                self.decode(false);
+            }
+        }
         self.found()
     }
 
     fn found(&self) -> impl Iterator<Item = &TickDetection> {
         let held = self.held.as_ref().and_then(|held| held.found());
         let activities = self.activities.iter().flat_map(|a| a.found());
-        self.decoder.found().iter().chain(held).chain(activities)
+        let found = match &self.looks {
+            Some(looks) => looks.found(),
+            None => self.decoder.found(),
+        };
+        found.iter().chain(held).chain(activities)
     }
 
     /// Decides the ticks that are due, and reports.
@@ -321,7 +340,10 @@ impl TemplateEngine {
 
     /// Ends the stretch and returns the detections that its last ticks still hold. The next row begins a new one.
     pub fn finish(&mut self) -> impl Iterator<Item = &TickDetection> {
-        self.decode(true);
+        match &mut self.looks {
+            Some(looks) => looks.finish(),
+            None => self.decode(true),
+        }
         if let Some(held) = &mut self.held {
             held.finish();
         }

@@ -27,6 +27,7 @@ pub use activities::Activities;
 pub(crate) use activities::{STEP_TICKS, windows_of};
 pub use bank::{Match, PartialMatch, TemplateBank};
 pub use class_matcher::ClassMatcher;
+pub(crate) use compact::{snapped, steps};
 pub use class_matches::{ClassMatches, ClassMatchesError};
 pub use dot::AT_ONCE;
 pub use early::{EarlyDetectionParams, OngoingMatch};

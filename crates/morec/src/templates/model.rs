@@ -4,6 +4,7 @@ use crate::classes::{ClassId, ClassInfo};
 use crate::decode::{CandidatePolicy, DecodeParams};
 use crate::features::{BoneSet, FeatureParams, RowLayout, Rows};
 use crate::math::portable;
+use crate::second_look::SecondLook;
 
 use super::{
     Activities, Calibration, Evidence, Exemplars, HeldPoses, OperatingPoint, PackedSymmetric,
@@ -52,6 +53,8 @@ pub struct TemplateModel {
     pub verifier: Option<Verifier>,
     /// Poses of classes that are held, which have no templates; none in older indexes, and of bodies.
     pub held: Option<HeldPoses>,
+    /// The second look at whole motions, which decides where there is one; none in older indexes, and of performers without a body.
+    pub look: Option<SecondLook>,
     /// Windows of classes that are activities, which have no templates; none in older indexes.
     pub activities: Option<Activities>,
     /// If template rows are whole multiples of a step, column by column: the steps. Files then hold bytes.
@@ -128,6 +131,10 @@ impl TemplateModel {
             held.check(RowLayout::of(self.bones), self.classes.len())
                 .map_err(TemplateModelError::Value)?;
         }
+        if let Some(look) = &self.look {
+            look.check(self.bones, self.classes.len())
+                .map_err(TemplateModelError::Value)?;
+        }
         if let Some(activities) = &self.activities {
             activities
                 .check(RowLayout::of(self.bones), self.classes.len())
@@ -151,13 +158,16 @@ impl TemplateModel {
             let value = values.find(|v| v.is_nan() || v.abs() > most)?;
             Some(format!("values must be within {most}, found {value}"))
         };
+        let looks = || self.look.iter();
         let held = self.held.iter().map(|held| &held.poses);
         let activities = self.activities.iter().map(|a| &a.windows);
         let references = held.chain(activities);
         let rows = self.samples.iter().map(|sample| &sample.rows);
         let rows = rows.chain(&self.negatives);
+        let rows = rows.chain(looks().flat_map(|look| [&look.segments, &look.atlas]));
         let mut rows = rows.chain(references.clone().flat_map(|r| [&r.rows, &r.others]));
         let tables = [&self.ridged, &self.total].into_iter();
+        let tables = tables.chain(looks().flat_map(|look| [&look.ridged, &look.total]));
         let mut tables = tables.chain(references.flat_map(|r| [&r.ridged, &r.total]));
         let of_rows = rows.find_map(|rows| beyond(rows.values(), LARGEST));
         let of_metric = || tables.find_map(|table| beyond(table.packed(), LARGEST * LARGEST));
@@ -213,6 +223,13 @@ impl TemplateModel {
                 ..self.clone()
             });
         }
+        if let Some(look) = &self.look {
+            return Some(Self {
+                look: Some(look.with_sensitivity(alarms_per_minute)?),
+                activities,
+                ..self.clone()
+            });
+        }
         let threshold = threshold_at(&self.operating, alarms_per_minute)?;
         let scale = threshold / self.threshold;
         let class_thresholds = self.class_thresholds.iter().map(|t| t * scale);
@@ -228,6 +245,10 @@ impl TemplateModel {
     /// The model for this kind of performer. `None` if it is to have a wider gate and has none.
     pub fn with_performer(&self, performer: PerformerKind) -> Option<Self> {
         let mut model = self.clone();
+        if let Some(look) = &mut model.look {
+            look.performer = performer;
+            return Some(model);
+        }
         match &mut model.stranger {
             Some(gate) => gate.performer = performer,
             None if performer == PerformerKind::Anyone => return None,
@@ -250,7 +271,8 @@ impl TemplateModel {
         let wide = self.stranger.iter();
         let thresholds = (self.class_thresholds.iter().copied())
             .chain(wide.clone().map(|gate| gate.threshold))
-            .chain(self.verifier.iter().map(|v| v.reach));
+            .chain(self.verifier.iter().map(|v| v.reach))
+            .chain(self.look.iter().map(|look| look.reach));
         let threshold = thresholds.fold(self.threshold, f32::max);
         let decode = &self.decode;
         let factor = (wide.map(|gate| gate.rival_share))
@@ -323,6 +345,7 @@ impl TemplateModel {
                 .verifier
                 .as_ref()
                 .map(|v| restricted_verifier(v, share as f32, pick)),
+            look: (self.look.as_ref()).map(|look| look.restricted(self.bones, bones)),
             held: (self.held.as_ref())
                 .map(|held| held.restricted(RowLayout::of(self.bones), &keep)),
             activities: (self.activities.as_ref())

@@ -69,6 +69,14 @@ impl Calibration {
         rest_weight: 23.6,
     };
 
+    /// Of the second look's margins, `1 − exp(−(score − bound))`.
+    pub const OF_LOOKS: Self = Self {
+        slope: 1.0,
+        offset: 1.0,
+        separation_weight: 0.0,
+        rest_weight: 0.0,
+    };
+
     /// The map of distances alone that indexes hold which were trained before separations were measured.
     pub(crate) const OF_MARGINS: Self = Self {
         slope: 0.33,

@@ -22,6 +22,7 @@ mod recipe;
 mod report;
 mod ridge;
 mod scatter;
+mod second_look;
 mod set;
 mod templates;
 pub mod thesis;

@@ -24,6 +24,7 @@ use super::mining::{NearMiss, NearestByGate, TrainGates, hard_negatives, smalles
 use super::operating::AlarmCurve;
 use super::params::TrainParams;
 use super::scatter::{covariance, ridged, within_class};
+use super::second_look::{self, OwnSample};
 use super::set::{StreamKind, TrainSample, TrainSet, TrainStream};
 use super::thresholds;
 use super::trim::motion_span;
@@ -42,6 +43,8 @@ pub struct TrainedTemplates {
     pub quiet: Vec<TrainSample>,
     /// Classes that keep each other from being reported; none where candidates are verified.
     pub alike: Vec<AlikeClasses>,
+    /// Samples judged among the others by the second look; none where it does not decide.
+    pub own: Vec<OwnSample>,
 }
 
 /// `params` with the spread of the usual template among `samples`, where rows are not a body's. Thresholds are then at most that
@@ -105,6 +108,7 @@ pub fn train(
     let samples = samples.into_iter().filter(has_templates).collect();
     let (samples, quiet) = moving(samples, &metric, params);
     let mut samples = templates_of(samples, set.classes.len(), params.max_templates);
+    let look = second_look::learn(set, &samples, bones, params);
     let params = &of_profile(params, bones, &samples, &metric);
     let step = TrainingContext {
         set,
@@ -187,14 +191,24 @@ pub fn train(
         stranger: stranger.filter(|_| verifier.is_none()),
         verifier,
         held,
+        look: None,
         activities,
         step: None,
     };
-    let model = if params.compact {
+    let mut model = if params.compact {
         model.compacted()
     } else {
         model
     };
+    let mut own = Vec::new();
+    if let Some((look, judged)) = look.filter(|_| model.verifier.is_none()) {
+        model.decode.rest_gate = CANDIDATE_REST_GATE;
+        model.calibration = params.calibrate.then_some(Calibration::OF_LOOKS);
+        model.look = Some(look);
+        model.stranger = None;
+        own = judged;
+        second_look::set_bound(&mut model, set, params)?;
+    }
     model.check()?;
     Ok(TrainedTemplates {
         model,
@@ -202,6 +216,7 @@ pub fn train(
         threshold_from: operating.from,
         quiet,
         alike,
+        own,
     })
 }
 
@@ -217,6 +232,9 @@ fn wide_gate(set: &TrainSet, samples: &[TrainSample], params: &TrainParams) -> O
         rest_share: params.stranger.rest_gate,
     })
 }
+
+/// Share of a body's distance at rest below which a match is a candidate of the second look: a body at rest never matches.
+const CANDIDATE_REST_GATE: f32 = 0.85;
 
 /// Exponent by which the bound of the threshold follows the rate of false alarms: 2.4 at a third of the usual rate and
 /// 3.3 at three times, for 2.8.

@@ -1,0 +1,237 @@
+//! One comparison of a segment, from end to end, with every taught sample.
+
+use multiversion::multiversion;
+
+use crate::classes::ClassId;
+use crate::features::Rows;
+use crate::math::portable;
+use crate::templates::Metric;
+
+use super::LOOK_COLUMNS;
+use super::model::SecondLook;
+use super::segment::SEGMENT_ROWS;
+
+/// Rows off the diagonal that the alignment may go.
+const BAND: usize = 6;
+/// Exponent by which the spread of both segments normalises their distance.
+const EXPONENT: f32 = 0.85;
+/// Least share of the typical spread that normalises: segments that hardly move must not be near everything.
+const LEAST_SPREAD: f32 = 0.05;
+/// Of the atlas, the distance that counts is that of its third nearest stretch.
+const NEAREST_OF_ATLAS: usize = 3;
+/// Distances below this are as good as none.
+const LEAST_DISTANCE: f32 = 1e-3;
+/// Values of a row, padded to whole lanes.
+const LANES: usize = 8;
+const PADDED: usize = LOOK_COLUMNS.next_multiple_of(LANES);
+const SEGMENT: usize = SEGMENT_ROWS * PADDED;
+
+/// What a segment is, and how surely.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Judged {
+    /// The nearest class.
+    pub class: ClassId,
+    /// `ln(s_T / d₁)`, `ln(c₃ / d₁)`, or their mean: see [`SecondLook`].
+    pub score: f32,
+}
+
+/// Segments after the metric, each with its spread.
+#[derive(Debug, Clone, Default)]
+struct Segments {
+    /// [`SEGMENT`] values each.
+    values: Vec<f32>,
+    spreads: Vec<f32>,
+}
+
+/// A model laid out for comparing. Nothing is allocated after construction.
+#[derive(Debug, Clone)]
+pub struct Comparison {
+    metric: Metric,
+    classes: Vec<ClassId>,
+    samples: Segments,
+    atlas: Segments,
+    typical_spread: f32,
+    scale: f32,
+    has_scale: bool,
+    mapped: Vec<f32>,
+    segment: Vec<f32>,
+}
+
+impl Comparison {
+    /// Maps the segments of `model`. O(samples · d²).
+    pub fn new(model: &SecondLook) -> Self {
+        let metric = Metric::new(&model.ridged, &model.total);
+        let samples = Segments::mapped(&metric, &model.segments);
+        Self {
+            classes: model.classes.clone(),
+            typical_spread: median_of(&mut samples.spreads.clone()).max(1e-6),
+            atlas: Segments::mapped(&metric, &model.atlas),
+            samples,
+            scale: model.scale,
+            has_scale: model.scale > 0.0,
+            mapped: vec![0.0; SEGMENT_ROWS * metric.dim()],
+            segment: vec![0.0; SEGMENT],
+            metric,
+        }
+    }
+
+    /// Judges a segment of [`SEGMENT_ROWS`] rows of the model's columns. O(samples · rows · band · d).
+    pub fn judge(&mut self, segment: &[f32]) -> Judged {
+        let nobody = Judged {
+            class: ClassId(0),
+            score: f32::MIN,
+        };
+        self.judge_among(segment, |_| true).unwrap_or(nobody)
+    }
+
+    /// The same among the samples that count; `None` if none does.
+    pub fn judge_among(&mut self, segment: &[f32], counts: impl Fn(usize) -> bool) -> Option<Judged> {
+        let spread = self.map(segment);
+        let mut best: Option<(f32, ClassId)> = None;
+        for sample in (0..self.classes.len()).filter(|sample| counts(*sample)) {
+            let most = best.map_or(f32::MAX, |(distance, _)| distance);
+            let distance = self.distance(&self.samples, sample, spread, most);
+            if best.is_none() || distance < most {
+                best = Some((distance, self.classes[sample]));
+            }
+        }
+        let (nearest, class) = best?;
+        let nearest = nearest.max(LEAST_DISTANCE);
+        let score = match self.atlas.spreads.is_empty() {
+            true => portable::ln(f64::from(self.scale / nearest)) as f32,
+            false => self.against_atlas(spread, nearest),
+        };
+        Some(Judged { class, score })
+    }
+
+    /// The score beside what other motion is at.
+    fn against_atlas(&self, spread: f32, nearest: f32) -> f32 {
+        let mut found = [f32::MAX; NEAREST_OF_ATLAS];
+        for stretch in 0..self.atlas.spreads.len() {
+            let most = found[NEAREST_OF_ATLAS - 1];
+            let distance = self.distance(&self.atlas, stretch, spread, most);
+            if distance < most {
+                found[NEAREST_OF_ATLAS - 1] = distance;
+                found.sort_unstable_by(f32::total_cmp);
+            }
+        }
+        let against = |of: f32| portable::ln(f64::from(of / nearest)) as f32;
+        let other = against(found[NEAREST_OF_ATLAS - 1]);
+        match self.has_scale {
+            true => (against(self.scale) + other) / 2.0,
+            false => other,
+        }
+    }
+
+    /// Distances of a segment to every sample, in their order.
+    pub fn distances(&mut self, segment: &[f32]) -> Vec<f32> {
+        let spread = self.map(segment);
+        let distance = |sample| self.distance(&self.samples, sample, spread, f32::MAX);
+        (0..self.samples.spreads.len()).map(distance).collect()
+    }
+
+    /// Takes a segment through the metric; gives its spread.
+    fn map(&mut self, segment: &[f32]) -> f32 {
+        let dim = self.metric.dim();
+        self.metric.apply_each(segment, &mut self.mapped);
+        for (row, out) in self.mapped.chunks_exact(dim).zip(self.segment.chunks_exact_mut(PADDED)) {
+            out[..dim].copy_from_slice(row);
+        }
+        spread_of(&self.segment)
+    }
+
+    /// `D / max(0.05, (V_T + V_S) / 2 V₀)^0.85`, or anything from `most` on if it is not below.
+    fn distance(&self, of: &Segments, place: usize, spread: f32, most: f32) -> f32 {
+        let spreads = (of.spreads[place] + spread) / (2.0 * self.typical_spread);
+        let norm = portable::powf(f64::from(spreads.max(LEAST_SPREAD)), f64::from(EXPONENT)) as f32;
+        let taught = &of.values[place * SEGMENT..][..SEGMENT];
+        let limit = (most * norm).min(f32::MAX) * (2 * SEGMENT_ROWS) as f32;
+        warped(taught, &self.segment, limit) / (2 * SEGMENT_ROWS) as f32 / norm
+    }
+}
+
+impl Segments {
+    fn mapped(metric: &Metric, rows: &Rows) -> Self {
+        let dim = metric.dim();
+        let mapped = metric.apply_all(rows);
+        let mut values = vec![0.0; rows.len() * PADDED];
+        for (row, out) in mapped.iter().zip(values.chunks_exact_mut(PADDED)) {
+            out[..dim].copy_from_slice(row);
+        }
+        let spreads = values.chunks_exact(SEGMENT).map(spread_of).collect();
+        Self { values, spreads }
+    }
+}
+
+/// The median, between two of an even number; 0 of none.
+pub fn median_of(values: &mut [f32]) -> f32 {
+    values.sort_by(f32::total_cmp);
+    match values.len() {
+        0 => 0.0,
+        n if n % 2 == 1 => values[n / 2],
+        n => (values[n / 2 - 1] + values[n / 2]) / 2.0,
+    }
+}
+
+/// Mean squared distance of a segment's rows from their mean.
+fn spread_of(segment: &[f32]) -> f32 {
+    let mut mean = [0.0f64; PADDED];
+    let mut square = 0.0f64;
+    for row in segment.chunks_exact(PADDED) {
+        for (mean, value) in mean.iter_mut().zip(row) {
+            *mean += f64::from(*value);
+            square += f64::from(*value) * f64::from(*value);
+        }
+    }
+    let rows = SEGMENT_ROWS as f64;
+    let mean = mean.iter().map(|m| (m / rows) * (m / rows));
+    (square / rows - mean.sum::<f64>()).max(0.0) as f32
+}
+
+/// Cost of the cheapest path that aligns all rows of both segments: steps that go on in both count twice, in one of them once (Sakoe and
+/// Chiba 1978, symmetric weights), within [`BAND`] rows of the diagonal. `f32::MAX` where every path costs `limit` or more.
+#[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
+fn warped(a: &[f32], b: &[f32], limit: f32) -> f32 {
+    const WIDTH: usize = 2 * BAND + 1;
+    const OUTSIDE: f32 = f32::MAX;
+    // Of the row before, at place `j - i + BAND`; one more on each side stays outside.
+    let mut before = [OUTSIDE; WIDTH + 2];
+    for i in 0..SEGMENT_ROWS {
+        let mut here = [OUTSIDE; WIDTH + 2];
+        let row = &a[i * PADDED..][..PADDED];
+        let mut least = OUTSIDE;
+        for k in 0..WIDTH {
+            let Some(j) = (i + k).checked_sub(BAND).filter(|j| *j < SEGMENT_ROWS) else {
+                continue;
+            };
+            let cost = squared(row, &b[j * PADDED..][..PADDED]);
+            let total = match (i, j) {
+                (0, 0) => 2.0 * cost,
+                _ => {
+                    let both = before[k + 1] + 2.0 * cost;
+                    both.min(before[k + 2] + cost).min(here[k] + cost)
+                }
+            };
+            here[k + 1] = total;
+            least = least.min(total);
+        }
+        if least >= limit {
+            return OUTSIDE;
+        }
+        before = here;
+    }
+    before[BAND + 1]
+}
+
+#[inline(always)]
+fn squared(a: &[f32], b: &[f32]) -> f32 {
+    let mut sums = [0.0f32; LANES];
+    for (a, b) in a.chunks_exact(LANES).zip(b.chunks_exact(LANES)) {
+        for lane in 0..LANES {
+            let apart = a[lane] - b[lane];
+            sums[lane] += apart * apart;
+        }
+    }
+    let [a, b, c, d, e, f, g, h] = sums;
+    ((a + e) + (c + g)) + ((b + f) + (d + h))
+}

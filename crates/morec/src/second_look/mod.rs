@@ -1,0 +1,23 @@
+//! The whole motion around a match, compared once with every taught sample.
+//!
+//! A subsequence match explains only a part of a motion: a push is found inside a serve. The second look takes each match as a
+//! candidate, finds the whole motion around it ([`segment`]), compares that segment from end to end with the taught segments of
+//! all classes ([`Comparison`]), names it after the nearest one, and accepts it by one score with one bound ([`LookDecoder`]). The
+//! rows that are compared follow from feature rows alone ([`body`]): stored clips, databases and live streams give the same.
+
+mod body;
+mod comparison;
+mod decoder;
+mod model;
+mod segment;
+
+pub use body::{BodyTrack, POINTS};
+pub use comparison::{Comparison, Judged};
+pub use decoder::LookDecoder;
+pub use model::SecondLook;
+pub use segment::{Extent, SEGMENT_ROWS, sample_span, segment_of};
+#[cfg(feature = "train")]
+pub(crate) use segment::grown_of;
+
+/// Values of a row of the second look over a whole body: [`body`] names the columns.
+pub const LOOK_COLUMNS: usize = 73;

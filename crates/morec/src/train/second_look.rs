@@ -1,0 +1,318 @@
+//! What the second look learns: taught segments, their metric, and the bound of its score.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use crate::classes::ClassId;
+use crate::features::{BoneSet, Profile, Rows};
+use crate::math::portable;
+use crate::rng::Rng;
+use crate::second_look::{BodyTrack, Comparison, SecondLook, grown_of, sample_span, segment_of};
+use crate::templates::{
+    ALARM_RATES, OperatingPoint, PackedSymmetric, PerformerKind, TemplateEngine, TemplateModel,
+    TemplateModelError,
+};
+
+use super::params::TrainParams;
+use super::scatter::{covariance, ridged, within_class};
+use super::set::{StreamKind, TrainSample, TrainSet, evenly, overlap};
+
+/// Matches farther than this are no candidates, in normalised distances.
+const REACH: f32 = 5.0;
+/// From this many classes on the classes are each other's scale, and no atlas is needed.
+const CLASSES_OF_SCALE: usize = 6;
+/// The bound is this, and half of the score that background motion exceeds at the rate of false alarms that is asked for.
+const BOUND: f32 = 0.35;
+const BACKGROUND_SHARE: f32 = 0.5;
+/// Bounds lie between these.
+const LEAST_BOUND: f32 = 0.45;
+const MOST_BOUND: f32 = 0.90;
+/// The bound of fewer classes: what is reported wrongly there is mostly motion like the classes, which background does not show.
+const BOUND_OF_FEW: f32 = 0.60;
+/// Taught motions are parts of a flow if the median share of a label in common with its short growth is below this.
+const FLOW_SHARE: f32 = 0.6;
+/// Stretches of the atlas, their durations in seconds, and the pace that they have at least.
+const ATLAS: usize = 200;
+const ATLAS_SECS: [f64; 7] = [0.5, 0.7, 1.0, 1.4, 2.0, 2.8, 4.0];
+const ATLAS_PACE: f32 = 0.15;
+/// Samples that are judged among the others at most.
+const MOST_JUDGED: usize = 200;
+
+/// A taught sample judged among the others.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OwnSample {
+    /// Its class.
+    pub class: ClassId,
+    /// The class that it would be named.
+    pub named: ClassId,
+    /// The score that it would have.
+    pub score: f32,
+}
+
+/// Learns from the segments of `samples`, over the bones of a body. [`set_bound`] sets the bound. Beside it, samples judged among the
+/// others. `None` of other performers, and where there is nothing to scale the score by.
+pub fn learn(
+    set: &TrainSet,
+    samples: &[TrainSample],
+    bones: BoneSet,
+    params: &TrainParams,
+) -> Option<(SecondLook, Vec<OwnSample>)> {
+    if Profile::of(bones) != Profile::Body || samples.is_empty() {
+        return None;
+    }
+    let tracks = Tracks {
+        set,
+        bones,
+        params,
+        columns: BodyTrack::columns(bones),
+    };
+    let (flows, segments) = tracks.of_samples(samples);
+    let dim = tracks.columns.len();
+    let first: Vec<TrainSample> = segments
+        .iter()
+        .map(|(sample, rows)| TrainSample {
+            rows: rows[0].clone(),
+            ..(*sample).clone()
+        })
+        .collect();
+    let within = within_class(&first, set.classes.len(), dim, params.max_pairs);
+    let total = covariance(first.iter().map(|s| &s.rows), dim);
+    let all = || {
+        let places = segments.iter().enumerate();
+        places.flat_map(|(place, (sample, rows))| rows.iter().map(move |r| (place, sample.class, r)))
+    };
+    let mut distinct: Vec<ClassId> = samples.iter().map(|s| s.class).collect();
+    distinct.sort_unstable();
+    distinct.dedup();
+    let values = all().flat_map(|(_, _, rows)| rows.values().iter().copied());
+    let mut look = SecondLook {
+        classes: all().map(|(_, class, _)| class).collect(),
+        segments: Rows::from_values(dim, values.collect()),
+        atlas: match distinct.len() < CLASSES_OF_SCALE {
+            true => tracks.atlas(),
+            false => Rows::new(dim),
+        },
+        ridged: ridged(&within, &total, params.rho),
+        total: PackedSymmetric::pack(&total),
+        scale: 0.0,
+        bound: BOUND_OF_FEW,
+        operating: Vec::new(),
+        reach: REACH,
+        flows,
+        own_score: 0.0,
+        performer: PerformerKind::Auto,
+        step: None,
+    };
+    if params.compact {
+        look = look.compacted();
+    }
+    look.scale = look.measured_scale();
+    if look.scale <= 0.0 && look.atlas.is_empty() {
+        return None;
+    }
+    let places: Vec<usize> = all().map(|(place, _, _)| place).collect();
+    let own = among_others(&look, &places);
+    let mut scores: Vec<f32> = own.iter().map(|s| s.score).collect();
+    scores.sort_by(f32::total_cmp);
+    look.own_score = scores.get(scores.len() / 2).copied().unwrap_or(0.0);
+    Some((look, own))
+}
+
+/// The first segment of each sample judged among those of the others; `places` are the segments' samples. O(samples² · rows · band · d).
+fn among_others(look: &SecondLook, places: &[usize]) -> Vec<OwnSample> {
+    let firsts: Vec<usize> = (0..places.len())
+        .filter(|k| *k == 0 || places[*k] != places[*k - 1])
+        .collect();
+    let chosen: Vec<usize> = evenly(&firsts, MOST_JUDGED).copied().collect();
+    let comparison = Comparison::new(look);
+    let judge = |comparison: &mut Comparison, segment: &usize| {
+        let others = |k: usize| places[k] != places[*segment];
+        let judged = comparison.judge_among(look.segment(*segment), others)?;
+        Some(OwnSample {
+            class: look.classes[*segment],
+            named: judged.class,
+            score: judged.score,
+        })
+    };
+    let judged = chosen.par_iter().map_init(|| comparison.clone(), judge);
+    judged.flatten_iter().collect()
+}
+
+/// Rows of the second look over the streams of a set.
+struct Tracks<'a> {
+    set: &'a TrainSet,
+    bones: BoneSet,
+    params: &'a TrainParams,
+    columns: Vec<usize>,
+}
+
+impl Tracks<'_> {
+    fn of_stream(&self, stream: usize) -> BodyTrack {
+        let rows = &self.set.streams[stream].rows;
+        let mut track = BodyTrack::new(self.bones, &self.params.features, rows.len());
+        rows.iter().for_each(|row| track.push(row));
+        track
+    }
+
+    /// Whether the samples are parts of a flow, and the segments of each: the motion within its label, and where motions are apart
+    /// its growths too, as a stream's are judged.
+    fn of_samples<'s>(&self, samples: &'s [TrainSample]) -> (bool, Vec<(&'s TrainSample, Vec<Rows>)>) {
+        let mut by_stream = BTreeMap::<usize, Vec<(usize, &TrainSample)>>::new();
+        for (place, sample) in samples.iter().enumerate() {
+            by_stream.entry(sample.stream).or_default().push((place, sample));
+        }
+        let of_stream = |(stream, samples): (&usize, &Vec<(usize, &'s TrainSample)>)| {
+            let track = self.of_stream(*stream);
+            let spans = |sample: &TrainSample| {
+                let grown = grown_of(&track, &sample.ticks);
+                let share = in_common(&grown[0], &sample.ticks);
+                let pace: Vec<f32> = sample.ticks.clone().map(|t| track.pace(t as i64)).collect();
+                let span = sample_span(&pace);
+                let start = sample.ticks.start;
+                let [short, long] = grown;
+                let mut spans = vec![start + span.start..start + span.end, short, long];
+                spans.dedup();
+                let rows = spans.into_iter().map(|ticks| segment_of(&track, ticks, &self.columns));
+                (share, rows.collect())
+            };
+            let of_sample = |(place, sample): &(usize, &'s TrainSample)| (*place, *sample, spans(sample));
+            samples.iter().map(of_sample).collect::<Vec<_>>()
+        };
+        let mut cut: Vec<(usize, &TrainSample, (f32, Vec<Rows>))> =
+            by_stream.par_iter().flat_map_iter(of_stream).collect();
+        cut.sort_by_key(|(place, ..)| *place);
+        let mut shares: Vec<f32> = cut.iter().map(|(.., (share, _))| *share).collect();
+        shares.sort_by(f32::total_cmp);
+        let flows = shares[shares.len() / 2] < FLOW_SHARE;
+        let kept = |(_, sample, (_, mut rows)): (usize, &'s TrainSample, (f32, Vec<Rows>))| {
+            if flows {
+                rows.truncate(1);
+            }
+            (sample, rows)
+        };
+        (flows, cut.into_iter().map(kept).collect())
+    }
+
+    /// Segments of everyday motion, drawn evenly from all that move.
+    fn atlas(&self) -> Rows {
+        let everyday = self.set.streams.iter().enumerate();
+        let everyday = everyday.filter(|(_, s)| s.source == StreamKind::Everyday);
+        let everyday: Vec<usize> = everyday.map(|(place, _)| place).collect();
+        let hz = self.params.features.tick_hz();
+        let tracks: Vec<BodyTrack> = everyday.par_iter().map(|s| self.of_stream(*s)).collect();
+        let mut stretches = Vec::new();
+        for (place, track) in tracks.iter().enumerate() {
+            for secs in ATLAS_SECS {
+                let ticks = (secs * hz).round() as i64;
+                let starts = (0..).map(|k| k * ticks / 4);
+                for start in starts.take_while(|start| start + ticks <= track.ticks()) {
+                    let pace = (start..start + ticks).map(|t| track.pace(t)).sum::<f32>();
+                    if pace > ATLAS_PACE * ticks as f32 {
+                        stretches.push((place, start as usize..(start + ticks) as usize));
+                    }
+                }
+            }
+        }
+        Rng::new(1).shuffle(&mut stretches);
+        stretches.truncate(ATLAS);
+        let rows = stretches
+            .into_iter()
+            .map(|(place, ticks)| segment_of(&tracks[place], ticks, &self.columns));
+        Rows::from_values(self.columns.len(), rows.flat_map(Rows::into_values).collect())
+    }
+}
+
+/// Intersection over union.
+fn in_common(a: &Range<usize>, b: &Range<usize>) -> f32 {
+    let shared = overlap(a, b);
+    shared as f32 / (a.len() + b.len() - shared).max(1) as f32
+}
+
+/// Sets the bound of the model's second look by the scores that background motion reaches.
+///
+/// # Errors
+/// As [`TemplateModel::check`].
+pub fn set_bound(
+    model: &mut TemplateModel,
+    set: &TrainSet,
+    params: &TrainParams,
+) -> Result<(), TemplateModelError> {
+    let Some(look) = &model.look else {
+        return Ok(());
+    };
+    let is_few = !look.atlas.is_empty();
+    let background = Scores::of_background(model, set, params)?;
+    let usual = background.exceeded(params.alarms_per_minute);
+    let bound = |rate: f64| {
+        let exceeded = background.exceeded(rate);
+        let bound = match is_few {
+            true => BOUND_OF_FEW + BACKGROUND_SHARE * (exceeded - usual),
+            false => BOUND + BACKGROUND_SHARE * exceeded,
+        };
+        bound.clamp(LEAST_BOUND, MOST_BOUND)
+    };
+    let operating = ALARM_RATES.map(|alarms_per_minute| OperatingPoint {
+        alarms_per_minute,
+        threshold: bound(alarms_per_minute),
+    });
+    if let Some(look) = &mut model.look {
+        look.bound = bound(params.alarms_per_minute);
+        look.operating = operating.to_vec();
+    }
+    Ok(())
+}
+
+/// Scores of what a model reports in background motion, whatever its bound, largest first.
+struct Scores {
+    scores: Vec<f32>,
+    minutes: f64,
+}
+
+impl Scores {
+    fn of_background(
+        model: &TemplateModel,
+        set: &TrainSet,
+        params: &TrainParams,
+    ) -> Result<Self, TemplateModelError> {
+        let background = set.streams.iter().filter(|s| s.source != StreamKind::Labelled);
+        let background: Vec<&Rows> = background.map(|s| &s.rows).collect();
+        // Margins over a bound of 0, for anyone, are scores.
+        let look = model.look.as_ref().map(|look| SecondLook {
+            bound: 0.0,
+            performer: PerformerKind::Anyone,
+            ..look.clone()
+        });
+        let open = TemplateModel {
+            calibration: None,
+            look,
+            held: None,
+            activities: None,
+            ..model.clone()
+        };
+        let engine = TemplateEngine::new(&open)?;
+        let scores = |rows: &&Rows| {
+            let mut engine = engine.clone();
+            let mut margins: Vec<f64> = Vec::new();
+            for row in rows.iter() {
+                margins.extend(engine.push(row).map(|found| found.score));
+            }
+            margins.extend(engine.finish().map(|found| found.score));
+            margins.into_iter().map(|margin| -(portable::ln(1.0 - margin) as f32))
+        };
+        let mut scores: Vec<f32> = background.par_iter().flat_map_iter(scores).collect();
+        scores.sort_by(|a, b| b.total_cmp(a));
+        let ticks: usize = background.iter().map(|rows| rows.len()).sum();
+        Ok(Self {
+            scores,
+            minutes: ticks as f64 / params.features.tick_hz() / 60.0,
+        })
+    }
+
+    /// The score that is exceeded `rate` times a minute; 0 if none is.
+    fn exceeded(&self, rate: f64) -> f32 {
+        let allowed = (rate * self.minutes) as usize;
+        self.scores.get(allowed).copied().unwrap_or(0.0)
+    }
+}
