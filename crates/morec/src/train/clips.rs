@@ -4,14 +4,13 @@ use std::sync::{Mutex, PoisonError};
 
 use crate::features::{BoneSet, FeatureParams};
 use crate::progress::Progress;
-use crate::roles::RoleMap;
-use crate::synth;
 use crate::templates::TemplateModel;
 
 use super::error::TrainError;
 use super::from_clips::{LabelSet, TrainClip, background_streams, build_train_set};
 use super::mirror::add_mirrored;
-use super::options::{ENOUGH_BACKGROUND_SECS, EVERYDAY_SEED, Everyday, TrainOptions};
+use super::everyday::everyday_clips;
+use super::options::{ENOUGH_BACKGROUND_SECS, Everyday, TrainOptions};
 use super::report::TrainingReport;
 use super::set::{StreamKind, TrainStream};
 use super::templates::train;
@@ -73,23 +72,9 @@ fn everyday_streams(
         return streams.clone();
     }
     progress.report("everyday motion", 0, 0);
-    let streams = background_streams(&everyday_clips(EVERYDAY_SEED), bones, params);
+    let streams = background_streams(&everyday_clips(), bones, params);
     *kept() = Some((bones, params.clone(), streams.clone()));
     streams
-}
-
-/// The clips of [`synth::everyday`] to train from.
-fn everyday_clips(seed: u64) -> Vec<TrainClip> {
-    let made = synth::everyday(seed).into_iter();
-    made.map(|clip| TrainClip {
-        name: clip.name.clone(),
-        roles: RoleMap::find(&clip.skeleton),
-        rest: 0..0,
-        source: StreamKind::Everyday,
-        person: None,
-        clip,
-    })
-    .collect()
 }
 
 #[cfg(test)]
@@ -102,7 +87,7 @@ mod tests {
     use crate::labels::Sample;
     use crate::live::{Model, recognize_clip};
     use crate::math::Vec3;
-    use crate::roles::{LEGS, Role};
+    use crate::roles::{LEGS, Role, RoleMap};
     use crate::synth::{Person, Script};
 
     /// Somebody who waves; without hips and legs if `half`.

@@ -7,6 +7,7 @@ mod clips;
 mod comparison;
 mod data;
 mod error;
+mod everyday;
 mod examples;
 mod faster;
 mod from_clips;

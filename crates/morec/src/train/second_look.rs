@@ -15,6 +15,7 @@ use crate::templates::{
     TemplateModelError,
 };
 
+use super::everyday::is_real;
 use super::params::TrainParams;
 use super::scatter::{covariance, ridged, within_class};
 use super::set::{StreamKind, TrainSample, TrainSet, evenly, overlap};
@@ -195,10 +196,10 @@ impl Tracks<'_> {
         (flows, cut.into_iter().map(kept).collect())
     }
 
-    /// Segments of everyday motion, drawn evenly from all that move.
+    /// Segments of everyday motion, drawn evenly from all that move; of what people really did.
     fn atlas(&self) -> Rows {
         let everyday = self.set.streams.iter().enumerate();
-        let everyday = everyday.filter(|(_, s)| s.source == StreamKind::Everyday);
+        let everyday = everyday.filter(|(_, s)| s.source == StreamKind::Everyday && is_real(&s.name));
         let everyday: Vec<usize> = everyday.map(|(place, _)| place).collect();
         let hz = self.params.features.tick_hz();
         let tracks: Vec<BodyTrack> = everyday.par_iter().map(|s| self.of_stream(*s)).collect();
