@@ -1,6 +1,6 @@
 //! Everyday motion: what a recogniser has to keep silent at.
 //!
-//! Broad and random on purpose: walking, reaching and gesticulating of all sizes and speeds. None of it is one
+//! Broad and random on purpose: walking, reaching, gesticulating, greeting and scratching of all sizes and speeds. None of it is one
 //! of the demo's gesture classes, and what people choose as signals is left out: both arms raised alike, one arm
 //! held out by a standing body. A class that lay within the library would be refused together with it.
 
@@ -10,6 +10,7 @@ use super::actor::Actor;
 use super::actor::Perform;
 use super::film::film;
 use super::gait::{self, Gait};
+use super::idle_gestures;
 use super::person::Person;
 use super::timeline::{FOOT, HAND, HEAD, HIPS_TURN, LimbSide, SPINE, SWIVEL, WRIST};
 use super::unknown::{self, any_side};
@@ -26,7 +27,7 @@ const ARMS_SECS: f64 = 36.0;
 const RATE_HZ: f64 = 60.0;
 
 /// Motions of the library, each by every person.
-pub const CONTENTS: [(&str, Perform); 16] = [
+pub const CONTENTS: [(&str, Perform); 20] = [
     ("stand", stand),
     ("walk", walk),
     ("run", run),
@@ -43,9 +44,13 @@ pub const CONTENTS: [(&str, Perform); 16] = [
     ("flail", flail),
     ("swing_arms", swing_arms),
     ("applaud", applaud),
+    ("greet", idle_gestures::greet),
+    ("indicate", idle_gestures::point_out),
+    ("scratch", idle_gestures::scratch),
+    ("stretch", idle_gestures::stretch_out),
 ];
 
-/// The library: clips of everyday motion by several people at 60 Hz, about 17 minutes in all. Each is named
+/// The library: clips of everyday motion by several people at 60 Hz, about 24 minutes in all. Each is named
 /// `everyday_<content>_<person>`. The same seed gives the same clips on every platform.
 pub fn everyday(seed: u64) -> Vec<Clip> {
     let people: Vec<Person> = (0..PEOPLE)
@@ -58,7 +63,7 @@ pub fn everyday(seed: u64) -> Vec<Clip> {
         let mut actor = Actor::new(person, Rng::for_part(seed, at as u64));
         actor.wait(0.4);
         let secs = match content {
-            "talk" | "flail" => ARMS_SECS,
+            "talk" | "flail" | "greet" | "indicate" => ARMS_SECS,
             _ => CLIP_SECS,
         };
         while actor.now_secs < secs {

@@ -16,6 +16,7 @@ mod everyday;
 mod film;
 mod gait;
 mod gestures;
+mod idle_gestures;
 mod limb;
 mod living_room;
 mod motion;
