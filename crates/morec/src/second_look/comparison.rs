@@ -41,6 +41,7 @@ struct Segments {
     /// [`SEGMENT`] values each.
     values: Vec<f32>,
     spreads: Vec<f32>,
+    noises: Vec<f32>,
 }
 
 /// A model laid out for comparing. Nothing is allocated after construction.
@@ -55,6 +56,8 @@ pub struct Comparison {
     has_scale: bool,
     mapped: Vec<f32>,
     segment: Vec<f32>,
+    /// Of the segment.
+    noise: f32,
 }
 
 impl Comparison {
@@ -71,6 +74,7 @@ impl Comparison {
             has_scale: model.scale > 0.0,
             mapped: vec![0.0; SEGMENT_ROWS * metric.dim()],
             segment: vec![0.0; SEGMENT],
+            noise: 0.0,
             metric,
         }
     }
@@ -137,17 +141,47 @@ impl Comparison {
         for (row, out) in self.mapped.chunks_exact(dim).zip(self.segment.chunks_exact_mut(PADDED)) {
             out[..dim].copy_from_slice(row);
         }
+        self.noise = noise_of(&self.segment);
         spread_of(&self.segment)
     }
 
-    /// `D / max(0.05, (V_T + V_S) / 2 V₀)^0.85`, or anything from `most` on if it is not below.
+    /// `D / max(0.05, (V_T + V_S) / 2 V₀)^0.85`, or anything from `most` on if it is not below. What the segment has of noise beyond the
+    /// sample's is taken off `V_S`, and off `D`, of which at most half.
     fn distance(&self, of: &Segments, place: usize, spread: f32, most: f32) -> f32 {
-        let spreads = (of.spreads[place] + spread) / (2.0 * self.typical_spread);
+        let noise = (self.noise - of.noises[place]).max(0.0);
+        let moved = (spread - noise).max(0.0);
+        let spreads = (of.spreads[place] + moved) / (2.0 * self.typical_spread);
         let norm = portable::powf(f64::from(spreads.max(LEAST_SPREAD)), f64::from(EXPONENT)) as f32;
         let taught = &of.values[place * SEGMENT..][..SEGMENT];
-        let limit = (most * norm).min(f32::MAX) * (2 * SEGMENT_ROWS) as f32;
-        warped(taught, &self.segment, limit) / (2 * SEGMENT_ROWS) as f32 / norm
+        // Without its noise a distance is at least half of what it was.
+        let limit = (most * norm / (1.0 - NOISE_SHARE)).min(f32::MAX) * PATH_WEIGHT;
+        let plain = warped(taught, &self.segment, limit) / PATH_WEIGHT;
+        (plain - noise.min(NOISE_SHARE * plain)) / norm
     }
+}
+
+/// Sum of the weights along an alignment.
+const PATH_WEIGHT: f32 = (2 * SEGMENT_ROWS) as f32;
+/// At most this share of a distance is taken for noise.
+const NOISE_SHARE: f32 = 0.5;
+/// What noise of variance 1 leaves in the squared fourth difference of rows: the squares of 1 −4 6 −4 1.
+const NOISE_GAIN: f32 = 70.0;
+
+/// The squared distance that noise adds to a row: the median of the squared fourth differences, in which motion of a few hertz
+/// vanishes (Rice, *Bandwidth choice for nonparametric regression*, 1984).
+fn noise_of(segment: &[f32]) -> f32 {
+    let rows = || segment.chunks_exact(PADDED);
+    let mut squares = [0.0f32; SEGMENT_ROWS - 4];
+    let rows = [0, 1, 2, 3, 4].map(|skipped| rows().skip(skipped));
+    let [a, b, c, d, e] = rows;
+    let windows = a.zip(b).zip(c.zip(d)).zip(e);
+    for (square, (((a, b), (c, d)), e)) in squares.iter_mut().zip(windows) {
+        for k in 0..PADDED {
+            let difference = a[k] - 4.0 * b[k] + 6.0 * c[k] - 4.0 * d[k] + e[k];
+            *square += difference * difference / NOISE_GAIN;
+        }
+    }
+    median_of(&mut squares)
 }
 
 impl Segments {
@@ -159,7 +193,8 @@ impl Segments {
             out[..dim].copy_from_slice(row);
         }
         let spreads = values.chunks_exact(SEGMENT).map(spread_of).collect();
-        Self { values, spreads }
+        let noises = values.chunks_exact(SEGMENT).map(noise_of).collect();
+        Self { values, spreads, noises }
     }
 }
 
