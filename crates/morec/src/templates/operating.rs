@@ -69,10 +69,11 @@ impl Calibration {
         rest_weight: 23.6,
     };
 
-    /// Of the second look's margins, `1 − exp(−(score − bound))`.
+    /// Of the second look's margins, `1 − exp(−(score − bound))`. The best of four pairs on detections of referee signals, sessions and
+    /// actions before a Kinect: no row of them is off by more than 0.15.
     pub const OF_LOOKS: Self = Self {
-        slope: 1.0,
-        offset: 1.0,
+        slope: 0.8,
+        offset: 2.5,
         separation_weight: 0.0,
         rest_weight: 0.0,
     };
