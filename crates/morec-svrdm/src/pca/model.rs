@@ -1,6 +1,7 @@
 //! The fitted analysis: fewer dimensions and back.
 
 use morec_features::Rows;
+use multiversion::multiversion;
 
 use super::{ComponentCount, Eigen, Moments, QualityRow};
 
@@ -12,6 +13,8 @@ pub struct Pca {
     mean: Vec<f64>,
     /// `r × D`, row-major, an axis a row.
     axes: Vec<f64>,
+    /// The axes side by side, [`LANES`] at a time: for each group of axes, `D` values of each.
+    side_by_side: Vec<[f64; LANES]>,
     /// All `D` eigenvalues of `M`, descending.
     eigenvalues: Vec<f64>,
     dims: usize,
@@ -56,9 +59,10 @@ impl Pca {
         let dims = keep.dims(&eigen.values);
         let axes =
             (0..dims).flat_map(|i| eigen.vectors.column(i).iter().copied().collect::<Vec<_>>());
-        let axes = axes.collect();
+        let axes: Vec<f64> = axes.collect();
         Ok(Self {
             mean: moments.mean().to_vec(),
+            side_by_side: side_by_side(&axes, moments.mean().len()),
             axes,
             eigenvalues: eigen.values,
             dims,
@@ -135,9 +139,11 @@ impl Pca {
             row.len() == dim && out.len() == self.dims,
             "a row of another width"
         );
-        for (value, axis) in out.iter_mut().zip(self.axes.chunks_exact(dim)) {
-            let centred = row.iter().zip(&self.mean).map(|(x, m)| f64::from(*x) - m);
-            *value = axis.iter().zip(centred).map(|(a, x)| a * x).sum::<f64>() as f32;
+        let groups = self.side_by_side.chunks_exact(dim);
+        for (values, axes) in out.chunks_mut(LANES).zip(groups) {
+            for (value, sum) in values.iter_mut().zip(products(row, &self.mean, axes)) {
+                *value = sum as f32;
+            }
         }
     }
 
@@ -248,6 +254,7 @@ impl Pca {
             ));
         }
         Ok(Self {
+            side_by_side: side_by_side(&axes, dim),
             mean,
             axes,
             eigenvalues,
@@ -255,4 +262,30 @@ impl Pca {
             rows,
         })
     }
+}
+
+/// Axes that are multiplied together.
+const LANES: usize = 8;
+
+/// The axes of `dim` values in groups, in each group the first values of all axes, then the second, and so on.
+fn side_by_side(axes: &[f64], dim: usize) -> Vec<[f64; LANES]> {
+    let group = |axes: &[f64]| {
+        let value = |lane: usize, at: usize| axes.get(lane * dim + at).copied().unwrap_or(0.0);
+        let lanes = |at: usize| std::array::from_fn(|lane| value(lane, at));
+        (0..dim).map(lanes).collect::<Vec<_>>()
+    };
+    axes.chunks(LANES * dim.max(1)).flat_map(group).collect()
+}
+
+/// Products of a centred row with several axes. Each sum is taken in the order of the values, as one axis alone would.
+#[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
+fn products(row: &[f32], mean: &[f64], axes: &[[f64; LANES]]) -> [f64; LANES] {
+    let mut sums = [-0.0; LANES];
+    for ((x, mean), axes) in row.iter().zip(mean).zip(axes) {
+        let centred = f64::from(*x) - mean;
+        for (sum, axis) in sums.iter_mut().zip(axes) {
+            *sum += axis * centred;
+        }
+    }
+    sums
 }

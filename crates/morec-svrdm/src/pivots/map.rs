@@ -21,7 +21,7 @@ pub enum NoPivots {
     },
     /// The clip is one of points.
     #[error(
-        "the method of 2009 looks at how joints are turned, and this clip has positions alone: \
+        "the method of 2009 looks at how joints are turned, and what is shown has positions alone: \
          use the templates, which look at positions"
     )]
     Rotations,

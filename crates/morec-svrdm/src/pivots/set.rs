@@ -78,6 +78,30 @@ impl PivotSet {
         Self { pivots, parents }
     }
 
+    /// The set of the root and the pivots that `keep` chooses; the parent of each is the nearest of its ancestors
+    /// that is chosen.
+    pub fn keeping(&self, keep: impl Fn(&Pivot) -> bool) -> Self {
+        let kept: Vec<bool> = (0..self.len())
+            .map(|i| i == 0 || keep(&self.pivots[i]))
+            .collect();
+        let pivots = (0..self.len()).filter(|&i| kept[i]).map(|i| {
+            let mut parent = self.parents[i];
+            while !kept[parent] {
+                parent = self.parents[parent];
+            }
+            Pivot {
+                parent: (i > 0).then(|| self.pivots[parent].name.clone()),
+                ..self.pivots[i].clone()
+            }
+        });
+        Self::known_good(pivots.collect())
+    }
+
+    /// Index of the pivot of a name.
+    pub fn place(&self, name: &str) -> Option<usize> {
+        self.pivots.iter().position(|p| p.name == name)
+    }
+
     /// The pivots, parents first.
     pub fn pivots(&self) -> &[Pivot] {
         &self.pivots

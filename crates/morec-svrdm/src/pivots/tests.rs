@@ -80,6 +80,28 @@ fn sets_of_the_library_are_sets() {
 }
 
 #[test]
+fn pivots_that_are_left_out_are_skipped_on_the_way_to_the_root() {
+    let some = PivotSet::thesis()
+        .keeping(|p| ["LeftArm", "LeftForeArm", "Spine"].contains(&p.name.as_str()));
+    let parents: Vec<_> = some
+        .pivots()
+        .iter()
+        .map(|p| (p.name.as_str(), p.parent.as_deref()))
+        .collect();
+    assert_eq!(
+        parents,
+        [
+            ("Hips", None),
+            ("Spine", Some("Hips")),
+            ("LeftArm", Some("Spine")),
+            ("LeftForeArm", Some("LeftArm"))
+        ]
+    );
+    assert_eq!(PivotSet::new(some.pivots().to_vec()), Ok(some));
+    assert_eq!(PivotSet::roles().keeping(|_| true), PivotSet::roles());
+}
+
+#[test]
 fn lists_that_are_no_set_are_refused() {
     let (hips, arm) = (pivot("Hips", None, None), pivot("Arm", Some("Hips"), None));
     let refused = |pivots: Vec<Pivot>| PivotSet::new(pivots).unwrap_err();

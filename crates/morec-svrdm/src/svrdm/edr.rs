@@ -79,6 +79,13 @@ impl Edr {
         }
     }
 
+    /// Bytes of its memory.
+    pub fn bytes(&self) -> usize {
+        let diagonals: usize = self.diagonals.iter().map(Vec::len).sum();
+        let paths: usize = self.paths.iter().map(Vec::len).sum();
+        4 * (diagonals + self.reversed.len()) + (8 + size_of::<Path>()) * paths
+    }
+
     /// The normalised distance of `r` and `s`, 0 … 1; `None` if it is not below `bound`. O(m · n), less the lower the
     /// bound is.
     pub fn normalised(

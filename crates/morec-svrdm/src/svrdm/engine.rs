@@ -3,9 +3,10 @@
 use std::sync::Arc;
 
 use super::leading::AT_ONCE;
+use super::stage;
 use super::{
     Cell, ChunkAssembly, ClassCandidates, FeatureExtraction, FrameDetection, Gram, ModelError,
-    SegmentAssembly, SegmentScoring, SegmentTracking, SvrdmModel, SvrdmParams, Window,
+    SegmentAssembly, SegmentScoring, SegmentTracking, Stage, SvrdmModel, SvrdmParams, Window,
 };
 
 /// The live stages of the thesis one after the other (§4.6): input assembly, segment assembly, feature vector
@@ -84,7 +85,7 @@ impl SvrdmEngine {
     ///
     /// Every [`chunk_frames`](super::SvrdmParams::chunk_frames)th row completes a chunk and does all the work.
     pub fn push(&mut self, row: &[f32], out: &mut impl FnMut(FrameDetection)) {
-        self.push_with_observer(row, &mut |_, _| (), out);
+        self.push_with(row, &mut Unobserved, out);
     }
 
     /// The same, and calls `watch` with every segment that was looked at: the map of Fig. 4.3, cell by cell. See
@@ -95,8 +96,29 @@ impl SvrdmEngine {
         watch: &mut impl FnMut(Window, Cell),
         out: &mut impl FnMut(FrameDetection),
     ) {
+        self.push_with(row, &mut CellObserver(watch), out);
+    }
+
+    /// The same, and calls `ended` after each part of a stage's work: for measuring.
+    pub fn push_by_stages(
+        &mut self,
+        row: &[f32],
+        ended: &mut impl FnMut(Stage),
+        out: &mut impl FnMut(FrameDetection),
+    ) {
+        self.push_with(row, &mut StageObserver(ended), out);
+    }
+
+    fn push_with(
+        &mut self,
+        row: &[f32],
+        observer: &mut impl EngineObserver,
+        out: &mut impl FnMut(FrameDetection),
+    ) {
         self.model.pca.project_into(row, &mut self.reduced);
-        if !self.chunks.push(&self.reduced) {
+        let complete = self.chunks.push(&self.reduced);
+        observer.ended(Stage::InputAssembly);
+        if !complete {
             return;
         }
         self.column.fill(Cell::NOTHING);
@@ -109,18 +131,40 @@ impl SvrdmEngine {
                 sums.copy_from(segment);
                 count += 1;
             });
+        observer.ended(Stage::SegmentAssembly);
         for together in self.ending[..count].chunks(AT_ONCE) {
             let extraction = &mut self.recogniser.extraction;
             extraction.prepare(together.iter().map(|(_, segment)| segment));
+            observer.ended(Stage::FeatureExtraction);
             for (at, (window, segment)) in together.iter().enumerate() {
-                let cell = self.recogniser.recognise(at, segment, &self.chunks);
+                let recogniser = &mut self.recogniser;
+                let cell = recogniser.recognise(at, segment, &self.chunks, observer);
                 self.column[window.chunks() - shortest] = cell;
-                watch(*window, cell);
+                observer.cell(*window, cell);
             }
         }
         let frames = self.model.params.chunk_frames as i64;
         self.tracking
             .push(&self.column, &mut |found| out(found.in_frames(frames)));
+        observer.ended(Stage::Tracking);
+    }
+
+    /// Bytes that a stage reads and writes: its tables, its part of the model, its output.
+    pub fn stage_bytes(&self, stage: Stage) -> usize {
+        let dim = self.model.pca.dims();
+        let gram = self.chunks.chunk().bytes();
+        let recogniser = &self.recogniser;
+        match stage {
+            Stage::InputAssembly => {
+                let rows = 4 * self.model.params.max_frames() * dim;
+                8 * (1 + dim) * self.model.pca.dim() + rows + gram
+            }
+            Stage::SegmentAssembly => (self.segments.chunks_kept() + 1 + self.ending.len()) * gram,
+            Stage::FeatureExtraction => recogniser.extraction.bytes(),
+            Stage::Classification => stage::tree_bytes(&self.model),
+            Stage::Scoring => recogniser.scoring.bytes(),
+            Stage::Tracking => self.tracking.bytes(),
+        }
     }
 
     /// Ends the stretch: calls `out` with what is left. Rows that make no whole chunk are left out.
@@ -134,8 +178,16 @@ impl SvrdmEngine {
 
 impl SegmentRecogniser {
     /// The class that the `at`th segment prepared, whose rows are the last of `chunks`, most certainly is.
-    fn recognise(&mut self, at: usize, segment: &Gram, chunks: &ChunkAssembly) -> Cell {
-        let Some(feature) = self.extraction.prepared(at, segment) else {
+    fn recognise(
+        &mut self,
+        at: usize,
+        segment: &Gram,
+        chunks: &ChunkAssembly,
+        observer: &mut impl EngineObserver,
+    ) -> Cell {
+        let feature = self.extraction.prepared(at, segment);
+        observer.ended(Stage::FeatureExtraction);
+        let Some(feature) = feature else {
             return Cell::NOTHING;
         };
         let SvrdmParams {
@@ -144,13 +196,42 @@ impl SegmentRecogniser {
         self.model
             .tree
             .descend(feature, accept, descent, &mut self.candidates);
+        observer.ended(Stage::Classification);
         if self.candidates.is_empty() {
             return Cell::NOTHING;
         }
         let profile = self
             .extraction
             .profile(segment, chunks.last_rows(segment.frames()));
-        self.scoring
-            .best(&self.candidates, profile, segment.frames())
+        observer.ended(Stage::FeatureExtraction);
+        let cell = (self.scoring).best(&self.candidates, profile, segment.frames());
+        observer.ended(Stage::Scoring);
+        cell
+    }
+}
+
+/// What looks on while rows are taken.
+trait EngineObserver {
+    fn ended(&mut self, _: Stage) {}
+    fn cell(&mut self, _: Window, _: Cell) {}
+}
+
+struct Unobserved;
+
+impl EngineObserver for Unobserved {}
+
+struct CellObserver<'a, F>(&'a mut F);
+
+impl<F: FnMut(Window, Cell)> EngineObserver for CellObserver<'_, F> {
+    fn cell(&mut self, window: Window, cell: Cell) {
+        (self.0)(window, cell);
+    }
+}
+
+struct StageObserver<'a, F>(&'a mut F);
+
+impl<F: FnMut(Stage)> EngineObserver for StageObserver<'_, F> {
+    fn ended(&mut self, stage: Stage) {
+        (self.0)(stage);
     }
 }

@@ -45,6 +45,12 @@ impl FeatureExtraction {
         }
     }
 
+    /// Bytes of its memory.
+    pub fn bytes(&self) -> usize {
+        let values = self.signs.len() + self.feature.len() + self.directions.len();
+        8 * values + 4 * self.profile.len() + self.leading.bytes()
+    }
+
     /// The feature vector, `k · r` values; `None` for a segment without direction ([`Directions::find`]).
     /// O(r³), no allocation.
     pub fn feature(&mut self, segment: &Gram) -> Option<&[f64]> {

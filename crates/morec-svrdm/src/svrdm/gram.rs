@@ -47,6 +47,11 @@ impl Gram {
         self.frames
     }
 
+    /// Bytes of its sums.
+    pub fn bytes(&self) -> usize {
+        8 * (self.products.len() + self.sums.len())
+    }
+
     /// Back to no rows.
     pub fn clear(&mut self) {
         self.products.fill(0.0);

@@ -69,6 +69,23 @@ impl LeadingEigenvectors {
         }
     }
 
+    /// Bytes of its memory.
+    pub fn bytes(&self) -> usize {
+        let [a, b] = &self.rows;
+        let tables = [
+            &self.matrix,
+            &self.diagonal,
+            &self.below,
+            &self.below_squared,
+            &self.reflected,
+            &self.values,
+            &self.vectors,
+            a,
+            b,
+        ];
+        size_of::<Lane>() * tables.into_iter().map(Vec::len).sum::<usize>()
+    }
+
     /// Sets matrix `lane` by its entries `(i, j)` with `j ≤ i`.
     pub fn set(&mut self, lane: usize, entry: impl Fn(usize, usize) -> f64) {
         for i in 0..self.dim {

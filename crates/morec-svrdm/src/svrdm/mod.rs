@@ -29,6 +29,7 @@ mod params;
 pub mod rows_edr;
 mod scoring;
 mod segments;
+mod stage;
 mod tracking;
 pub mod tree;
 mod vectors;
@@ -40,13 +41,15 @@ pub use gram::Gram;
 pub use map::ConfidenceMap;
 pub use model::{ModelError, Profiles, SvrdmModel};
 pub use params::{
-    Centring, MAX_DIM, MAX_PROFILE_FRAMES, Normalisation, Scaling, SegmentDistance, SvrdmParams,
+    Centring, MAX_DIM, MAX_PROFILE_FRAMES, Maxima, Normalisation, Scaling, SegmentDistance,
+    SvrdmParams,
 };
 pub use scoring::{Cell, SegmentScoring, confidence};
 pub use segments::{ChunkAssembly, RowRing, SegmentAssembly, Window};
+pub use stage::Stage;
 pub use tracking::{ChunkDetection, FrameDetection, SegmentTracking};
 pub use tree::{
-    Branch, ClassCandidate, ClassCandidates, Descent, MAX_CANDIDATES, Node, Tree, TreeError,
-    TreeParts,
+    Branch, ClassCandidate, ClassCandidates, Descent, MAX_CANDIDATES, Node, PathStep, Tree,
+    TreeError, TreeParts,
 };
 pub use vectors::Directions;

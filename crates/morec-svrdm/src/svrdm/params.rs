@@ -48,6 +48,25 @@ pub enum Normalisation {
     LeastRatio,
 }
 
+/// Segments that are local maxima of the map of confidences (thesis, §4.6.5: "higher than the confidence of its 8
+/// neighbors").
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Maxima {
+    /// Those that no neighbour is above: of segments that are equally certain, which are neighbours wherever a motion
+    /// is matched in full by every segment of a length, tracking keeps the first.
+    #[default]
+    Plateaus,
+    /// Those that are above all neighbours: a plateau has none. Indexes written before there was a choice have it.
+    Peaks,
+}
+
+impl Maxima {
+    fn before_there_was_a_choice() -> Self {
+        Maxima::Peaks
+    }
+}
+
 /// Distance between a segment and a class's samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -120,6 +139,10 @@ pub struct SvrdmParams {
     pub normalisation: Normalisation,
     /// Standard deviation of the length prior, as a share of the class's mean length. 0.25 (thesis, Eq. 4.5).
     pub prior_spread: f64,
+    /// Segments that are local maxima of the confidences. `Plateaus` (thesis, §4.6.5, which does not say what equals
+    /// are).
+    #[serde(default = "Maxima::before_there_was_a_choice")]
+    pub maxima: Maxima,
     /// Of two segments that share more than this of the shorter one, only the better is reported. 0.3 (thesis,
     /// §4.6.5).
     pub overlap: f64,
@@ -146,6 +169,7 @@ impl Default for SvrdmParams {
             tolerance: 0.25,
             normalisation: Normalisation::CheapestPath,
             prior_spread: 0.25,
+            maxima: Maxima::Plateaus,
             overlap: 0.3,
             min_confidence: 0.0,
             wait_chunks: 40,

@@ -4,7 +4,7 @@ use mocap::math::portable;
 use morec_features::ClassId;
 
 use super::edr::{Edr, least_ratio};
-use super::rows_edr::RowsEdr;
+use super::rows_edr::{KnownRows, RowsEdr};
 use super::{
     ClassCandidates, MAX_PROFILE_FRAMES, ModelError, Normalisation, SegmentDistance, SvrdmModel,
 };
@@ -57,7 +57,8 @@ struct OfClass {
 #[derive(Debug, Clone)]
 enum Measure {
     Values(Edr, Normalisation),
-    Rows(RowsEdr),
+    /// With the rows of each class's profiles.
+    Rows(RowsEdr, Vec<Vec<KnownRows>>),
 }
 
 /// Segment scoring: a class and a segment's profile in, a confidence out.
@@ -95,26 +96,44 @@ impl SegmentScoring {
             classes[class.index()].profiles.push(at..at + values);
             at += values;
         }
+        let known = |of: &OfClass| {
+            let rows = |at: &std::ops::Range<usize>| {
+                KnownRows::new(&model.profiles.values[at.clone()], model.profiles.width)
+            };
+            of.profiles.iter().map(rows).collect()
+        };
+        let of_rows = || {
+            let (width, epsilon) = (model.profiles.width, model.epsilon);
+            let edr = RowsEdr::new(width, epsilon, MAX_PROFILE_FRAMES);
+            Measure::Rows(edr, classes.iter().map(known).collect())
+        };
         Ok(Self {
-            values: model.profiles.values.clone(),
-            classes,
-            width: model.profiles.width,
-            comparison: model.params.comparison,
             edr: match model.params.comparison {
                 SegmentDistance::Profiles => Measure::Values(
                     Edr::new(model.epsilon, MAX_PROFILE_FRAMES),
                     model.params.normalisation,
                 ),
-                SegmentDistance::Rows { .. } => Measure::Rows(RowsEdr::new(
-                    model.profiles.width,
-                    model.epsilon,
-                    MAX_PROFILE_FRAMES,
-                )),
+                SegmentDistance::Rows { .. } => of_rows(),
             },
+            values: model.profiles.values.clone(),
+            classes,
+            width: model.profiles.width,
+            comparison: model.params.comparison,
             spread: model.params.prior_spread,
             min_confidence: model.params.min_confidence,
             rate_hz: model.rate_hz(),
         })
+    }
+
+    /// Bytes of its memory: the profiles and the table.
+    pub fn bytes(&self) -> usize {
+        let table = match &self.edr {
+            Measure::Values(edr, _) => edr.bytes(),
+            Measure::Rows(edr, known) => {
+                edr.bytes() + known.iter().flatten().map(KnownRows::bytes).sum::<usize>()
+            }
+        };
+        4 * self.values.len() + table
     }
 
     /// Confidence that a segment of `frames` frames with this profile is `class`; 0 if less than the least
@@ -123,7 +142,7 @@ impl SegmentScoring {
         if self.most(class, frames) < self.min_confidence {
             return 0.0;
         }
-        let edr = self.distance(class, profile);
+        let edr = self.nearest(class, profile, self.bound(class, frames));
         let found = self.confidence(class, edr, frames);
         if found < self.min_confidence {
             0.0
@@ -175,10 +194,30 @@ impl SegmentScoring {
         self.likeness(edr) * length_prior(secs, mean_secs, self.spread)
     }
 
+    /// The distance from which on a segment of `frames` frames is less certain than what counts.
+    fn bound(&self, class: ClassId, frames: usize) -> f64 {
+        match self.comparison {
+            SegmentDistance::Rows { .. } if self.min_confidence > 0.0 => {
+                // With the confidence of an exact match; a hair more, for the rounding of either side.
+                1.0 - self.min_confidence / self.confidence(class, 0.0, frames) + 1e-9
+            }
+            _ => f64::INFINITY,
+        }
+    }
+
     /// Least normalised edit distance to any profile of `class`, 0 … 1.
     pub fn distance(&mut self, class: ClassId, profile: &[f32]) -> f64 {
+        self.nearest(class, profile, f64::INFINITY)
+    }
+
+    /// The same if it is below `bound`; 1 otherwise.
+    fn nearest(&mut self, class: ClassId, profile: &[f32], bound: f64) -> f64 {
         let of = &mut self.classes[class.index()];
-        let (mut least, mut nearest) = (f64::INFINITY, of.nearest);
+        let (mut least, mut nearest) = (bound, of.nearest);
+        let mut is_near = false;
+        if let Measure::Rows(edr, _) = &mut self.edr {
+            edr.set(profile);
+        }
         for turn in 0..of.profiles.len() {
             // The nearest of last time, then the others in order.
             let index = match turn {
@@ -186,19 +225,19 @@ impl SegmentScoring {
                 _ if turn <= of.nearest => turn - 1,
                 _ => turn,
             };
-            let known = &self.values[of.profiles[index].clone()];
             let edr = match &mut self.edr {
                 Measure::Values(edr, normalisation) => {
+                    let known = &self.values[of.profiles[index].clone()];
                     edr.normalised(profile, known, *normalisation, least)
                 }
-                Measure::Rows(edr) => edr.normalised(profile, known, least),
+                Measure::Rows(edr, known) => edr.normalised(&known[class.index()][index], least),
             };
             if let Some(edr) = edr {
-                (least, nearest) = (edr, index);
+                (least, nearest, is_near) = (edr, index, true);
             }
         }
         of.nearest = nearest;
-        least.min(1.0)
+        if is_near { least.min(1.0) } else { 1.0 }
     }
 }
 

@@ -138,6 +138,11 @@ impl SegmentAssembly {
         }
     }
 
+    /// Chunks that are kept.
+    pub fn chunks_kept(&self) -> usize {
+        self.ring.len()
+    }
+
     /// Forgets the stream so far.
     pub fn reset(&mut self) {
         self.chunks = 0;

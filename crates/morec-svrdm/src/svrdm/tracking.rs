@@ -2,7 +2,7 @@
 
 use morec_features::ClassId;
 
-use super::{Cell, SegmentScoring, SvrdmModel, SvrdmParams};
+use super::{Cell, Maxima, SegmentScoring, SvrdmModel, SvrdmParams};
 
 #[cfg(test)]
 mod tests;
@@ -105,6 +105,7 @@ pub struct SegmentTracking {
     min_chunks: usize,
     max_chunks: usize,
     overlap: f64,
+    maxima: Maxima,
     wait: i64,
     /// For each length, the most certain that any segment can be.
     most: Vec<f64>,
@@ -139,13 +140,18 @@ impl SegmentTracking {
     pub fn new(params: &SvrdmParams, most: Vec<f64>) -> Self {
         let lengths = params.lengths();
         assert_eq!(most.len(), lengths, "a bound for each length");
-        // Maxima are no neighbours of each other: every other length of a column at most. None is kept longer than
-        // it takes for the wait of something that overlaps it to end.
-        let room = (params.wait_chunks + params.max_chunks + 2) * lengths.div_ceil(2);
+        // Peaks are no neighbours of each other: every other length of a column at most. None is kept longer than it
+        // takes for the wait of something that overlaps it to end.
+        let of_column = match params.maxima {
+            Maxima::Peaks => lengths.div_ceil(2),
+            Maxima::Plateaus => lengths,
+        };
+        let room = (params.wait_chunks + params.max_chunks + 2) * of_column;
         Self {
             min_chunks: params.min_chunks,
             max_chunks: params.max_chunks,
             overlap: params.overlap,
+            maxima: params.maxima,
             wait: params.wait_chunks as i64,
             most,
             columns: std::array::from_fn(|_| vec![Cell::NOTHING; lengths]),
@@ -165,6 +171,14 @@ impl SegmentTracking {
             bounds.fold(0.0, f64::max)
         });
         Self::new(params, most.collect())
+    }
+
+    /// Bytes of its memory.
+    pub fn bytes(&self) -> usize {
+        let cells: usize = self.columns.iter().map(Vec::len).sum();
+        size_of::<Cell>() * cells
+            + size_of::<TrackedMaximum>() * self.tracked.capacity()
+            + 8 * self.most.len()
     }
 
     /// Forgets the stream so far.
@@ -235,8 +249,8 @@ impl SegmentTracking {
         }
     }
 
-    /// True if the segment of this length in the last column but one is more certain than its eight neighbours, start
-    /// and end moved by one chunk; one that is not there counts as lower.
+    /// True if the segment of this length in the last column but one is more certain than its eight neighbours (or as
+    /// certain, where plateaus count), start and end moved by one chunk; one that is not there counts as lower.
     fn is_maximum(&self, length: usize) -> bool {
         let cell = self.columns[1][length].confidence;
         let at = |column: usize, offset: isize| {
@@ -255,7 +269,10 @@ impl SegmentTracking {
             .chain(before)
             .chain(after)
             .fold(0.0, f64::max);
-        cell > highest
+        match self.maxima {
+            Maxima::Peaks => cell > highest,
+            Maxima::Plateaus => cell > 0.0 && cell >= highest,
+        }
     }
 
     /// Reports and drops what can be; nothing waits longer than `wait` chunks.

@@ -11,7 +11,7 @@ mod parts;
 mod tests;
 
 pub use check::{MAX_CLASSES, TreeError};
-pub use descent::{ClassCandidate, ClassCandidates, Descent, MAX_CANDIDATES};
+pub use descent::{ClassCandidate, ClassCandidates, Descent, MAX_CANDIDATES, PathStep};
 pub use parts::{Branch, Node, TreeParts};
 
 /// A trained classifier: branches that part the classes in two until each stands alone.
@@ -114,15 +114,42 @@ pub fn reduce<'a>(
     vector: &[f64],
 ) -> [f64; 2] {
     let kernel = Gaussian::new(sigma);
-    let [first, second] = exemplars.map(|side| {
-        let (sum, count) = side.fold((0.0, 0), |(sum, count), x| {
-            (sum + kernel.of(x, vector), count + 1)
-        });
-        sum / f64::from(count)
+    let [first, second] = exemplars.map(|mut side| {
+        let (mut sum, mut total) = (0.0, 0);
+        loop {
+            let (mut rows, mut count) = ([vector; AT_ONCE], 0);
+            for (row, exemplar) in rows.iter_mut().zip(&mut side) {
+                *row = exemplar;
+                count += 1;
+            }
+            let squared = squared_distances(&rows, vector);
+            let kernels = squared[..count].iter().map(|d| kernel.of_squared(*d));
+            sum = kernels.fold(sum, |sum, k| sum + k);
+            total += count;
+            if count < AT_ONCE {
+                return sum / total as f64;
+            }
+        }
     });
     let [l11, l21, l22] = factor;
     let along = first / l11;
     [along, (second - l21 * along) / l22]
+}
+
+/// Exemplars that are compared at once.
+const AT_ONCE: usize = 8;
+
+/// `‖row − vector‖²` of several rows of as many values: each sum in the order of the values, side by side.
+fn squared_distances(rows: &[&[f64]; AT_ONCE], vector: &[f64]) -> [f64; AT_ONCE] {
+    let rows = rows.map(|row| &row[..vector.len()]);
+    let mut sums = [0.0; AT_ONCE];
+    for (k, value) in vector.iter().enumerate() {
+        for (sum, row) in sums.iter_mut().zip(&rows) {
+            let apart = row[k] - value;
+            *sum += apart * apart;
+        }
+    }
+    sums
 }
 
 impl TryFrom<TreeParts> for Tree {

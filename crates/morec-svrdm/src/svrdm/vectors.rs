@@ -18,6 +18,11 @@ pub struct Directions {
 }
 
 impl Directions {
+    /// Number of values.
+    pub(super) fn len(&self) -> usize {
+        self.vectors.len() + self.shares.len()
+    }
+
     /// Room for `count` directions of `dim` values.
     ///
     /// # Panics

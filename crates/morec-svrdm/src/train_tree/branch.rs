@@ -4,7 +4,7 @@ use super::cross;
 use super::gram::Distances;
 use super::machines::{Machines, MacroClasses, Plane};
 use super::params::TreeParams;
-use super::sigma::{Algorithm4, SigmaRule, algorithm4, of_sides, quantile};
+use super::sigma::{SigmaRule, algorithm4, of_sides, quantile};
 
 /// A trained branch that does not know its place in the tree yet.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,7 +20,7 @@ pub struct TrainedBranch {
 /// Trains a branch: plane, then machines, with widths by the rule (Alg. 8).
 pub fn train(sides: &MacroClasses, params: &TreeParams) -> TrainedBranch {
     if let SigmaRule::CrossValidated(how) = &params.sigma {
-        let (full, reduced, outcome) = cross::choose(sides, how, &params.machine);
+        let (full, reduced, outcome) = cross::choose(sides, how, params);
         return with_widths(sides, full, |_| reduced, params, Some(outcome));
     }
     let full = of_sides(sides.vectors, |side| one_width(side, params, Space::Full));
@@ -40,7 +40,7 @@ fn with_widths(
     let [a, b] = sides
         .vectors
         .map(|side| plane.reduce_all(sides.vectors, side));
-    let machines = Machines::new([&a, &b], reduced([&a, &b]), &params.machine);
+    let machines = Machines::new([&a, &b], reduced([&a, &b]), params);
     TrainedBranch {
         plane,
         machines,
@@ -61,13 +61,11 @@ pub enum Space {
 /// cross-validated later. `None` where the samples say nothing.
 pub fn one_width<V: AsRef<[f64]>>(samples: &[V], params: &TreeParams, space: Space) -> Option<f64> {
     let pick = |full, reduced| if space == Space::Full { full } else { reduced };
-    let estimate = |how: &Algorithm4| Some(algorithm4(samples, how, &params.machine)?.sigma);
+    let estimate = || Some(algorithm4(samples, params)?.sigma);
     let at = |q| quantile(&Distances::new(samples).sorted(), q);
     match params.sigma {
-        SigmaRule::Algorithm4 => estimate(&params.algorithm4),
-        SigmaRule::Scaled { full, reduced } => {
-            Some(estimate(&params.algorithm4)? * pick(full, reduced))
-        }
+        SigmaRule::Algorithm4 => estimate(),
+        SigmaRule::Scaled { full, reduced } => Some(estimate()? * pick(full, reduced)),
         SigmaRule::Quantile { full, reduced } => at(pick(full, reduced)),
         SigmaRule::Fixed { full, reduced } => Some(pick(full, reduced)),
         SigmaRule::CrossValidated(_) => at(0.5),

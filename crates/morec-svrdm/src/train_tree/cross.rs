@@ -4,11 +4,11 @@ use std::collections::BTreeSet;
 
 use serde::{Deserialize, Serialize};
 
+use super::TreeParams;
 use super::cross_params::CrossParams;
 use super::gram::Distances;
 use super::machines::{Machines, MacroClasses, Plane};
 use super::sigma::{of_sides, quantile};
-use super::svrm::MachineParams;
 
 /// Acceptance under the chosen widths.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -35,7 +35,7 @@ impl WidthOutcome {
 pub fn choose(
     sides: &MacroClasses,
     params: &CrossParams,
-    machine: &MachineParams,
+    tree: &TreeParams,
 ) -> (f64, f64, WidthOutcome) {
     let folds = folds(sides, params.folds);
     let unit = of_sides(sides.vectors, |side| {
@@ -51,7 +51,7 @@ pub fn choose(
         let [a, b] = &whole.planar;
         let unit = of_sides([a, b], |side| quantile(&Distances::new(side).sorted(), 0.5));
         for reduced in params.reduced.of(unit) {
-            let outcome = judge(&whole, &parts, reduced, params.accept, machine);
+            let outcome = judge(&whole, &parts, reduced, params.accept, tree);
             let better = best
                 .as_ref()
                 .is_none_or(|b| outcome.worth(params) >= b.2.worth(params));
@@ -88,7 +88,7 @@ impl LeaveOutSplit {
         }
     }
 
-    fn machines(&self, sigma: f64, params: &MachineParams) -> Machines {
+    fn machines(&self, sigma: f64, params: &TreeParams) -> Machines {
         Machines::new([&self.planar[0], &self.planar[1]], sigma, params)
     }
 }
@@ -98,7 +98,7 @@ fn judge(
     parts: &[LeaveOutSplit],
     sigma: f64,
     accept: f64,
-    params: &MachineParams,
+    params: &TreeParams,
 ) -> WidthOutcome {
     let all = whole.machines(sigma, params);
     let background = share(

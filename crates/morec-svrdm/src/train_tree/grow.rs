@@ -89,6 +89,9 @@ pub enum GrowError {
         /// Its number.
         index: usize,
     },
+    /// Algorithm 4 has no widths to try.
+    #[error("algorithm4.sweep: {0}")]
+    Sweep(String),
     /// The result is no tree: too many classes, or widths of 0 asked for.
     #[error(transparent)]
     Tree(#[from] TreeError),
@@ -108,6 +111,7 @@ pub fn grow(
     params: &TreeParams,
 ) -> Result<Grown, GrowError> {
     let dim = checked(samples, background)?;
+    params.algorithm4.sweep.check().map_err(GrowError::Sweep)?;
     let mut grower = Grower {
         samples,
         params,
@@ -229,7 +233,7 @@ impl<'a> Grower<'a> {
         };
         let by_class: Vec<Vec<&[f64]>> = classes.iter().map(vectors).collect();
         let sigma = one_width(&by_class.concat(), self.params, Space::Full).unwrap_or(1.0);
-        let products = function_products(&by_class, sigma, &self.params.machine);
+        let products = function_products(&by_class, sigma, self.params);
         let split = partition(&products, &self.params.partition);
         let side = |k: usize| {
             (0..classes.len())

@@ -2,10 +2,11 @@
 
 use crate::svrdm::tree::{outputs_at, reduce};
 
+use super::TreeParams;
 use super::gram::Distances;
 use super::reduce::centroid_factor;
 use super::sphere::smallest_enclosing_sphere;
-use super::svrm::{MachineParams, svrdm};
+use super::svrm::svrdm;
 
 /// The samples of two macro-classes, and motion that is neither.
 #[derive(Debug, Clone, Copy)]
@@ -75,7 +76,7 @@ pub struct Machines {
 
 impl Machines {
     /// Trains both on samples in the plane.
-    pub fn new(sides: [&[[f64; 2]]; 2], sigma: f64, params: &MachineParams) -> Self {
+    pub fn new(sides: [&[[f64; 2]]; 2], sigma: f64, params: &TreeParams) -> Self {
         let points = sides.concat();
         let side_of: Vec<usize> = (0..points.len())
             .map(|i| usize::from(i >= sides[0].len()))

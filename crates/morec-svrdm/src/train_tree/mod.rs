@@ -29,7 +29,7 @@ pub use grow::{BranchReport, FeatureSample, GrowError, Grown, grow};
 pub use machines::{Machines, MacroClasses, Plane};
 pub use params::TreeParams;
 pub use partition::{PartitionParams, Split};
-pub use qp::Stop;
+pub use qp::{Solver, Stop};
 pub use reduce::centroid_factor;
 pub use sigma::{Algorithm4, Estimate, SigmaRule, Sweep, algorithm4};
 pub use signs::{SignRule, SignVector, sign_vector};

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::partition::PartitionParams;
+use super::qp::Solver;
 use super::sigma::{Algorithm4, SigmaRule};
 use super::svrm::MachineParams;
 
@@ -11,6 +12,9 @@ use super::svrm::MachineParams;
 pub struct TreeParams {
     /// `T`, `t` and `C` of the machines: 1, 0.4 and 10 (thesis, §4.5).
     pub machine: MachineParams,
+    /// Solver of the machines' programs.
+    #[serde(default)]
+    pub solver: Solver,
     /// Rule for widths: Algorithm 4 (§4.5).
     pub sigma: SigmaRule,
     /// The parameters of Algorithm 4.

@@ -6,8 +6,9 @@ use serde::{Deserialize, Serialize};
 use crate::svrdm::kernel::Gaussian;
 use mocap::rng::Rng;
 
+use super::TreeParams;
 use super::gram::Distances;
-use super::svrm::{MachineParams, svrm};
+use super::svrm::svrm;
 
 /// Parameters of the partition of classes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -47,12 +48,12 @@ pub struct Split {
 pub(crate) fn function_products<V: AsRef<[f64]>>(
     classes: &[Vec<V>],
     sigma: f64,
-    machine: &MachineParams,
+    params: &TreeParams,
 ) -> DMatrix<f64> {
     let kernel = Gaussian::new(sigma);
     let alphas: Vec<DVector<f64>> = classes
         .iter()
-        .map(|class| svrm(Distances::new(class).kernel(sigma), machine).alpha)
+        .map(|class| svrm(Distances::new(class).kernel(sigma), params).alpha)
         .collect();
     let product = |i: usize, j: usize| -> f64 {
         let pairs = classes[i]

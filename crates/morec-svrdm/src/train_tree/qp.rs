@@ -15,10 +15,22 @@ pub(crate) struct BoxQp {
     pub upper: f64,
 }
 
+/// Solver of the machines' programs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Solver {
+    /// An active set method: the optimum to rounding.
+    #[default]
+    ActiveSet,
+    /// Successive over-relaxation: Algorithm 3, as printed but for the corrections of Eq. 3.32.
+    Sor,
+}
+
 /// When to stop.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Stop {
-    /// When the residual is at most this.
+    /// When the residual is at most this; of [`Solver::Sor`], when no coordinate moves by more in a pass (the
+    /// threshold of Algorithm 3, which the thesis does not print).
     pub residual: f64,
     /// After this many passes over all coordinates (steps of the active set method, beside 20 a coordinate), however
     /// good.
@@ -92,18 +104,28 @@ impl BoxQp {
         gradient.axpy(step, &self.matrix.column(i), 1.0);
     }
 
-    /// Algorithm 3 as corrected: coordinates in turn, each to its best place (Eq. 3.32 with `yᵢyⱼKᵢⱼ`). A pass is
-    /// O(m²); the number of passes grows without bound as the kernel widens. The thesis stops when no coordinate
-    /// moves far any more, which says little about how near the solution is; this stops by the residual.
-    #[cfg(test)]
+    /// The solution by the solver asked for.
+    pub fn solved_by(&self, solver: Solver, stop: Stop) -> Solution {
+        match solver {
+            Solver::ActiveSet => self.solve(stop),
+            Solver::Sor => self.sor(stop),
+        }
+    }
+
+    /// Algorithm 3 as corrected: coordinates in turn, each to its best place (Eq. 3.32 with `yᵢyⱼKᵢⱼ`), until none
+    /// moves by more than the threshold. A pass is O(m²); the number of passes grows without bound as the kernel
+    /// widens, and small steps then say little about how near the solution is: the residual does.
     pub fn sor(&self, stop: Stop) -> Solution {
         let m = self.linear.len();
         let mut alpha = DVector::zeros(m);
         let mut gradient = -self.linear.clone();
         let mut passes = 0;
-        while passes < stop.passes && self.worst(&alpha, &gradient) > stop.residual {
+        let mut moved = f64::INFINITY;
+        while passes < stop.passes && moved > stop.residual {
+            moved = 0.0;
             for i in 0..m {
                 let step = self.step(i, &alpha, &gradient);
+                moved = moved.max(step.abs());
                 if step != 0.0 {
                     self.take(i, step, &mut alpha, &mut gradient);
                 }

@@ -4,9 +4,10 @@ use serde::{Deserialize, Serialize};
 
 use mocap::math::portable;
 
+use super::TreeParams;
 use super::cross_params::CrossParams;
 use super::gram::{Distances, SAME};
-use super::svrm::{MachineParams, on_boundary, svrm};
+use super::svrm::{on_boundary, svrm};
 
 /// Rule for the widths of a branch: `σ_f` between feature vectors and `σ_r` in the plane.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -65,7 +66,7 @@ impl Default for Algorithm4 {
     }
 }
 
-/// The widths that Algorithm 4 tries; the thesis does not say which.
+/// The widths that Algorithm 4 tries, ascending; the thesis does not say which.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Sweep {
@@ -87,19 +88,62 @@ pub enum Sweep {
         /// Their number.
         count: usize,
     },
+    /// In even steps between two widths, whatever the samples.
+    Absolute {
+        /// The smallest.
+        low: f64,
+        /// The largest.
+        high: f64,
+        /// From one to the next.
+        step: f64,
+    },
 }
 
 impl Default for Sweep {
+    /// Inferred from the ten widths that the thesis prints (Figs. 5.3 to 5.12, 0.0575 to 0.6725): all are multiples of
+    /// 0.0025, which means of two sides' multiples of 0.005 are, and the smallest, mean of two widths, admits no floor
+    /// above it. Upper end: nothing printed comes near it.
     fn default() -> Self {
-        Self::Geometric {
-            low: 0.1,
-            high: 3.0,
-            count: 60,
+        Self::Absolute {
+            low: 0.05,
+            high: 1.0,
+            step: 0.005,
         }
     }
 }
 
+/// Most widths in a sweep.
+const MAX_WIDTHS: usize = 10_000;
+
 impl Sweep {
+    /// Says what is wrong with these values, if anything is.
+    ///
+    /// # Errors
+    /// A sentence about the first value out of its range.
+    pub fn check(self) -> Result<(), String> {
+        let positive = |v: f64| v.is_finite() && v > 0.0;
+        let (low, high, fine) = match self {
+            Sweep::Geometric { low, high, count } | Sweep::Linear { low, high, count } => {
+                (low, high, (1..=MAX_WIDTHS).contains(&count))
+            }
+            Sweep::Absolute { low, high, step } => {
+                let fine = positive(step) && (high - low) / step < MAX_WIDTHS as f64;
+                (low, high, fine)
+            }
+        };
+        if !positive(low) || !positive(high) {
+            return Err(format!(
+                "a sweep of widths goes from {low} to {high}: both must be above 0"
+            ));
+        }
+        match fine {
+            true => Ok(()),
+            false => Err(format!(
+                "a sweep has 1 to {MAX_WIDTHS} widths, found {self:?}"
+            )),
+        }
+    }
+
     /// The widths for samples whose distances are these, ascending.
     fn widths(self, distances: &[f64]) -> Vec<f64> {
         let (Some(least), Some(most)) = (distances.first(), distances.last()) else {
@@ -115,6 +159,11 @@ impl Sweep {
             }
             Sweep::Linear { low, high, count } => (0..count)
                 .map(|i| most * (low + (high - low) * even(i, count)))
+                .collect(),
+            Sweep::Absolute { low, high, step } => (0..MAX_WIDTHS)
+                .map(|i| low + step * i as f64)
+                // The last step may miss the end by a rounding.
+                .take_while(|width| *width < high + 0.5 * step)
                 .collect(),
         }
     }
@@ -135,11 +184,7 @@ pub struct Estimate {
 
 /// Algorithm 4, the factor of `R` shrunk as in §5.3 until the boundary is not empty. `None` for fewer than two
 /// different samples, which have no width. O(m³) for each of some hundred machines.
-pub fn algorithm4<V: AsRef<[f64]>>(
-    samples: &[V],
-    params: &Algorithm4,
-    machine: &MachineParams,
-) -> Option<Estimate> {
+pub fn algorithm4<V: AsRef<[f64]>>(samples: &[V], params: &TreeParams) -> Option<Estimate> {
     let distances = Distances::new(samples);
     let sorted = distances.sorted();
     let nearest = distances.mean_nearest();
@@ -149,12 +194,12 @@ pub fn algorithm4<V: AsRef<[f64]>>(
     } else {
         *sorted.first()?
     };
-    let (radius_factor, boundary) = shrunk_boundary(samples, &distances, nearest, params, machine);
-    let widths = params.sweep.widths(&sorted);
+    let (radius_factor, boundary) = shrunk_boundary(samples, &distances, nearest, params);
+    let widths = params.algorithm4.sweep.widths(&sorted);
     let mut best = (*widths.first()?, 0);
     for sigma in widths {
-        let solution = svrm(distances.kernel(sigma), machine);
-        let found = on_boundary(&solution.alpha, machine);
+        let solution = svrm(distances.kernel(sigma), params);
+        let found = on_boundary(&solution.alpha, &params.machine);
         let score = found
             .iter()
             .zip(&boundary)
@@ -177,18 +222,17 @@ fn shrunk_boundary<V: AsRef<[f64]>>(
     samples: &[V],
     distances: &Distances,
     nearest: f64,
-    params: &Algorithm4,
-    machine: &MachineParams,
+    params: &TreeParams,
 ) -> (f64, Vec<bool>) {
-    let mut factor = params.radius_factor;
-    let step = params.radius_step.max(0.01);
+    let mut factor = params.algorithm4.radius_factor;
+    let step = params.algorithm4.radius_step.max(0.01);
     loop {
         let boundary: Vec<bool> = (0..samples.len())
             .map(|i| {
                 let ball: Vec<usize> = (0..samples.len())
                     .filter(|&j| distances.between(i, j) < factor * nearest)
                     .collect();
-                on_ball_boundary(samples, distances, &ball, i, params, machine)
+                on_ball_boundary(samples, distances, &ball, i, params)
             })
             .collect();
         if boundary.contains(&true) {
@@ -208,17 +252,16 @@ fn on_ball_boundary<V: AsRef<[f64]>>(
     distances: &Distances,
     ball: &[usize],
     i: usize,
-    params: &Algorithm4,
-    machine: &MachineParams,
+    params: &TreeParams,
 ) -> bool {
     let members: Vec<&[f64]> = ball.iter().map(|&j| samples[j].as_ref()).collect();
     let radius = mean_radius(&members);
     if radius < SAME {
-        return params.lone_is_boundary;
+        return params.algorithm4.lone_is_boundary;
     }
-    let solution = svrm(distances.among(ball).kernel(radius), machine);
+    let solution = svrm(distances.among(ball).kernel(radius), params);
     let at = ball.iter().position(|&j| j == i);
-    at.is_some_and(|at| on_boundary(&solution.alpha, machine)[at])
+    at.is_some_and(|at| on_boundary(&solution.alpha, &params.machine)[at])
 }
 
 /// Mean distance of vectors from their centroid; 0 if there are none.

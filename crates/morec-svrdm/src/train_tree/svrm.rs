@@ -2,6 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::TreeParams;
 use super::qp::{BoxQp, Solution, Stop};
 
 /// The parameters of a machine (thesis, §4.5).
@@ -32,14 +33,15 @@ impl Default for MachineParams {
 const AT_BOUND: f64 = 1e-6;
 
 /// The machine that represents one class, `f(x) = Σ αᵢ K(xᵢ, x)` (Eq. 3.36, as corrected), from its samples' kernel.
-pub(crate) fn svrm(kernel: DMatrix<f64>, params: &MachineParams) -> Solution {
-    let linear = DVector::from_element(kernel.nrows(), params.own);
+pub(crate) fn svrm(kernel: DMatrix<f64>, params: &TreeParams) -> Solution {
+    let machine = &params.machine;
+    let linear = DVector::from_element(kernel.nrows(), machine.own);
     BoxQp {
         matrix: kernel,
         linear,
-        upper: params.penalty,
+        upper: machine.penalty,
     }
-    .solve(params.stop)
+    .solved_by(params.solver, machine.stop)
 }
 
 /// The samples on a machine's bounding boundary: `0 < αᵢ < C`, where `f(xᵢ) = T` (§3.7.3).
@@ -62,10 +64,10 @@ pub(crate) struct MachinePair {
 /// The machine that says at least `T` of side 0 and at most `t` of side 1 (Eq. 3.27), and the one that has it the
 /// other way round (Eq. 3.28; the thesis says that only thresholds change places, which is so once labels do), from
 /// all samples' kernel and their sides.
-pub(crate) fn svrdm(kernel: &DMatrix<f64>, sides: &[usize], params: &MachineParams) -> MachinePair {
+pub(crate) fn svrdm(kernel: &DMatrix<f64>, sides: &[usize], params: &TreeParams) -> MachinePair {
     let solutions = [0, 1].map(|side| {
-        let qp = problem(kernel, sides, side, params);
-        let solution = qp.solve(params.stop);
+        let qp = problem(kernel, sides, side, &params.machine);
+        let solution = qp.solved_by(params.solver, params.machine.stop);
         let signed = solution
             .alpha
             .map_with_location(|i, _, a| if sides[i] == side { a } else { -a });

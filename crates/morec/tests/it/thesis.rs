@@ -5,7 +5,7 @@ use std::sync::Arc;
 use morec::classes::ClassInfo;
 use morec::pca::Pca;
 use morec::pivots::{Pivot, PivotSet, PoseParams};
-use morec::svrdm::{Profiles, Scaling, SvrdmModel, SvrdmParams, Tree};
+use morec::svrdm::{Maxima, Profiles, Scaling, SvrdmModel, SvrdmParams, Tree};
 
 #[derive(serde::Deserialize)]
 pub struct Reference {
@@ -82,6 +82,7 @@ impl Reference {
                 accept: self.accept,
                 scaling: figures.scaling,
                 wait_chunks: 256,
+                maxima: Maxima::Peaks,
                 ..SvrdmParams::default()
             },
             signs: figures.signs.clone(),

@@ -34,8 +34,10 @@ fn map() -> impl Strategy<Value = Vec<Vec<Cell>>> {
     })
 }
 
-/// Strict maxima among eight neighbours of the whole map, the best first.
-fn maxima(map: &[Vec<Cell>]) -> Vec<ChunkDetection> {
+const BOTH: [Maxima; 2] = [Maxima::Peaks, Maxima::Plateaus];
+
+/// Maxima among eight neighbours of the whole map, the best first.
+fn maxima(map: &[Vec<Cell>], rule: Maxima) -> Vec<ChunkDetection> {
     let at = |start: i64, stop: i64| {
         let length = stop - start - MIN as i64;
         let column = usize::try_from(stop - 1).ok().and_then(|c| map.get(c));
@@ -49,7 +51,11 @@ fn maxima(map: &[Vec<Cell>]) -> Vec<ChunkDetection> {
             let mut around = (-1..=1)
                 .flat_map(|a| (-1..=1).map(move |b| (a, b)))
                 .filter(|o| *o != (0, 0));
-            if around.all(|(a, b)| cell.confidence > at(start + a, stop + b).confidence) {
+            let counts = around.all(|(a, b)| {
+                let other = at(start + a, stop + b).confidence;
+                cell.confidence > other || (rule == Maxima::Plateaus && cell.confidence == other)
+            });
+            if counts && cell.confidence > 0.0 {
                 maxima.push(ChunkDetection {
                     class: cell.class,
                     start,
@@ -64,10 +70,10 @@ fn maxima(map: &[Vec<Cell>]) -> Vec<ChunkDetection> {
 }
 
 /// The best first, without what overlaps a better one.
-fn at_once(map: &[Vec<Cell>], overlap: f64) -> Vec<ChunkDetection> {
+fn at_once(map: &[Vec<Cell>], params: &SvrdmParams) -> Vec<ChunkDetection> {
     let mut kept: Vec<ChunkDetection> = vec![];
-    for found in maxima(map) {
-        if !kept.iter().any(|k| k.overlaps(&found, overlap)) {
+    for found in maxima(map, params.maxima) {
+        if !kept.iter().any(|k| k.overlaps(&found, params.overlap)) {
             kept.push(found);
         }
     }
@@ -103,9 +109,9 @@ fn bounds(map: &[Vec<Cell>]) -> Vec<f64> {
 
 proptest! {
     #[test]
-    fn a_stream_gives_what_the_whole_map_gives(map in map()) {
-        let params = params(256);
-        let expected = at_once(&map, params.overlap);
+    fn a_stream_gives_what_the_whole_map_gives(map in map(), maxima in prop::sample::select(&BOTH[..])) {
+        let params = SvrdmParams { maxima, ..params(256) };
+        let expected = at_once(&map, &params);
         for most in [vec![1.0; MAX - MIN + 1], bounds(&map)] {
             let mut found: Vec<_> = streamed(&map, &params, most).into_iter().map(|f| f.0).collect();
             found.sort_by_key(|d| (d.start, d.stop));
@@ -114,15 +120,17 @@ proptest! {
     }
 
     #[test]
-    fn a_short_wait_is_kept_and_nothing_overlaps(map in map(), wait in 1usize..8) {
-        let params = params(wait);
+    fn a_short_wait_is_kept_and_nothing_overlaps(
+        map in map(), wait in 1usize..8, rule in prop::sample::select(&BOTH[..]),
+    ) {
+        let params = SvrdmParams { maxima: rule, ..params(wait) };
         let found = streamed(&map, &params, vec![1.0; MAX - MIN + 1]);
         for (index, (detection, seen)) in found.iter().enumerate() {
             prop_assert!(seen.saturating_sub(detection.stop as usize) <= wait);
             let others = found[..index].iter();
             prop_assert!(others.into_iter().all(|(o, _)| !o.overlaps(detection, params.overlap)));
         }
-        for maximum in maxima(&map) {
+        for maximum in maxima(&map, rule) {
             let for_what = found.iter().find(|(d, _)| *d == maximum || d.overlaps(&maximum, params.overlap));
             prop_assert!(for_what.is_some(), "{maximum:?} went for nothing");
         }
@@ -166,5 +174,31 @@ fn rising_chains_end_with_the_wait() {
         "{found:?}"
     );
     let kept = |m: &ChunkDetection| found.iter().any(|(d, _)| d == m || d.overlaps(m, 0.3));
-    assert!(maxima(&map).iter().all(kept));
+    assert!(maxima(&map, Maxima::Plateaus).iter().all(kept));
+}
+
+#[test]
+fn of_segments_as_certain_as_each_other_the_first_counts() {
+    // A motion that five segments of a length match in full, one chunk apart.
+    let mut map = vec![vec![Cell::NOTHING; MAX - MIN + 1]; 20];
+    let cell = |confidence| Cell {
+        class: ClassId(1),
+        confidence,
+    };
+    for column in &mut map[8..13] {
+        (column[1], column[2], column[3]) = (cell(0.5), cell(0.9), cell(0.6));
+    }
+    let with = |maxima| SvrdmParams {
+        maxima,
+        ..params(256)
+    };
+    let found = |rule| streamed(&map, &with(rule), vec![1.0; MAX - MIN + 1]);
+    let spans = |rule| {
+        found(rule)
+            .into_iter()
+            .map(|(d, _)| (d.start, d.stop))
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(spans(Maxima::Plateaus), [(5, 9), (8, 12)]);
+    assert_eq!(spans(Maxima::Peaks), []);
 }

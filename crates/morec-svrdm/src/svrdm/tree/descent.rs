@@ -77,7 +77,46 @@ impl ClassCandidates {
     }
 }
 
+/// A node on a vector's way down a tree.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PathStep {
+    /// Its place among the nodes.
+    pub node: usize,
+    /// Outputs of its machines; of a leaf, 0.
+    pub outputs: [f64; 2],
+    /// The side that is taken; none of a leaf, and where neither machine accepts.
+    pub taken: Option<usize>,
+}
+
 impl Tree {
+    /// The way of the larger output down the tree (thesis, Fig. 5.2): to a leaf, or to the branch that rejects `vector`
+    /// (`n` values).
+    pub fn path(&self, vector: &[f64], accept: f64) -> Vec<PathStep> {
+        let (mut path, mut at) = (vec![], 0);
+        loop {
+            let Node::Branch(branch) = &self.nodes()[at] else {
+                path.push(PathStep {
+                    node: at,
+                    outputs: [0.0; 2],
+                    taken: None,
+                });
+                return path;
+            };
+            let outputs = self.outputs(branch, vector);
+            let larger = usize::from(outputs[1] > outputs[0]);
+            let taken = (outputs[larger] >= accept).then_some(larger);
+            path.push(PathStep {
+                node: at,
+                outputs,
+                taken,
+            });
+            let Some(side) = taken else {
+                return path;
+            };
+            at = branch.children[side] as usize;
+        }
+    }
+
     /// The classes that `vector` (`n` values) may be: those that every machine on the way gives at least `accept`
     /// (0.92 in the thesis, where machines are trained towards 1). `out` is emptied first. No allocation; O(size of
     /// the branches on the way).

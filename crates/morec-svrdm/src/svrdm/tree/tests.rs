@@ -152,3 +152,21 @@ proptest! {
         prop_assert!(both.windows(2).all(|w| w[0].output >= w[1].output));
     }
 }
+
+proptest! {
+    #[test]
+    fn exemplars_side_by_side_are_those_one_by_one_to_the_bit(
+        sides in prop::array::uniform2(prop::collection::vec(prop::array::uniform5(-1.0f64..1.0), 1..20)),
+        vector in prop::array::uniform5(-1.0f64..1.0),
+    ) {
+        let kernel = Gaussian::new(0.7);
+        let exemplars = [0, 1].map(|side| sides[side].iter().map(|x: &[f64; 5]| &x[..]));
+        let mean = |side: &Vec<[f64; 5]>| {
+            let sum = side.iter().fold(0.0, |sum, x| sum + kernel.of(x, &vector));
+            sum / side.len() as f64
+        };
+        let (along, second) = (mean(&sides[0]) / 0.9, mean(&sides[1]));
+        let expected = [along, (second - 0.2 * along) / 0.8];
+        prop_assert_eq!(reduce(exemplars, [0.9, 0.2, 0.8], 0.7, &vector), expected);
+    }
+}

@@ -53,7 +53,7 @@ proptest! {
     ) {
         let qp = random_problem(seed, m, log_width.exp());
         let solution = qp.solve(Stop::default());
-        let printed = qp.sor(Stop { residual: 1e-8, passes: 100_000 });
+        let printed = qp.sor(Stop { residual: 1e-10, passes: 100_000 });
         prop_assert!(printed.residual <= 1e-8);
         let best = qp.objective(&solution.alpha);
         prop_assert!((best - qp.objective(&printed.alpha)).abs() < 1e-9);
@@ -103,7 +103,7 @@ fn wide_kernels_are_solved_though_coordinates_alone_crawl() {
 
 #[test]
 fn one_sample_alone_is_represented_exactly() {
-    let solution = svrm(DMatrix::from_element(1, 1, 1.0), &MachineParams::default());
+    let solution = svrm(DMatrix::from_element(1, 1, 1.0), &TreeParams::default());
     assert!((solution.alpha[0] - 1.0).abs() < 1e-12);
     assert_eq!(
         on_boundary(&solution.alpha, &MachineParams::default()),
@@ -118,7 +118,7 @@ fn each_machine_of_a_pair_speaks_for_its_own_side() {
     samples.extend(cloud(&mut rng, 5, &[2.0, 0.0], 0.2));
     let sides: Vec<usize> = (0..13).map(|i| usize::from(i >= 8)).collect();
     let kernel = Distances::new(&samples).kernel(0.5);
-    let pair = svrdm(&kernel, &sides, &MachineParams::default());
+    let pair = svrdm(&kernel, &sides, &TreeParams::default());
     for side in 0..2 {
         let outputs = &kernel * &pair.weights[side];
         for (i, output) in outputs.iter().enumerate() {
@@ -140,7 +140,7 @@ fn samples_in_one_place_have_a_finite_machine() {
             let pair = svrdm(
                 &Distances::new(&samples).kernel(width),
                 &sides,
-                &MachineParams::default(),
+                &TreeParams::default(),
             );
             assert!(
                 pair.weights.iter().flatten().all(|w| w.is_finite()),
@@ -152,7 +152,7 @@ fn samples_in_one_place_have_a_finite_machine() {
         let pair = svrdm(
             &Distances::new(&samples).kernel(1e4),
             &sides,
-            &MachineParams::default(),
+            &TreeParams::default(),
         );
         assert!(
             pair.weights.iter().flatten().all(|w| w.is_finite()),

@@ -133,7 +133,7 @@ fn spheres_are_those_of_an_outside_solver() {
 fn widths_are_those_of_the_prototype() {
     let params = as_prototype();
     for (number, case) in reference().widths.iter().enumerate() {
-        let found = algorithm4(&case.vectors, &params.algorithm4, &params.machine).unwrap();
+        let found = algorithm4(&case.vectors, &params).unwrap();
         assert!(
             near(found.sigma, case.sigma, 1e-9),
             "width {number}: {} {}",

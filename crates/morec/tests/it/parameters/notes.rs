@@ -139,6 +139,10 @@ pub const NOTES: &[(&str, &str)] = &[
         "thesis, §4.6.5; of equally cheap paths the longest. `least_ratio` is Marzal and Vidal's, many times slower",
     ),
     ("stages.prior_spread", "thesis, §4.6.5"),
+    (
+        "stages.maxima",
+        "thesis, §4.6.5: \"higher than the confidence of its 8 neighbors\". Where segments of a motion match a profile in full, neighbours are equal to the bit: `peaks` then finds no maximum, and the more a tree accepts the more motions are lost",
+    ),
     ("stages.overlap", "thesis, §4.6.5"),
     (
         "stages.min_confidence",
@@ -150,7 +154,11 @@ pub const NOTES: &[(&str, &str)] = &[
     ),
     (
         "tree.sigma",
-        "thesis, §4.5. Algorithm 4 settles on narrow kernels: it asks that samples lie on the boundary, which they do when each is alone, and new samples then fall outside. `scaled`, `quantile`, `fixed` and `cross_validated` are the alternatives",
+        "thesis, §4.5. Algorithm 4 settles on narrow kernels: it asks that samples lie on the boundary, which they do when each is alone, and new samples then fall outside. `algorithm4`, `scaled`, `quantile`, `fixed` and `cross_validated` are the alternatives",
+    ),
+    (
+        "tree.solver",
+        "`sor` is Algorithm 3; both find the same optimum, `active_set` sooner and whatever the kernel's width",
     ),
     ("tree.machine.own", "thesis, §4.5: `T`"),
     ("tree.machine.other", "thesis, §4.5: `t`"),
@@ -167,7 +175,7 @@ pub const NOTES: &[(&str, &str)] = &[
     ),
     (
         "tree.algorithm4.sweep",
-        "60 widths in even ratios, from 0.1 of the smallest to 3 times the largest distance. The thesis names none; the prototype has 75 in even steps, 0.02 to 1.5 of the largest. A side of fewer than two different samples takes the other side's width: Algorithm 4 does not cover it",
+        "the thesis names no range but prints ten widths (Figs. 5.3 to 5.12: 0.0575 to 0.6725), each the mean of two sides': all are multiples of 0.0025, so steps are of 0.005, and the first width is at most 0.0575. That it is 0.05 and the last is 1 is inferred. `geometric` and `linear` go by the samples' distances. A side of fewer than two different samples takes the other side's width: Algorithm 4 does not cover it",
     ),
     (
         "tree.partition.exact_up_to",
