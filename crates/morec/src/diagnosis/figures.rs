@@ -106,6 +106,9 @@ pub struct Diagnosis {
     pub hands_m: Option<f64>,
     /// Of the time in which the feet do not move against each other, the share in which they stand.
     pub standing_share: Option<f64>,
+    /// True if some joint has turned; `None` where nobody has [looked](super::Diagnoser::see_turns).
+    #[serde(default)]
+    pub turns: Option<bool>,
 }
 
 impl fmt::Display for Diagnosis {

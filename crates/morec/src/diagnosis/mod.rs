@@ -25,7 +25,7 @@ pub use role_set::RoleSet;
 
 use crate::clip::{Clip, Span};
 use crate::features::{Hand, KeyPose, Profile, for_each_pose};
-use crate::math::{Axis, Vec3};
+use crate::math::{Axis, Quat, Vec3};
 use crate::roles::{Role, RoleMap, proportions};
 
 use hands::HandsWatch;
@@ -89,6 +89,7 @@ pub struct Diagnoser {
     hands: HandsWatch,
     noise: NoiseEstimate,
     stillness: Stillness,
+    turns: Option<bool>,
 }
 
 impl Diagnoser {
@@ -117,6 +118,15 @@ impl Diagnoser {
             hands: HandsWatch::default(),
             noise: NoiseEstimate::new(),
             stillness: Stillness::new(),
+            turns: None,
+        }
+    }
+
+    /// Looks at the rotations of a frame's joints, which a source of positions leaves out or leaves unturned. O(joints)
+    /// until one has turned.
+    pub fn see_turns(&mut self, rotations: &[Quat]) {
+        if self.turns != Some(true) {
+            self.turns = Some(rotations.iter().any(|q| *q != Quat::identity()));
         }
     }
 
@@ -247,6 +257,7 @@ impl Diagnoser {
             }
         };
         Diagnosis {
+            turns: self.turns,
             frames: self.timing.frames,
             secs: rhythm.secs,
             rate_hz: rhythm

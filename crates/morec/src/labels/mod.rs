@@ -26,6 +26,7 @@
 //! ```
 
 mod found;
+mod lengths;
 mod mark;
 mod names;
 mod people;
@@ -38,6 +39,7 @@ use crate::clip::Span;
 use crate::formats::Warning;
 
 pub use found::{FOUND_HEADER, FoundLine, FoundRow, FoundTable, ReportedAt, read_detections};
+pub use lengths::{ClassLengths, class_lengths};
 pub use mark::Mark;
 pub use names::{hint, some_of};
 pub use people::{People, read_people};

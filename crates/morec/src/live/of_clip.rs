@@ -4,9 +4,10 @@ use std::sync::Arc;
 use std::thread;
 use std::time::Duration;
 
-use crate::clip::{Clip, Span};
+use crate::clip::{Clip, Joint, Span};
 use crate::features::{BoneSet, KeyPose, all_bones_of_clip};
 use crate::kinematics::for_each_world_pose;
+use crate::math::Quat;
 use crate::pivots::NoPivots;
 use crate::roles::RoleMap;
 
@@ -98,10 +99,19 @@ pub fn recognize_poses<M: Clone + Into<Model>>(
 
 /// A reader of the poses of `clip` for `model`; an error if that asks for rotations and the clip has none.
 fn reader(model: &Model, clip: &Clip, roles: &RoleMap) -> Result<PoseExtractor, StartError> {
-    if model.needs_rotations() && !clip.has_rotations() {
+    if model.needs_rotations() && has_positions_alone(clip) {
         return Err(NoPivots::Rotations.into());
     }
     PoseExtractor::new(model, &clip.skeleton, roles)
+}
+
+/// True of a clip of points, and of one whose joints move against their parents and never turn. O(frames × joints).
+fn has_positions_alone(clip: &Clip) -> bool {
+    let mut joints = clip.skeleton.joints().iter().enumerate();
+    let moves = |(at, joint): (usize, &Joint)| joint.parent.is_some() && clip.track(at).is_some();
+    let mut frames = (0..clip.frames).map(|frame| clip.frame_rotations(frame));
+    !clip.has_rotations()
+        || (joints.any(moves) && frames.all(|f| f.iter().all(|q| *q == Quat::identity())))
 }
 
 /// The same through a [`Session`], and on as many threads as its layout has. The session waits for room, whatever

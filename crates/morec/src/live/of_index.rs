@@ -3,6 +3,7 @@
 use crate::diagnosis::{Diagnosis, Finding, Severity};
 use crate::features::{ALL_BONES, BoneSet};
 use crate::index::MotionIndex;
+use crate::pivots::NoPivots;
 use crate::roles::{Role, RoleMap};
 
 use super::start::check_shown;
@@ -41,8 +42,13 @@ impl MotionIndex {
     }
 
     /// What does not fit in this index and a stream with this `diagnosis`: it is of another kind of performer, or takes the heading
-    /// from what the stream does not show. `None`, too, while too little was seen.
+    /// from what the stream does not show, or from rotations where the stream has positions alone. `None`, too, while too little was
+    /// seen.
     pub fn misfit(&self, diagnosis: &Diagnosis) -> Option<(Severity, String)> {
+        if self.model.needs_rotations() && diagnosis.turns == Some(false) {
+            let known = diagnosis.secs >= SHOWN_SECS;
+            return known.then(|| (Severity::Error, NoPivots::Rotations.to_string()));
+        }
         let shown = BoneSet::of_seen(|role| diagnosis.seen.contains(role));
         if let Err(error @ StartError::OtherProfile { .. }) = self.check_shown(shown) {
             let known = diagnosis.secs >= SHOWN_SECS;

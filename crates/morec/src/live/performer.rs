@@ -107,6 +107,7 @@ impl Performer {
         let pose = frame.key_pose(rig);
         if let Some(diagnoser) = &mut self.diagnoser {
             diagnoser.push(frame.time_secs, frame.wall_secs, &pose);
+            diagnoser.see_turns(&frame.pose.rotations);
         }
         let bones = match &self.recognizer {
             Some(recognizer) => {

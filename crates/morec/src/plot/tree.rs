@@ -14,6 +14,8 @@ const TOP: f64 = 40.0;
 pub struct TreeBox {
     /// Lines of text in it.
     pub lines: Vec<String>,
+    /// True if it lies on a path that is marked.
+    pub marked: bool,
     /// Its children, as places in the list of nodes: each behind the node itself, and nobody else's child.
     pub children: Vec<usize>,
 }
@@ -30,11 +32,16 @@ pub fn tree_svg(title: &str, nodes: &[TreeBox]) -> String {
     open(&mut out, width, TOP + (most(&rows) + 1.0) * ROW, title);
     for (i, node) in nodes.iter().enumerate() {
         let (x, y) = place(i);
-        for (cx, cy) in children(nodes, i).map(place) {
+        for child in children(nodes, i) {
+            let (cx, cy) = place(child);
+            let stroke = match node.marked && nodes[child].marked {
+                true => "var(--c1)",
+                false => "var(--soft)",
+            };
             let (from, to, middle) = (y + ROW * 0.4, cy + ROW * 0.4, (x + WIDTH + cx) * 0.5);
             let start = x + WIDTH;
             out.push_str(&format!(
-                "<path class=\"curve\" stroke=\"var(--soft)\" d=\"M{start:.1} {from:.1}C{middle:.1} {from:.1} \
+                "<path class=\"curve\" stroke=\"{stroke}\" d=\"M{start:.1} {from:.1}C{middle:.1} {from:.1} \
                  {middle:.1} {to:.1} {cx:.1} {to:.1}\"/>\n"
             ));
         }
@@ -109,6 +116,7 @@ mod tests {
     fn parents_stand_between_their_children_and_leaves_below_one_another() {
         let node = |children: &[usize]| TreeBox {
             lines: vec![],
+            marked: false,
             children: children.to_vec(),
         };
         let nodes = [
@@ -126,6 +134,7 @@ mod tests {
     fn children_that_make_no_tree_are_left_out() {
         let nodes = [TreeBox {
             lines: vec!["a < b".into()],
+            marked: false,
             children: vec![0, 7],
         }];
         let drawn = tree_svg("One", &nodes);

@@ -6,13 +6,13 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use crate::classes::ClassId;
-use crate::crossval::{FoldBy, folds};
+use crate::crossval::{Fold, FoldBy, folds};
 use crate::features::Rows;
 use crate::index::{MotionIndex, Provenance};
 use crate::labels::Sample;
 use crate::plot::HeatMap;
-use crate::report::pictures::{branch_picture, tree_picture};
-use crate::svrdm::{SampleClassifier, SvrdmModel};
+use crate::report::pictures::{branch_picture, path_text, tree_picture};
+use crate::svrdm::{PathStep, SampleClassifier, SvrdmModel};
 use crate::train::LabelSet;
 use crate::train::thesis::{Estimated, SvrdmOptions, train_svrdm};
 use morec_svrdm::train_tree::{BranchReport, FeatureSample};
@@ -39,6 +39,8 @@ pub struct SplitResult {
     pub setting: Setting,
     /// Seed of the split.
     pub seed: u64,
+    /// True if the samples trained that a split leaves out, and those of classes of a single sample (Table 5.6).
+    pub complement: bool,
     /// Samples that trained.
     pub taught: usize,
     /// `T` in recognition.
@@ -55,6 +57,8 @@ pub struct SplitResult {
     pub index_bytes: usize,
     /// The branches.
     pub branches: Vec<BranchReport>,
+    /// The way of one sample that did not train down the tree, a line for each branch (Fig. 5.2).
+    pub path: Vec<String>,
     /// Estimation of thresholds, if they were estimated.
     pub estimated: Option<Estimated>,
 }
@@ -63,12 +67,18 @@ pub(super) fn run(
     study: &Study<'_>,
     (setting, options): &(Setting, SvrdmOptions),
     seed: u64,
+    complement: bool,
     pictures: &mut Vec<Picture>,
 ) -> Result<SplitResult, ReproduceError> {
     let split = folds(FoldBy::Half { seed }, study.samples, &BTreeMap::new());
     let fold = split
         .first()
         .ok_or_else(|| ReproduceError::Other("there are no samples".to_owned()))?;
+    let fold = if complement {
+        &other_half(fold, study.samples)
+    } else {
+        fold
+    };
     let pick = |places: &[usize]| -> Vec<Sample> {
         places.iter().map(|&i| study.samples[i].clone()).collect()
     };
@@ -84,6 +94,21 @@ pub(super) fn run(
     let mut classifier =
         SampleClassifier::new(&model).map_err(|e| ReproduceError::Other(e.to_string()))?;
     let trained: BTreeSet<usize> = fold.taught.iter().copied().collect();
+    // Classes that no sample could describe are not the model's: the numbers of the two differ.
+    let names: Vec<String> = model.classes.iter().map(|c| c.name.clone()).collect();
+    let of_study = |class: ClassId| {
+        let place = study
+            .classes
+            .iter()
+            .position(|c| *c == names[class.index()]);
+        ClassId(place.unwrap_or(study.classes.len()) as u16)
+    };
+    let of_model = |class: ClassId| {
+        names
+            .iter()
+            .position(|n| *n == study.classes[class.index()])
+    };
+    let mut path = vec![];
     let mut tally = Tally::new(study.classes.len());
     let mut features = vec![];
     for (place, class, rows) in cut_out(study, &model)? {
@@ -93,19 +118,40 @@ pub(super) fn run(
         let unseen = !trained.contains(&place);
         tally.count(
             class,
-            accepted.map(|f| f.class),
-            alike.map(|f| f.class),
+            accepted.map(|f| of_study(f.class)),
+            alike.map(|f| of_study(f.class)),
             unseen,
         );
-        if let Some(vector) = classifier.feature(&rows).filter(|_| !unseen) {
+        let Some(vector) = classifier.feature(&rows) else {
+            continue;
+        };
+        if unseen {
+            // The longest way that ends in a leaf shows most.
+            let found = model.tree.path(&vector, model.params.accept);
+            if found.len() > path.len() && accepted.is_some() {
+                path = found;
+            }
+        } else if let Some(class) = of_model(class) {
             features.push(FeatureSample {
-                class,
+                class: ClassId(class as u16),
                 group: 0,
                 vector,
             });
         }
     }
-    draw(study, *setting, &model, &features, &tally, pictures);
+    draw(
+        study,
+        &Drawn {
+            setting: *setting,
+            complement,
+            model: &model,
+            names: &names,
+            path: &path,
+        },
+        &features,
+        &tally,
+        pictures,
+    );
     let index = MotionIndex {
         model: model.clone().into(),
         roles: BTreeMap::new(),
@@ -115,6 +161,8 @@ pub(super) fn run(
     Ok(SplitResult {
         setting: *setting,
         seed,
+        complement,
+        path: path_text(&model.tree, &names, &path),
         taught: taught.len(),
         accept: model.params.accept,
         all: tally.rates(|_| true, 0),
@@ -207,25 +255,80 @@ impl Tally {
     }
 }
 
+/// The fold that teaches what `fold` holds back, and classes of which it holds nothing back as `fold` does.
+fn other_half(fold: &Fold, samples: &[Sample]) -> Fold {
+    let held_back: BTreeSet<&str> = fold
+        .held_back
+        .iter()
+        .map(|&i| samples[i].class.as_str())
+        .collect();
+    let (held_back, stay): (Vec<usize>, Vec<usize>) = fold
+        .taught
+        .iter()
+        .partition(|&&i| held_back.contains(samples[i].class.as_str()));
+    let mut taught = [&fold.held_back[..], &stay].concat();
+    taught.sort_unstable();
+    Fold {
+        taught,
+        held_back,
+        ..fold.clone()
+    }
+}
+
+/// What is drawn of a split.
+struct Drawn<'a> {
+    setting: Setting,
+    complement: bool,
+    model: &'a SvrdmModel,
+    names: &'a [String],
+    path: &'a [PathStep],
+}
+
 fn draw(
     study: &Study<'_>,
-    setting: Setting,
-    model: &SvrdmModel,
+    &Drawn {
+        setting,
+        complement,
+        model,
+        names,
+        path,
+    }: &Drawn<'_>,
     features: &[FeatureSample],
     tally: &Tally,
     pictures: &mut Vec<Picture>,
 ) {
     let name = setting.name();
+    let half = if complement { ", the other half" } else { "" };
+    let map = confusion(
+        study,
+        format!("{name}{half}: what the tree says (rows) of what is labelled (columns)"),
+        tally,
+    );
+    let file = if complement {
+        "confusion_complement"
+    } else {
+        "confusion"
+    };
+    let table = if complement { "Table 5.6" } else { "Table 5.5" };
+    pictures.push(Picture {
+        name: format!("{name}_{file}"),
+        caption: format!("{name}{half}: cut-out samples through the tree ({table})"),
+        svg: map.svg(),
+        table: None,
+    });
+    if complement {
+        return;
+    }
     pictures.push(Picture {
         name: format!("{name}_tree"),
         caption: format!("{name}: the tree of classes (Fig. 5.2)"),
-        svg: tree_picture(&model.tree, study.classes),
+        svg: tree_picture(&model.tree, names, path),
         table: None,
     });
     // The thesis draws where a machine says at least T and at least t of training.
     let levels = [0.4, 1.0];
     for (node, _) in model.tree.branches() {
-        let Some(svg) = branch_picture(&model.tree, node, features, study.classes, levels) else {
+        let Some(svg) = branch_picture(&model.tree, node, features, names, levels) else {
             continue;
         };
         let caption = format!(
@@ -238,6 +341,9 @@ fn draw(
             table: None,
         });
     }
+}
+
+fn confusion(study: &Study<'_>, title: String, tally: &Tally) -> HeatMap {
     let columns = study.classes.len();
     let values = tally.confusion.iter().flatten().map(|n| *n as f64);
     let rows: Vec<String> = study
@@ -246,15 +352,6 @@ fn draw(
         .cloned()
         .chain(["none".to_owned()])
         .collect();
-    let map = HeatMap::new(
-        format!("{name}: what the tree says (rows) of what is labelled (columns)"),
-        columns,
-        values,
-    );
-    pictures.push(Picture {
-        name: format!("{name}_confusion"),
-        caption: format!("{name}: cut-out samples through the tree (Tables 5.5 and 5.6)"),
-        svg: map.names(rows, study.classes.to_vec()).with_values().svg(),
-        table: None,
-    });
+    let map = HeatMap::new(title, columns, values);
+    map.names(rows, study.classes.to_vec()).with_values()
 }

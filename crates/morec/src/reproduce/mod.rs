@@ -5,6 +5,7 @@
 mod classification;
 mod clustering;
 mod page;
+mod performance;
 mod segmentation;
 mod streams;
 mod study;
@@ -12,11 +13,13 @@ mod thesis;
 
 use serde::Serialize;
 
+use crate::labels::{ClassLengths, Sample, class_lengths};
 use crate::progress::Progress;
 
 pub use classification::SplitResult;
 pub use clustering::Clustering;
 pub use page::page;
+pub use performance::{StageClock, StageCost, StagePerformance};
 pub use segmentation::Segmented;
 pub use streams::Streamed;
 pub use study::{Picture, ReproduceError, Setting, Study};
@@ -32,12 +35,16 @@ pub struct Reproduction {
     pub classification: Vec<SplitResult>,
     /// §5.4, for each setting and seed.
     pub streams: Vec<Streamed>,
+    /// Table 5.1.
+    pub classes: Vec<ClassLengths>,
+    /// §5.5, for each setting.
+    pub performance: Vec<StagePerformance>,
     /// All pictures.
     #[serde(skip)]
     pub pictures: Vec<Picture>,
 }
 
-/// Runs the whole evaluation. Trains twice for each setting and seed.
+/// Runs the whole evaluation. Trains three times for each setting and seed, and measures how long each stage takes.
 ///
 /// # Errors
 /// Training fails, an evaluation is impossible, or `progress` cancels.
@@ -59,18 +66,22 @@ pub fn reproduce(
     let segmentation = segmentation::run(study, &mut pictures)?;
     at(1)?;
     let clustering = clustering::run(study)?;
-    let (mut classification, mut streams) = (vec![], vec![]);
+    let (mut classification, mut streams, mut performance) = (vec![], vec![], vec![]);
     for setting in study.settings {
         for (turn, seed) in study.seeds.iter().enumerate() {
-            at(2 + classification.len())?;
+            at(2 + streams.len())?;
             // Pictures of the first seed; the others look alike.
             let mut shown = vec![];
-            classification.push(classification::run(study, setting, *seed, &mut shown)?);
+            for complement in [false, true] {
+                let split = classification::run(study, setting, *seed, complement, &mut shown)?;
+                classification.push(split);
+            }
             streams.push(streams::run(study, setting, *seed, &mut shown)?);
             if turn == 0 {
                 pictures.append(&mut shown);
             }
         }
+        performance.push(performance::run(study, setting)?);
     }
     at(steps)?;
     Ok(Reproduction {
@@ -78,6 +89,8 @@ pub fn reproduce(
         clustering,
         classification,
         streams,
+        classes: class_lengths(study.samples.iter().map(Sample::length)),
+        performance,
         pictures,
     })
 }

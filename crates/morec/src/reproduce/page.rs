@@ -28,12 +28,76 @@ pub fn page(result: &Reproduction, about: &[(String, String)]) -> String {
          not to the digit. <b>Faithful</b> keeps every parameter of the thesis, <b>tuned</b> changes what \
          docs/parameters.md lists.</p>\n",
     );
+    push_classes(&mut out, result);
     push_segmentation(&mut out, result);
     push_clustering(&mut out, result);
     push_classification(&mut out, result);
     push_streams(&mut out, result);
+    push_performance(&mut out, result);
     out.push_str("</body>\n</html>\n");
     out
+}
+
+fn push_classes(out: &mut String, result: &Reproduction) {
+    out.push_str(
+        "<h2>Classes (Table 5.1)</h2>\n<p>The thesis's middle length is the mean of the shortest and the longest, ours the \
+         median.</p>\n<div class=\"wide\"><table>\n<tr><th></th><th>class</th><th>shortest, s</th><th>middle, s</th>\
+         <th>longest, s</th><th>samples</th><th>people</th></tr>\n",
+    );
+    let mut row = |of: &str, class: &str, [a, b, c]: [f64; 3], samples: usize, people: usize| {
+        out.push_str(&format!(
+            "<tr><th scope=\"row\">{of}</th><td>{}</td><td>{a:.3}</td><td>{b:.3}</td><td>{c:.3}</td><td>{samples}</td>\
+             <td>{people}</td></tr>\n",
+            Text(class)
+        ));
+    };
+    for (class, secs, samples, people) in thesis::CLASSES {
+        row("thesis", class, secs, samples, people);
+    }
+    for class in &result.classes {
+        let secs = [class.shortest_secs, class.median_secs, class.longest_secs];
+        row("here", &class.class, secs, class.samples, class.people);
+    }
+    out.push_str("</table></div>\n");
+}
+
+fn push_performance(out: &mut String, result: &Reproduction) {
+    out.push_str(
+        "<h2>Performance (Table 5.8)</h2>\n<p>The thesis ran each stage on a processor of its own and printed what its code \
+         and data take and clocks per instruction; here one thread runs all stages, and the table says what each takes of a \
+         row at the model's rate, and the bytes that it reads and writes.</p>\n<div class=\"wide\"><table>\n\
+         <tr><th></th><th>stage</th><th>KB</th><th>clocks per instruction</th><th>µs a row</th><th>share</th></tr>\n",
+    );
+    for (stage, kb, cpi) in thesis::STAGES {
+        out.push_str(&format!(
+            "<tr><th scope=\"row\">thesis</th><td>{stage}</td><td>{kb:.2}</td><td>{cpi:.2}</td><td>–</td><td>–</td></tr>\n"
+        ));
+    }
+    for of in &result.performance {
+        for stage in &of.stages {
+            out.push_str(&format!(
+                "<tr><th scope=\"row\">{}</th><td>{}</td><td>{:.2}</td><td>–</td><td>{:.3}</td><td>{:.1} %</td></tr>\n",
+                of.setting.name(),
+                stage.stage,
+                stage.bytes as f64 / 1000.0,
+                stage.micros,
+                100.0 * stage.share
+            ));
+        }
+    }
+    out.push_str("</table></div>\n<p>Rows a second: ");
+    out.push_str(&format!(
+        "thesis {:.0} on six processors",
+        thesis::FRAMES_PER_SECOND
+    ));
+    for of in &result.performance {
+        out.push_str(&format!(
+            ", {} {:.0}",
+            of.setting.name(),
+            of.rows_per_second
+        ));
+    }
+    out.push_str(" on one.</p>\n");
 }
 
 fn push_segmentation(out: &mut String, result: &Reproduction) {
@@ -117,15 +181,15 @@ fn push_classification(out: &mut String, result: &Reproduction) {
          among those it classifies; the samples that did not are what matters. In the last columns a sample \
          must also be as like its class as the recogniser asks of confidence (Eq. 4.5 without the length, or what \
          stands for it).</p>\n<div class=\"wide\"><table>\n\
-         <tr><th></th><th>seed</th><th>trained</th><th>T</th><th>all: P_C</th><th>P_E</th><th>P_R</th>\
+         <tr><th></th><th>seed</th><th>half</th><th>trained</th><th>T</th><th>all: P_C</th><th>P_E</th><th>P_R</th>\
          <th>unseen: P_C</th><th>P_E</th><th>P_R</th><th>alike, all: P_C / P_E</th><th>unseen: P_C / P_E</th>\
          <th>index</th></tr>\n",
     );
     for (i, [c, e, r]) in thesis::CLASSIFICATION.iter().enumerate() {
         out.push_str(&format!(
-            "<tr><th scope=\"row\">thesis</th><td>{}</td><td>61</td><td>0.92</td><td>{c:.3}</td><td>{e:.3}</td>\
+            "<tr><th scope=\"row\">thesis</th><td>–</td><td>{}</td><td>61</td><td>0.92</td><td>{c:.3}</td><td>{e:.3}</td>\
              <td>{r:.3}</td><td>–</td><td>–</td><td>–</td><td>–</td><td>–</td><td>–</td></tr>\n",
-            ["first", "second"][i]
+            ["one", "the other"][i]
         ));
     }
     let rates = |r: &Rates| {
@@ -137,10 +201,11 @@ fn push_classification(out: &mut String, result: &Reproduction) {
     for c in &result.classification {
         let [all, unseen] = &c.alike;
         out.push_str(&format!(
-            "<tr><th scope=\"row\">{}</th><td>{}</td><td>{}</td><td>{:.2}</td>{}{}<td>{:.3} / {:.3}</td>\
+            "<tr><th scope=\"row\">{}</th><td>{}</td><td>{}</td><td>{}</td><td>{:.2}</td>{}{}<td>{:.3} / {:.3}</td>\
              <td>{:.3} / {:.3}</td><td>{:.1} KB</td></tr>\n",
             c.setting.name(),
             c.seed,
+            if c.complement { "the other" } else { "one" },
             c.taught,
             c.accept,
             rates(&c.all),
@@ -153,6 +218,21 @@ fn push_classification(out: &mut String, result: &Reproduction) {
         ));
     }
     out.push_str("</table></div>\n");
+    for c in result
+        .classification
+        .iter()
+        .filter(|c| !c.path.is_empty() && !c.complement)
+    {
+        out.push_str(&format!(
+            "<p>{}, seed {}: a sample's way down the tree (Fig. 5.2):</p>\n<ol>\n",
+            c.setting.name(),
+            c.seed
+        ));
+        for line in &c.path {
+            out.push_str(&format!("<li>{}</li>\n", Text(line)));
+        }
+        out.push_str("</ol>\n");
+    }
     for part in ["_tree", "_confusion", "_branch_"] {
         push_pictures(out, result, part);
     }

@@ -175,19 +175,23 @@ fn one_class_or_none_is_refused() {
             unlabelled_is_background: true,
             ..Default::default()
         };
-        train_svrdm(&clips, &labelling, &SvrdmOptions::default(), &()).map(|_| ())
+        train_svrdm(&clips, &labelling, &SvrdmOptions::default(), &())
     };
-    assert_eq!(train(&classes(), &[]), Err(TrainError::NoSamples));
+    assert_eq!(train(&classes(), &[]).unwrap_err(), TrainError::NoSamples);
     let one = vec!["bow".to_owned()];
     let error = train(&one, &samples).unwrap_err();
     assert!(error.to_string().contains("at least 2 classes"), "{error}");
     let more = [classes(), vec!["fly".to_owned()]].concat();
-    assert_eq!(
-        train(&more, &samples),
-        Err(TrainError::NoSample {
-            class: "fly".to_owned()
-        })
+    // A class that nothing shows stops nothing: it is named, and the tree is that of the others.
+    let (model, report) = train(&more, &samples).unwrap();
+    assert_eq!(model.classes.len(), classes().len());
+    assert!(
+        report.notes.iter().any(|n| n.contains("fly: no sample")),
+        "{:?}",
+        report.notes
     );
+    let first = [vec!["fly".to_owned()], classes()].concat();
+    assert_eq!(train(&first, &samples).unwrap().0, model);
 }
 
 #[test]

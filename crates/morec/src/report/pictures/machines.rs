@@ -1,12 +1,14 @@
 //! Pictures of a tree and of its branches.
 
 use crate::plot::{Chart, Regions, TreeBox, tree_svg};
-use crate::svrdm::{Branch, Node, Tree};
+use crate::svrdm::{Branch, Node, PathStep, Tree};
 
 use morec_svrdm::train_tree::FeatureSample;
 
 /// Cells along each axis.
 const CELLS: usize = 120;
+/// Characters in a line of a box of the tree.
+const BOX_CHARS: usize = 26;
 
 /// A branch in its plane (thesis, Figs. 5.3–5.12) as SVG: where each machine says at least `high` (`T`) and at least
 /// `low` (`t`), and the samples that come here, class by class. `node` is the branch's place among the nodes; `None`
@@ -127,23 +129,70 @@ fn listed(classes: &[crate::classes::ClassId], names: &[String]) -> String {
     }
 }
 
-/// The tree (thesis, Fig. 5.2) as SVG: at each branch its widths, at each leaf its class.
-pub fn tree_picture(tree: &Tree, names: &[String]) -> String {
-    let drawn = tree.nodes().iter().map(|node| match node {
-        Node::Leaf(class) => TreeBox {
-            lines: vec![name(*class, names)],
-            children: vec![],
-        },
-        Node::Branch(branch) => TreeBox {
-            lines: vec![
-                format!("{} | {}", branch.classes[0].len(), branch.classes[1].len()),
-                format!(
-                    "σ_f {:.3}, σ_r {:.4}",
-                    branch.sigma_full, branch.sigma_reduced
-                ),
-            ],
-            children: branch.children.iter().map(|c| *c as usize).collect(),
-        },
-    });
+/// The classes of a side in the width of a box.
+fn short(classes: &[crate::classes::ClassId], names: &[String]) -> String {
+    let all: Vec<String> = classes.iter().map(|c| name(*c, names)).collect();
+    let mut shown = all.len();
+    loop {
+        let text = all[..shown].join(", ");
+        let text = match all.len() - shown {
+            0 => text,
+            more => format!("{text} + {more}"),
+        };
+        if text.chars().count() <= BOX_CHARS || shown <= 1 {
+            return text;
+        }
+        shown -= 1;
+    }
+}
+
+/// A sample's way down a tree in words, a line for each branch (thesis, Fig. 5.2).
+pub fn path_text(tree: &Tree, names: &[String], path: &[PathStep]) -> Vec<String> {
+    let all = |classes: &[crate::classes::ClassId]| {
+        let names: Vec<String> = classes.iter().map(|c| name(*c, names)).collect();
+        names.join(", ")
+    };
+    let line = |step: &PathStep| match &tree.nodes()[step.node] {
+        Node::Leaf(class) => name(*class, names),
+        Node::Branch(branch) => {
+            let [a, b] = [0, 1]
+                .map(|side| format!("{} ({:.2})", all(&branch.classes[side]), step.outputs[side]));
+            match step.taken {
+                Some(0) => format!("{a}, not {b}"),
+                Some(_) => format!("{b}, not {a}"),
+                None => format!("neither {a} nor {b}"),
+            }
+        }
+    };
+    path.iter().map(line).collect()
+}
+
+/// The tree (thesis, Fig. 5.2) as SVG: at each branch its classes and widths, at each leaf its class; the nodes of `path`, a sample's
+/// way, are marked.
+pub fn tree_picture(tree: &Tree, names: &[String], path: &[PathStep]) -> String {
+    let marked = |at: usize| path.iter().any(|step| step.node == at);
+    let drawn = tree
+        .nodes()
+        .iter()
+        .enumerate()
+        .map(|(at, node)| match node {
+            Node::Leaf(class) => TreeBox {
+                lines: vec![name(*class, names)],
+                marked: marked(at),
+                children: vec![],
+            },
+            Node::Branch(branch) => TreeBox {
+                lines: vec![
+                    short(&branch.classes[0], names),
+                    format!("| {}", short(&branch.classes[1], names)),
+                    format!(
+                        "σ_f {:.3}, σ_r {:.4}",
+                        branch.sigma_full, branch.sigma_reduced
+                    ),
+                ],
+                marked: marked(at),
+                children: branch.children.iter().map(|c| *c as usize).collect(),
+            },
+        });
     tree_svg("Classifier tree", &drawn.collect::<Vec<_>>())
 }

@@ -1,6 +1,6 @@
 use morec_svrdm::train_tree::{FeatureSample, SigmaRule, TreeParams, grow};
 
-use super::{branch_picture, quality_chart, tree_picture};
+use super::{branch_picture, path_text, quality_chart, tree_picture};
 use crate::classes::ClassId;
 use crate::features::Rows;
 use crate::pca::{ComponentCount, Moments, Pca};
@@ -53,7 +53,22 @@ fn pictures_show_every_class_by_name_and_where_machines_accept() {
         ..Default::default()
     };
     let tree = grow(&samples, &[], &params).unwrap().tree;
-    let drawn = tree_picture(&tree, &names);
+    let path = tree.path(&samples[12].vector, 0.5);
+    let said = path_text(&tree, &names, &path);
+    assert_eq!(said.last().unwrap(), "bow & rise");
+    assert!(
+        said[..said.len() - 1]
+            .iter()
+            .all(|line| line.contains(", not ")),
+        "{said:?}"
+    );
+    let lost = tree.path(&[90.0, 0.0, 0.0], 0.5);
+    assert!(path_text(&tree, &names, &lost)[0].starts_with("neither "));
+    let drawn = tree_picture(&tree, &names, &path);
+    assert_eq!(
+        drawn.matches("stroke=\"var(--c1)\"").count(),
+        path.len() - 1
+    );
     assert!(
         ["wave", "clap", "bow &amp; rise"]
             .iter()

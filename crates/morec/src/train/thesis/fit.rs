@@ -2,7 +2,7 @@
 
 use crate::classes::ClassInfo;
 use crate::pca::Pca;
-use crate::svrdm::{Directions, FeatureExtraction, Gram, Profiles, SvrdmModel};
+use crate::svrdm::{Directions, FeatureExtraction, Gram, Profiles, SvrdmModel, SvrdmParams};
 use crate::train::TrainError;
 use morec_svrdm::train_tree::{BranchReport, FeatureSample, SignVector, grow, sign_vector};
 
@@ -32,15 +32,9 @@ pub fn fit(
 ) -> Result<Fitted, TrainError> {
     let stages = &params.stages;
     let dim = pca.dims();
-    if stages.eigenvectors > dim {
-        return Err(TrainError::Params(format!(
-            "{} eigenvectors of rows of {dim} values",
-            stages.eigenvectors
-        )));
-    }
     let described: Vec<(&ThesisSample, Gram, Directions)> = samples
         .iter()
-        .filter_map(|s| described(s, dim, params))
+        .filter_map(|s| described(s, dim, stages))
         .collect();
     let signs: Vec<SignVector> = (0..stages.eigenvectors)
         .filter_map(|j| {
@@ -88,7 +82,7 @@ pub fn fit(
         .map(|(sum, count)| *sum as f64 / *count as f64 / params.pose.rate_hz);
     let model = SvrdmModel {
         classes: classes.to_vec(),
-        pivots: params.pivots.set(),
+        pivots: params.pivots.set().map_err(TrainError::Params)?,
         pose: params.pose,
         pca: pca.clone(),
         params: stages.clone(),
@@ -108,14 +102,14 @@ pub fn fit(
 }
 
 /// A sample with its `AᵀA` and directions; `None` if it does not move at all.
-fn described<'s>(
+pub(super) fn described<'s>(
     sample: &'s ThesisSample,
     dim: usize,
-    params: &SvrdmTrainParams,
+    stages: &SvrdmParams,
 ) -> Option<(&'s ThesisSample, Gram, Directions)> {
-    let gram = Gram::of_rows(sample.rows.values(), dim, params.stages.chunk_frames);
-    let mut directions = Directions::new(params.stages.eigenvectors, dim);
+    let gram = Gram::of_rows(sample.rows.values(), dim, stages.chunk_frames);
+    let mut directions = Directions::new(stages.eigenvectors, dim);
     directions
-        .find(&gram, params.stages.centring)
+        .find(&gram, stages.centring)
         .then_some((sample, gram, directions))
 }

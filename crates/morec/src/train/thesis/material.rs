@@ -13,6 +13,7 @@ use crate::pivots::{PivotMap, PivotSet, pose_rows_of_clip};
 use crate::train::{LabelSet, StreamKind, TrainClip, TrainError};
 
 use super::SvrdmOptions;
+use super::fit::described;
 
 /// A sample cut out of its clip.
 #[derive(Debug, Clone)]
@@ -46,6 +47,8 @@ pub struct ThesisTrainingData {
     pub background: Vec<Background>,
     /// Pivots that a clip lacks, with the clip's name.
     pub missing: Vec<String>,
+    /// Classes that are not learned, since no sample of them can be described.
+    pub left_out: Vec<ClassInfo>,
 }
 
 /// Pose rows of every clip, the components of all of them (Eqs. 4.2 and 4.3), the samples of the classes.
@@ -60,7 +63,7 @@ pub fn of_clips(
     let params = &options.params;
     params.pose.check().map_err(TrainError::Params)?;
     params.stages.check().map_err(TrainError::Params)?;
-    let pivots = params.pivots.set();
+    let pivots = params.pivots.set().map_err(TrainError::Params)?;
     let made: Result<Vec<(Rows, Vec<String>)>, TrainError> = clips
         .par_iter()
         .map(|clip| {
@@ -82,6 +85,13 @@ pub fn of_clips(
     // One clip after the other: the sum is the same for any number of threads.
     rows.iter().for_each(|rows| moments.push_rows(rows));
     let pca = Pca::fit(&moments, params.keep).map_err(|e| TrainError::Params(e.to_string()))?;
+    if params.stages.eigenvectors > pca.dims() {
+        return Err(TrainError::Params(format!(
+            "{} eigenvectors of rows of {} values",
+            params.stages.eigenvectors,
+            pca.dims()
+        )));
+    }
     let groups = groups(clips);
     let mut material = ThesisTrainingData {
         classes: vec![],
@@ -90,6 +100,7 @@ pub fn of_clips(
         samples: vec![],
         background: vec![],
         missing: missing.concat(),
+        left_out: vec![],
     };
     for ((clip, rows), group) in clips.iter().zip(rows).zip(groups) {
         material.add(clip, rows, group, labelling, options);
@@ -97,11 +108,24 @@ pub fn of_clips(
     if material.samples.is_empty() {
         return Err(TrainError::NoSamples);
     }
-    material.classes = classes(labelling);
+    material.keep_shown_classes(classes(labelling));
     Ok(material)
 }
 
 impl ThesisTrainingData {
+    /// Takes those of `classes` that a sample shows, and numbers the samples' classes among them.
+    fn keep_shown_classes(&mut self, classes: Vec<ClassInfo>) {
+        let shown: BTreeSet<usize> = self.samples.iter().map(|s| s.class.index()).collect();
+        let places: BTreeMap<usize, u16> = shown.iter().copied().zip(0..).collect();
+        for sample in &mut self.samples {
+            sample.class = ClassId(places[&sample.class.index()]);
+        }
+        let (kept, left_out): (Vec<_>, Vec<_>) =
+            (0..).zip(classes).partition(|(at, _)| shown.contains(at));
+        self.classes = kept.into_iter().map(|(_, class)| class).collect();
+        self.left_out = left_out.into_iter().map(|(_, class)| class).collect();
+    }
+
     fn add(
         &mut self,
         clip: &TrainClip,
@@ -121,14 +145,16 @@ impl ThesisTrainingData {
             let Some(class) = labelling.classes.iter().position(|c| *c == sample.class) else {
                 continue;
             };
-            // Shorter than its directions are many, a sample has no feature vector.
+            // Shorter than its directions are many, a sample has no feature vector; without motion neither.
             if span.len() > options.params.stages.eigenvectors {
-                let rows = self.pca.project(&rows.slice(span));
-                self.samples.push(ThesisSample {
+                let sample = ThesisSample {
                     class: ClassId(class as u16),
                     group,
-                    rows,
-                });
+                    rows: self.pca.project(&rows.slice(span)),
+                };
+                if described(&sample, self.pca.dims(), &options.params.stages).is_some() {
+                    self.samples.push(sample);
+                }
             }
         }
         for sample in labelling.held_back.iter().filter(of_clip) {

@@ -21,7 +21,7 @@ pub enum ThresholdRule {
 }
 
 /// Joints that count.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Pivots {
     /// The 16 of Table 4.2, by name, and by role where no joint has the name.
@@ -29,15 +29,39 @@ pub enum Pivots {
     Thesis,
     /// Those that every skeleton has whose parts are known.
     Roles,
+    /// These of the former two, by name, and the root; a pivot's parent is the nearest before it that is chosen
+    /// (§4.2: "easy selection of relevant pivots").
+    Chosen(Vec<String>),
+    /// A set of one's own.
+    List(PivotSet),
 }
 
 impl Pivots {
     /// The set.
-    pub fn set(self) -> PivotSet {
-        match self {
+    ///
+    /// # Errors
+    /// A name that no pivot has.
+    pub fn set(&self) -> Result<PivotSet, String> {
+        Ok(match self {
             Pivots::Thesis => PivotSet::thesis(),
             Pivots::Roles => PivotSet::roles(),
-        }
+            Pivots::List(set) => set.clone(),
+            Pivots::Chosen(names) => {
+                let sets = [PivotSet::thesis(), PivotSet::roles()];
+                let unknown = |name: &&String, set: &PivotSet| set.place(name).is_none();
+                let fits = |set: &&PivotSet| !names.iter().any(|name| unknown(&name, set));
+                let set = sets.iter().find(fits).ok_or_else(|| {
+                    let name = names.iter().find(|n| unknown(n, &sets[0])).cloned();
+                    let known = sets[0].pivots().iter().map(|p| p.name.as_str());
+                    format!(
+                        "there is no pivot {}; there are {}, or the parts of `pivots=roles`",
+                        name.unwrap_or_default(),
+                        known.collect::<Vec<_>>().join(", ")
+                    )
+                })?;
+                set.keeping(|pivot| names.contains(&pivot.name))
+            }
+        })
     }
 }
 
@@ -61,8 +85,8 @@ pub struct SvrdmTrainParams {
 }
 
 impl SvrdmTrainParams {
-    /// The thesis's own parameters, with no knob turned. Rejects nearly all it has not seen: Algorithm 4 settles on
-    /// widths so small that every sample is an island.
+    /// The thesis's own parameters, with no knob turned. What it does not print is as its figures have it: see
+    /// [`Sweep`](morec_svrdm::train_tree::Sweep).
     pub fn faithful() -> Self {
         Self {
             pivots: Pivots::Thesis,

@@ -30,7 +30,14 @@ pub(super) fn of(
         };
         *background_secs.entry(source.to_owned()).or_insert(0.0) += secs;
     }
-    let mut notes = class_notes(&model.classes);
+    let classes = [&model.classes[..], &material.left_out].concat();
+    let mut notes = class_notes(&classes);
+    notes.extend(material.left_out.iter().filter(|class| class.samples > 0).map(|class| {
+        format!(
+            "{}: no sample of it can be described, it will never be recognised; each needs some motion inside its clip",
+            class.name
+        )
+    }));
     if !material.missing.is_empty() {
         notes.push(format!(
             "joints that a clip lacks turn with their parents there: {}",
@@ -73,7 +80,7 @@ pub(super) fn of(
     };
     TrainingReport {
         operating: Vec::new(),
-        classes: model.classes.clone(),
+        classes,
         bones: material
             .pivots
             .pivots()
