@@ -86,33 +86,66 @@ pub(crate) fn with<P: Serialize + DeserializeOwned>(
     params: P,
     given: &[Param],
 ) -> Result<P, ParamError> {
-    given.iter().try_fold(params, |params, param| {
-        set(params, param).map_err(|why| ParamError {
-            param: param.to_string(),
-            why,
-        })
+    let of = |param: &Param, why: String| ParamError {
+        param: param.to_string(),
+        why,
+    };
+    let Ok(usual) = serde_json::to_value(&params) else {
+        return Ok(params);
+    };
+    let (mut tree, mut read, mut mistake) = (usual.clone(), params, None);
+    for param in given {
+        put(&mut tree, &usual, param);
+        match serde_json::from_value(tree.clone()) {
+            Ok(params) => (read, mistake) = (params, None),
+            // A rule's fields may make sense together only: the first mistake stands unless what follows mends it.
+            Err(error) => {
+                let was = at(&usual, &param.name).filter(|was| !was.is_null());
+                let was = was.map_or(String::new(), |was| format!(" (it is {was})"));
+                mistake.get_or_insert_with(|| of(param, format!("{error}{was}")));
+            }
+        }
+    }
+    if let Some(mistake) = mistake {
+        return Err(mistake);
+    }
+    let now = serde_json::to_value(&read).unwrap_or_default();
+    let ignored = given.iter().find(|param| at(&now, &param.name).is_none());
+    ignored.map_or(Ok(read), |param| {
+        let known: Vec<String> = leaves(&usual).into_iter().map(|(path, _)| path).collect();
+        let (name, hint) = (&param.name, nearest(&param.name, &known));
+        Err(of(param, format!("there is no parameter {name}{hint}")))
     })
 }
 
-fn set<P: Serialize + DeserializeOwned>(params: P, param: &Param) -> Result<P, String> {
-    let mut tree = serde_json::to_value(&params).map_err(|error| error.to_string())?;
-    let name = &param.name;
-    let known = leaves(&tree);
-    if !known.iter().any(|(path, _)| path == name) {
-        let known: Vec<String> = known.into_iter().map(|(path, _)| path).collect();
-        let hint = nearest(name, &known);
-        return Err(format!("there is no parameter {name}{hint}"));
+/// The value at a path.
+fn at<'t>(tree: &'t Value, name: &str) -> Option<&'t Value> {
+    tree.pointer(&format!("/{}", name.replace('.', "/")))
+}
+
+/// Puts a value at its path. Where the path leads into another choice than that of `usual`, as `keep.quality` where
+/// `keep` has `dims`, the choice is exchanged.
+fn put(tree: &mut Value, usual: &Value, param: &Param) {
+    let (mut place, mut usual) = (tree, Some(usual));
+    for field in param.name.split('.') {
+        usual = match usual {
+            Some(Value::Object(fields)) if fields.len() > 1 || fields.contains_key(field) => {
+                fields.get(field)
+            }
+            // A choice, by its name alone or with its fields.
+            Some(_) => {
+                let chosen = place.get(field).cloned();
+                *place = Value::Object(chosen.map(|c| (field.to_owned(), c)).into_iter().collect());
+                None
+            }
+            None => None,
+        };
+        if !place.is_object() {
+            *place = Value::Object(serde_json::Map::new());
+        }
+        place = &mut place[field];
     }
-    let Some(place) = tree.pointer_mut(&format!("/{}", name.replace('.', "/"))) else {
-        return Err(format!("{name} is not set"));
-    };
-    let before = std::mem::replace(place, param.value.clone());
-    // What is not set as usual says nothing of what a value looks like.
-    let usual = match before.is_null() {
-        true => String::new(),
-        false => format!(" (it is {before})"),
-    };
-    serde_json::from_value(tree).map_err(|error| format!("{error}{usual}"))
+    *place = param.value.clone();
 }
 
 /// The parameters in which `params` is not `usual`, of the same type.
@@ -152,5 +185,71 @@ fn nearest(name: &str, known: &[String]) -> String {
         [] => hint(name, known),
         [only] => format!("; did you mean `{only}`?"),
         several => format!("; there are {}", several.join(", ")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use morec::train::thesis::SvrdmTrainParams;
+
+    fn set(given: &[&str]) -> Result<SvrdmTrainParams, String> {
+        let given: Vec<Param> = given.iter().map(|p| p.parse().unwrap()).collect();
+        with(SvrdmTrainParams::default(), &given).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn any_rule_can_be_exchanged() {
+        let json = |given: &[&str], path| {
+            at(&serde_json::to_value(set(given).unwrap()).unwrap(), path).cloned()
+        };
+        let quality = json(&["keep.quality=0.95"], "keep").unwrap();
+        assert_eq!(quality.to_string(), r#"{"quality":0.95}"#);
+        assert_eq!(
+            json(&["tree.sigma=algorithm4"], "tree.sigma").unwrap(),
+            "algorithm4"
+        );
+        let fixed = [
+            "tree.sigma.fixed.full=0.3",
+            "tree.sigma.fixed.reduced=0.2",
+            "pose.rate_hz=60",
+        ];
+        assert_eq!(
+            json(&fixed, "tree.sigma").unwrap().to_string(),
+            r#"{"fixed":{"full":0.3,"reduced":0.2}}"#
+        );
+        let whole = r#"tree.sigma={"scaled":{"full":2,"reduced":3}}"#;
+        assert_eq!(json(&[whole], "tree.sigma.scaled.full").unwrap(), 2.0);
+        assert_eq!(
+            json(&["stages.comparison=profiles"], "stages.comparison").unwrap(),
+            "profiles"
+        );
+        assert_eq!(json(&["thresholds=fixed"], "thresholds").unwrap(), "fixed");
+        let twice = ["thresholds=fixed", "thresholds.estimated.folds=5"];
+        assert_eq!(json(&twice, "thresholds.estimated.folds").unwrap(), 5);
+        assert_eq!(json(&["tree.solver=sor"], "tree.solver").unwrap(), "sor");
+    }
+
+    #[test]
+    fn mistakes_are_named() {
+        let error = |given: &[&str]| set(given).unwrap_err();
+        assert!(
+            error(&["keep.qualty=0.95"]).contains("qualty"),
+            "{}",
+            error(&["keep.qualty=0.95"])
+        );
+        assert!(error(&["stages.acept=1"]).contains("did you mean `stages.accept`"));
+        assert!(error(&["tree.sigma.fixed.full=0.3"]).contains("reduced"));
+        assert!(error(&["stages.accept=high"]).contains("it is 0.8"));
+        assert!(error(&["nothing=1"]).contains("there is no parameter nothing"));
+    }
+
+    #[test]
+    fn what_was_changed_can_be_set_again() {
+        for of in [SvrdmTrainParams::faithful(), SvrdmTrainParams::tuned()] {
+            for base in [SvrdmTrainParams::faithful(), SvrdmTrainParams::tuned()] {
+                assert_eq!(with(base.clone(), &changed(&of, &base)).unwrap(), of);
+            }
+        }
     }
 }

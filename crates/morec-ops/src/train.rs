@@ -32,7 +32,7 @@ pub struct TrainSettings {
     pub gestures: Vec<String>,
     /// With --method svrdm: the thesis' parameters, or parameters tuned to accept what was not seen
     #[arg(long, default_value = "tuned", value_parser = choices::<Setting>([
-        ("faithful", "The thesis's own figures: rejects nearly all it has not seen"),
+        ("faithful", "The thesis's own figures"),
         ("tuned", "The same method, made to accept what it has not seen"),
     ]))]
     pub svrdm: Setting,
@@ -166,14 +166,20 @@ impl TrainSettings {
     }
 
     /// Options of both settings of the method of 2009, for the thesis's evaluation; parameters that are set are those of the
-    /// tuned one.
+    /// setting that is named.
     ///
     /// # Errors
     /// A parameter that the method does not have.
     pub fn both_svrdm(&self) -> Result<[(Setting, SvrdmOptions); 2], ParamError> {
-        let faithful = self.svrdm_options(Setting::Faithful, &[])?;
-        let tuned = self.svrdm_options(Setting::Tuned, &self.params)?;
-        Ok([(Setting::Faithful, faithful), (Setting::Tuned, tuned)])
+        let of = |setting| {
+            let given = if setting == self.svrdm {
+                &self.params[..]
+            } else {
+                &[]
+            };
+            Ok((setting, self.svrdm_options(setting, given)?))
+        };
+        Ok([of(Setting::Faithful)?, of(Setting::Tuned)?])
     }
 
     fn svrdm_options(&self, of: Setting, given: &[Param]) -> Result<SvrdmOptions, ParamError> {
