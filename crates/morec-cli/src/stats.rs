@@ -10,7 +10,8 @@ use morec::import::Take;
 use morec::kinematics::for_each_world_pose;
 use morec::live::Model;
 use morec::pivots::{PivotMap, pose_rows_of_clip};
-use morec::svrdm::{SvrdmEngine, SvrdmModel};
+use morec::reproduce::StageClock;
+use morec::svrdm::{Stage, SvrdmEngine, SvrdmModel};
 use morec::templates::{AT_ONCE, ClassMatcher, Metric, TemplateEngine, TemplateModel};
 
 /// Frames and times, summed over clips; all on one thread.
@@ -22,10 +23,19 @@ pub struct Stats {
     /// Poses of joints, from the channels of a clip.
     kinematics: Duration,
     features: Duration,
-    /// Rows matched against templates; nothing with the method of 2009, whose stages follow each other row by row.
+    /// Rows matched against templates; nothing with the method of 2009, which has stages of its own.
     matching: Duration,
     recognising: Duration,
+    /// Of these, what each stage of the method of 2009 takes, and its bytes.
+    stages: Option<StageTimes>,
     size: String,
+}
+
+/// Stages of the method of 2009, in the order of [`Stage::ALL`].
+#[derive(Debug, Clone)]
+struct StageTimes {
+    clock: StageClock,
+    bytes: [usize; Stage::ALL.len()],
 }
 
 impl Stats {
@@ -103,6 +113,11 @@ impl Stats {
             rows.iter().for_each(|row| engine.push(row, &mut |_| {}));
             engine.finish(&mut |_| {});
         });
+        let times = self.stages.get_or_insert_with(|| StageTimes {
+            clock: StageClock::new(),
+            bytes: Stage::ALL.map(|stage| engine.stage_bytes(stage)),
+        });
+        times.clock.play(&mut engine, &rows);
         self.size = format!(
             "{} classes, {} profiles",
             model.classes.len(),
@@ -111,6 +126,12 @@ impl Stats {
         Ok(())
     }
 }
+
+/// What the thesis prints of its stages (Table 5.8, §5.5).
+const THESIS: &str = "in 2009 on six processors of a Cell, 4,487 frames a second (Table 5.8):\n\
+    \x20 stage                         IA      SA     FVE      SC      SS      ST\n\
+    \x20 code and data, KB         148.33  126.84  149.22  140.08  147.73  102.08\n\
+    \x20 clocks per instruction      1.84    1.92    1.82    1.86    1.21    2.02\n";
 
 fn timed<T>(total: &mut Duration, job: impl FnOnce() -> T) -> T {
     let begun = Instant::now();
@@ -131,26 +152,34 @@ impl Stats {
     }
 
     /// Times of the stages of the whole path, and of it. Forward kinematics is part of making rows, and matching part of recognising.
-    fn times(&self) -> Vec<(&'static str, Duration)> {
+    fn times(&self) -> Vec<(String, Duration, Option<usize>)> {
         let rest = |all: Duration, part: Duration| all.saturating_sub(part);
+        let named = |name: &str, time| (name.to_owned(), time, None);
         let mut times = vec![
-            ("poses of joints", self.kinematics),
-            (
+            named("poses of joints", self.kinematics),
+            named(
                 "poses to feature rows",
                 rest(self.features, self.kinematics),
             ),
         ];
-        match self.matching.is_zero() {
-            true => times.push(("rows to detections", self.recognising)),
-            false => times.extend([
-                ("rows to matches of classes", self.matching),
-                (
+        match &self.stages {
+            Some(StageTimes { clock, bytes }) => {
+                times.push(named("rows to detections", self.recognising));
+                let stages = Stage::ALL.into_iter().zip(clock.spent()).zip(bytes);
+                times.extend(stages.map(|((stage, time), bytes)| {
+                    let name = format!("  {:3} {}", stage.letters(), stage.name());
+                    (name, time, Some(*bytes))
+                }));
+            }
+            None => times.extend([
+                named("rows to matches of classes", self.matching),
+                named(
                     "matches to detections",
                     rest(self.recognising, self.matching),
                 ),
             ]),
         }
-        times.push(("whole path, poses to detections", self.whole));
+        times.push(named("whole path, poses to detections", self.whole));
         times
     }
 }
@@ -162,10 +191,14 @@ impl fmt::Display for Stats {
         writeln!(f, "one core, {frames} frames, {size}")?;
         writeln!(
             f,
-            "{:32} {:>12} {:>8} {:>16}",
-            "stage", "µs a frame", "share", "frames a second"
+            "{:32} {:>12} {:>8} {:>16}{}",
+            "stage",
+            "µs a frame",
+            "share",
+            "frames a second",
+            self.stages.as_ref().map_or("", |_| "    bytes")
         )?;
-        let mut line = |name: &str, time: Duration, share: &str| {
+        let mut line = |name: &str, time: Duration, share: &str, bytes: Option<usize>| {
             let secs = time.as_secs_f64();
             let of_frame = secs * 1e6 / (*frames).max(1) as f64;
             // A difference of two times may be lost in their noise.
@@ -173,12 +206,16 @@ impl fmt::Display for Stats {
                 true => "–".to_owned(),
                 false => format!("{:.0}", *frames as f64 / secs),
             };
-            writeln!(f, "{name:32} {of_frame:>12.2} {share:>8} {rate:>16}")
+            let bytes = bytes.map_or(String::new(), |bytes| format!(" {bytes:>8}"));
+            writeln!(f, "{name:32} {of_frame:>12.2} {share:>8} {rate:>16}{bytes}")
         };
-        line("reading the files", self.reading, "")?;
-        for (name, time) in self.times() {
+        line("reading the files", self.reading, "", None)?;
+        for (name, time, bytes) in self.times() {
             let share = format!("{:.1} %", 100.0 * time.as_secs_f64() / whole);
-            line(name, time, &share)?;
+            line(&name, time, &share, bytes)?;
+        }
+        if self.stages.is_some() {
+            f.write_str(THESIS)?;
         }
         Ok(())
     }

@@ -12,6 +12,7 @@ use morec::live::{EventOptions, EventReader, Session, SessionOptions, Status, St
 use super::recognize::open_index;
 use crate::interrupt::stop_on_ctrl_c;
 use crate::live::layout::LayoutArg;
+use crate::live::on::{ClassCommands, OnClass};
 use crate::live::open::TrackerArgs;
 use crate::live::sinks::CountedSink;
 use crate::live::status::StatusLine;
@@ -65,6 +66,10 @@ pub struct Args {
     /// Sink of events [default: terminal:-]
     #[arg(long, value_name = "SINK")]
     emit: Vec<Address>,
+    /// Run a command when a motion of a class has happened: a program and its arguments, given to no shell, with
+    /// MOREC_CLASS, MOREC_PHASE, MOREC_SCORE, MOREC_START and MOREC_STOP (seconds) in its environment; several if you like
+    #[arg(long, value_name = "CLASS=COMMAND")]
+    on: Vec<OnClass>,
     #[command(flatten)]
     tracker: TrackerArgs,
     /// Minimum seconds between two events of a class
@@ -76,7 +81,8 @@ pub struct Args {
     /// Make each repetition of an activity an event of its own
     #[arg(long)]
     each_repetition: bool,
-    /// Distribution of recognition over threads; detections are the same
+    /// Distribution of recognition over threads; detections are the same, and a thread for each stage takes more of the
+    /// processor than one for all
     #[arg(long, value_enum, default_value = "inline")]
     layout: LayoutArg,
     /// End after N seconds
@@ -105,6 +111,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         )?],
         emit => emit.iter().map(CountedSink::open).collect::<Result<_>>()?,
     };
+    let mut commands = ClassCommands::new(&args.on, &index)?;
     let mut listening: Vec<Listening> = args
         .listen
         .iter()
@@ -129,7 +136,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
                     class,
                     source: &source.name,
                 };
-                tell(&said, &mut outlets, &mut line)?;
+                tell(&said, &mut outlets, &mut commands, &mut line)?;
             }
             ended &= source.reader.is_ended();
             complain(&source.name, &source.notices, &mut line);
@@ -159,6 +166,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
                     source: &source.name,
                 },
                 &mut outlets,
+                &mut commands,
                 &mut line,
             )?;
         }
@@ -179,9 +187,18 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     })
 }
 
-fn tell(said: &NamedEvent, outlets: &mut [CountedSink], line: &mut StatusLine) -> Result<()> {
+fn tell(
+    said: &NamedEvent,
+    outlets: &mut [CountedSink],
+    commands: &mut ClassCommands,
+    line: &mut StatusLine,
+) -> Result<()> {
     if said.is_final() {
         line.clear();
+    }
+    for failure in commands.run(said) {
+        line.clear();
+        eprintln!("morec: {failure}");
     }
     for outlet in outlets {
         if let Some(failure) = outlet.emit(said)? {

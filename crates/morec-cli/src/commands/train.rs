@@ -5,6 +5,7 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result};
 use morec::index::MotionIndex;
+use morec::labels::{ClassLengths, Sample, class_lengths};
 use morec::train::TrainingReport;
 use morec::train::thesis::SvrdmReport;
 
@@ -71,12 +72,23 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 }
 
 fn print_report(report: &TrainingReport, bytes: usize, material: &ClipMaterial, output: &Path) {
-    let mut table = TextTable::new(["class", "samples", "people"]);
+    let lengths = class_lengths(material.data.samples.iter().map(Sample::length));
+    let mut table = TextTable::new([
+        "class", "samples", "people", "shortest", "median", "longest",
+    ])
+    .least(["shortest", "longest", "median"]);
     for class in &report.classes {
+        let of_class = lengths.iter().find(|l| l.class == class.name);
+        let secs = |secs: fn(&ClassLengths) -> f64| {
+            of_class.map_or("–".to_owned(), |l| format!("{:.2} s", secs(l)))
+        };
         table.row([
             class.name.clone(),
             class.samples.to_string(),
             class.people.to_string(),
+            secs(|l| l.shortest_secs),
+            secs(|l| l.median_secs),
+            secs(|l| l.longest_secs),
         ]);
     }
     print!("{table}");

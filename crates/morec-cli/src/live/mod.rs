@@ -3,6 +3,7 @@
 pub mod keep;
 pub mod layout;
 pub mod network;
+pub mod on;
 pub mod open;
 pub mod sinks;
 pub mod status;

@@ -223,6 +223,47 @@ fn a_clip_ends_by_itself_and_what_cannot_be_opened_says_why() {
     );
 }
 
+#[test]
+#[cfg(unix)]
+fn a_motion_runs_the_command_of_its_class_and_no_shell() {
+    let (folder, takes) = crate::db::studio(3);
+    let train = ["train", "--clips", "clips", "--labels", "labels.tsv", "-o"];
+    folder.morec(&[&train[..], &["i.index"]].concat()).ok();
+    let listen = format!("clip://clips/{}.bvh?speed=0", takes[0].clip.name);
+    let live = ["live", "i.index", "--listen", &listen];
+    let events = folder.morec(&[&live[..], &["--emit", "json:-", "--no-early"]].concat());
+    let waves = events.out.matches("\"class\":\"wave\"").count();
+    assert!(waves > 0, "{events:?}");
+    // Programs that end before they can be waited for are seen by what they leave.
+    let on = [
+        "--on",
+        "wave=mkdir -p 'a b' $HOME;x",
+        "--on",
+        "wave=absent-program",
+    ];
+    let ran = folder.morec(&[&live[..], &on[..]].concat());
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    assert_eq!(
+        ran.err.matches("absent-program: ").count(),
+        waves,
+        "{}",
+        ran.err
+    );
+    let made = |name: &str| folder.path().join(name).is_dir();
+    let deadline = std::time::Instant::now() + Duration::from_secs(60);
+    while !(made("a b") && made("$HOME;x")) && std::time::Instant::now() < deadline {
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    assert!(made("a b") && made("$HOME;x"), "a shell had it, or nobody");
+    let wrong = folder.morec(&[&live[..], &["--on", "wafe=true"]].concat());
+    assert_eq!(wrong.code, Some(1), "{wrong:?}");
+    assert!(
+        wrong.err.contains("no class wafe") && wrong.err.contains("wave"),
+        "{}",
+        wrong.err
+    );
+}
+
 /// Whoever reads the record later cannot know what it lacks.
 #[test]
 #[cfg(target_os = "linux")]

@@ -4,8 +4,9 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::{Result, bail};
+use morec::labels::{ClassLengths, class_lengths};
 use morec_db::MotionDb;
-use morec_db::labels::SampleId;
+use morec_db::labels::{SampleFilter, SampleId, SampleState};
 
 use super::samples;
 use crate::database;
@@ -75,13 +76,34 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         print::print_json(&classes)?;
         return Ok(ExitCode::SUCCESS);
     }
-    let mut table = TextTable::new(["class", "samples", "secs", "proposed", "rejected"])
-        .least(["rejected", "secs", "proposed"]);
+    let accepted = db.samples(&SampleFilter {
+        state: Some(SampleState::Accepted),
+        ..SampleFilter::default()
+    })?;
+    let lengths = class_lengths(accepted.iter().map(|s| {
+        let secs = s.stop_secs - s.start_secs;
+        (s.class.as_str(), s.subject.as_deref(), secs)
+    }));
+    let mut table = TextTable::new([
+        "class", "samples", "people", "secs", "shortest", "median", "longest", "proposed",
+        "rejected",
+    ])
+    .least([
+        "rejected", "people", "secs", "proposed", "shortest", "longest", "median",
+    ]);
     for class in &classes {
+        let of_class = lengths.iter().find(|l| l.class == class.name);
+        let secs = |secs: fn(&ClassLengths) -> f64| {
+            of_class.map_or("–".to_owned(), |l| format!("{:.2}", secs(l)))
+        };
         table.row([
             class.name.clone(),
             class.accepted.to_string(),
+            of_class.map_or(0, |l| l.people).to_string(),
             format!("{:.1}", class.secs),
+            secs(|l| l.shortest_secs),
+            secs(|l| l.median_secs),
+            secs(|l| l.longest_secs),
             class.proposed.to_string(),
             class.rejected.to_string(),
         ]);
