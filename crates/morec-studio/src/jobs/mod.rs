@@ -47,8 +47,8 @@ pub enum JobOutcome {
     Similar(similar::Similar),
     Aligned(Arc<align::Aligned>),
     Channel(channel::ChannelCurve),
-    /// The method of 2009, trained.
-    Thesis(Arc<thesis::Thesis>),
+    /// The method of 2009, trained, and its index.
+    Thesis((Arc<thesis::Thesis>, Box<train::TrainedIndex>)),
     Map(thesis::Map),
     /// A file was written: what to say of it.
     Written(String),

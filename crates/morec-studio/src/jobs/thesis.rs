@@ -2,18 +2,20 @@
 
 use std::path::Path;
 use std::sync::Arc;
+use std::time::Instant;
 
 use morec::eval::GroundTruth;
+use morec::live::Model;
 use morec::pivots::{PivotMap, pose_rows_of_clip};
 use morec::svrdm::{Branch, Node, SampleClassifier, SvrdmEngine, SvrdmModel};
-use morec::train::thesis::{SvrdmOptions, SvrdmTrainParams, train_svrdm};
-use morec::train::{LabelSet, TrainError};
+use morec::train::thesis::SvrdmTrainParams;
+use morec::train::{TrainError, TrainingData};
 use morec_db::ClipId;
-use morec_ops::OperationError;
+use morec_ops::{OperationError, TrainSettings};
 
 use super::load::ClipMotion;
 use super::progress::{JobError, JobProgress};
-use super::train;
+use super::train::{self, TrainedIndex};
 
 /// Places along each side of a picture of a branch.
 pub const GRID: usize = 72;
@@ -61,36 +63,33 @@ pub struct Boundary {
     pub points: Vec<(usize, [f64; 2], usize)>,
 }
 
-/// Trains on the accepted samples of the database at `path`.
+/// Trains on the accepted samples of the database at `path`: an index, and its tree to be shown.
 pub fn run(
     path: &Path,
-    classes: &[String],
+    settings: &TrainSettings,
     params: SvrdmTrainParams,
     progress: &JobProgress,
-) -> Result<Arc<Thesis>, JobError> {
-    let trained = trained(path, classes, params, progress).map(Arc::new);
-    trained.map_err(|error| JobError::of("The method of 2009 was not trained", error))
+) -> Result<(Arc<Thesis>, Box<TrainedIndex>), JobError> {
+    let trained = || -> Result<_, OperationError> {
+        let begun = Instant::now();
+        let data = train::material(path, &settings.classes)?;
+        let trained = train::index(&data, settings, begun, progress)?;
+        Ok((Arc::new(shown(&data, &trained, params)?), Box::new(trained)))
+    };
+    trained().map_err(|error| JobError::of("The method of 2009 was not trained", error))
 }
 
-fn trained(
-    path: &Path,
-    classes: &[String],
+/// The tree of an index that was trained with `params` on `data`.
+fn shown(
+    data: &TrainingData,
+    trained: &TrainedIndex,
     params: SvrdmTrainParams,
-    progress: &JobProgress,
 ) -> Result<Thesis, OperationError> {
-    let data = train::material(path, classes)?;
-    let labelling = LabelSet {
-        samples: &data.samples,
-        held_back: &[],
-        classes: &data.classes,
-        unlabelled_is_background: true,
+    let Model::Svrdm(model) = &trained.index.model else {
+        let why = "the settings train another method";
+        return Err(OperationError::Settings(why.to_owned()));
     };
-    let options = SvrdmOptions {
-        params,
-        ..SvrdmOptions::default()
-    };
-    let (model, _) = train_svrdm(&data.clips, &labelling, &options, progress)?;
-    let model = Arc::new(model);
+    let model = model.clone();
     let mut classifier = SampleClassifier::new(&model).map_err(TrainError::from)?;
     let (mut samples, mut vectors) = (Vec::new(), Vec::new());
     for clip in data.labelled() {
@@ -108,7 +107,7 @@ fn trained(
         }
     }
     // More than this a machine says of its own side alone.
-    let least = options.params.tree.machine.other;
+    let least = params.tree.machine.other;
     let nodes = model.tree.nodes().iter().map(|node| match node {
         Node::Leaf(class) => TreeNodeView::Leaf(model.classes[class.index()].name.clone()),
         Node::Branch(branch) => {
@@ -118,7 +117,7 @@ fn trained(
     Ok(Thesis {
         nodes: nodes.collect(),
         samples,
-        params: options.params,
+        params,
         model: model.clone(),
     })
 }

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 use std::sync::Arc;
+use std::time::Instant;
 
 use morec::index::MotionIndex;
 use morec::train::{TrainingData, TrainingReport};
@@ -33,19 +34,28 @@ pub fn run(
     settings: &TrainSettings,
     progress: &JobProgress,
 ) -> Result<Box<TrainedIndex>, JobError> {
-    let begun = std::time::Instant::now();
-    let trained = || -> Result<_, OperationError> {
+    let begun = Instant::now();
+    let trained = || {
         let data = material(path, &settings.classes)?;
-        let (index, mut report) = settings.train(&data, progress)?;
-        report.notes.extend(data.notes);
-        Ok((index.to_bytes()?, index, report))
+        index(&data, settings, begun, progress)
     };
-    let (bytes, index, report) =
-        trained().map_err(|error| JobError::of("Training stopped", error))?;
-    Ok(Box::new(TrainedIndex {
+    let trained = trained().map_err(|error| JobError::of("Training stopped", error))?;
+    Ok(Box::new(trained))
+}
+
+/// Trains an index on `data`.
+pub fn index(
+    data: &TrainingData,
+    settings: &TrainSettings,
+    begun: Instant,
+    progress: &JobProgress,
+) -> Result<TrainedIndex, OperationError> {
+    let (index, mut report) = settings.train(data, progress)?;
+    report.notes.extend(data.notes.iter().cloned());
+    Ok(TrainedIndex {
+        bytes: index.to_bytes()?,
         index: Arc::new(index),
-        bytes,
         report,
         secs: begun.elapsed().as_secs_f64(),
-    }))
+    })
 }

@@ -1,8 +1,9 @@
 //! The parameters of the method of 2009, as controls.
 
-use egui::{ComboBox, DragValue, Ui, WidgetType};
+use egui::{Checkbox, ComboBox, DragValue, Ui, WidgetType};
 use morec::pca::ComponentCount;
-use morec::train::thesis::{Pivots, SvrdmTrainParams};
+use morec::pivots::PivotSet;
+use morec::train::thesis::{Pivots, SvrdmTrainParams, ThresholdRule};
 
 use super::{Out, widgets};
 use crate::state::{Command, State, TrainCommand};
@@ -24,7 +25,7 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
             ),
             (
                 "As in the thesis",
-                "Rejects nearly all that was not seen",
+                "The values that the thesis prints",
                 SvrdmTrainParams::faithful(),
             ),
         ] {
@@ -38,48 +39,101 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
         components(ui, &mut wanted.keep);
         let machine = &mut wanted.tree.machine;
         let eigenvectors = DragValue::new(&mut wanted.stages.eigenvectors).range(1..=8);
-        number(ui, "k", "Eigenvectors in a feature vector", eigenvectors);
+        number(ui, "k", "eigenvectors", eigenvectors);
         let penalty = DragValue::new(&mut machine.penalty)
             .range(0.1..=1000.0)
             .speed(0.1);
-        number(ui, "C", "Penalty for samples that miss T or t", penalty);
+        number(ui, "C", "penalty", penalty);
         let own = DragValue::new(&mut machine.own)
             .range(0.1..=2.0)
             .speed(0.01);
-        number(
-            ui,
-            "T",
-            "A machine says at least this of its own samples",
-            own,
-        );
+        number(ui, "T", "own samples, at least", own);
         let other = DragValue::new(&mut machine.other)
             .range(0.0..=1.0)
             .speed(0.01);
-        number(
-            ui,
-            "t",
-            "A machine says at most this of the other side's samples",
-            other,
-        );
+        number(ui, "t", "other samples, at most", other);
+        recognition(ui, &mut wanted);
     });
+    if let Pivots::Chosen(names) = &mut wanted.pivots {
+        joints(ui, names);
+    }
     if wanted != *now {
         out.push(Command::Train(TrainCommand::ThesisParams(Box::new(wanted))));
     }
 }
 
 fn pivots(ui: &mut Ui, pivots: &mut Pivots) {
-    let name = |pivots: Pivots| match pivots {
-        Pivots::Thesis => "the 16 of the thesis",
-        Pivots::Roles => "parts of the body",
+    let all = || {
+        PivotSet::thesis()
+            .pivots()
+            .iter()
+            .map(|p| p.name.clone())
+            .collect()
     };
+    let choices = [
+        ("the 16 of the thesis", Pivots::Thesis),
+        ("parts of the body", Pivots::Roles),
+        ("joint by joint", Pivots::Chosen(all())),
+    ];
+    let same = |a: &Pivots, b: &Pivots| std::mem::discriminant(a) == std::mem::discriminant(b);
+    let chosen = choices.iter().find(|(_, choice)| same(choice, pivots));
     ui.label("Pivots");
-    let combo = ComboBox::from_id_salt("pivots").selected_text(name(*pivots));
+    let combo = ComboBox::from_id_salt("pivots");
+    let combo = combo.selected_text(chosen.map_or("a list", |(name, _)| name));
     let combo = combo.show_ui(ui, |ui| {
-        for choice in [Pivots::Thesis, Pivots::Roles] {
-            ui.selectable_value(pivots, choice, name(choice));
+        for (name, choice) in &choices {
+            let on = same(choice, pivots);
+            if ui.selectable_label(on, *name).clicked() && !on {
+                *pivots = choice.clone();
+            }
         }
     });
     widgets::named(&combo.response, WidgetType::ComboBox, "Pivots", false);
+}
+
+/// A box for each of the thesis's pivots; the root is always one.
+fn joints(ui: &mut Ui, names: &mut Vec<String>) {
+    ui.horizontal_wrapped(|ui| {
+        for pivot in PivotSet::thesis().pivots() {
+            let mut on = pivot.parent.is_none() || names.contains(&pivot.name);
+            let can_be_left_out = pivot.parent.is_some();
+            let response = ui.add_enabled(can_be_left_out, Checkbox::new(&mut on, &pivot.name));
+            if response.changed() {
+                names.retain(|name| *name != pivot.name);
+                names.extend(on.then(|| pivot.name.clone()));
+            }
+        }
+    });
+}
+
+/// The `T` of recognition: estimated with the least confidence, or a figure.
+fn recognition(ui: &mut Ui, params: &mut SvrdmTrainParams) {
+    let estimated = matches!(params.thresholds, ThresholdRule::Estimated { .. });
+    ui.label("T of recognition:");
+    let hint = "From samples that are left out of training and from background";
+    if ui
+        .selectable_label(estimated, "estimated")
+        .on_hover_text(hint)
+        .clicked()
+    {
+        params.thresholds = SvrdmTrainParams::tuned().thresholds;
+    }
+    let hint = "A branch of the tree is followed if its machine says at least this";
+    if ui
+        .selectable_label(!estimated, "fixed")
+        .on_hover_text(hint)
+        .clicked()
+    {
+        params.thresholds = ThresholdRule::Fixed;
+    }
+    if !estimated {
+        let accept = DragValue::new(&mut params.stages.accept)
+            .range(0.1..=1.5)
+            .speed(0.005);
+        let response = ui.add(accept);
+        let name = "Value of T of recognition";
+        widgets::named(&response, WidgetType::DragValue, name, false);
+    }
 }
 
 /// Principal components that are kept: a number, or as many as hold a share of the variance, τ.
@@ -95,7 +149,7 @@ fn components(ui: &mut Ui, keep: &mut ComponentCount) {
     }
     let hint = "As many principal components as hold this share of the variance";
     if ui
-        .selectable_label(by_share, "τ")
+        .selectable_label(by_share, "τ: share of variance")
         .on_hover_text(hint)
         .clicked()
     {
@@ -113,14 +167,10 @@ fn components(ui: &mut Ui, keep: &mut ComponentCount) {
     widgets::named(&response, WidgetType::DragValue, name, false);
 }
 
-fn number(ui: &mut Ui, text: &str, hint: &str, value: DragValue<'_>) {
-    ui.label(text).on_hover_text(hint);
+/// A figure under its letter in the thesis, with what that is.
+fn number(ui: &mut Ui, letter: &str, is: &str, value: DragValue<'_>) {
+    ui.label(format!("{letter}: {is}"));
     let response = ui.add(value);
-    widgets::named(
-        &response,
-        WidgetType::DragValue,
-        format!("Value of {text}"),
-        false,
-    );
-    response.on_hover_text(hint);
+    let name = format!("Value of {letter}");
+    widgets::named(&response, WidgetType::DragValue, name, false);
 }

@@ -4,6 +4,7 @@ use super::{Person, made};
 use crate::jobs::thesis::{GRID, TreeNodeView};
 use crate::state::{Command, LibraryCommand, Panel, TimelineCommand, TrainCommand};
 use crate::store::Edit;
+use morec::index::MotionIndex;
 use morec::train::thesis::SvrdmTrainParams;
 
 #[test]
@@ -252,9 +253,78 @@ fn the_figures_of_2009_are_set_and_its_plane_is_large_with_its_thresholds() {
     );
     assert!(person.sees_part("it says T = 1.00"));
     assert!(person.sees_part("it says t = 0.40"));
-    person.click("τ");
+    person.click("τ: share of variance");
     assert!(person.offers("Value of τ"));
     assert!(person.sees("The parameters have changed since it was trained."));
+}
+
+#[test]
+fn whatever_is_chosen_of_the_method_of_2009_can_be_judged() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), 2)]);
+    person.goes_to(Panel::Train);
+    person.click("τ: share of variance");
+    person.click("Cross-validate it");
+    let line = person.state().command_line.clone();
+    assert!(line.contains("--param keep.quality=0.95"), "{line}");
+    person.settle();
+    assert!(
+        person.state().notices.is_empty(),
+        "{:?}",
+        person.state().notices
+    );
+    assert!(person.state().train.judged.is_some());
+    person.click("As in the thesis");
+    assert!(person.offers("Value of T of recognition"));
+    person.click("estimated");
+    assert!(!person.offers("Value of T of recognition"));
+    person.click("Pivots");
+    person.click("joint by joint");
+    person.click("LowerBack");
+    person.click("Train it on these labels");
+    person.settle();
+    let thesis = person.state().train.thesis.clone().unwrap();
+    let pivots = thesis.model.pivots.pivots();
+    assert_eq!(pivots.len(), 15);
+    assert!(pivots.iter().all(|pivot| pivot.name != "LowerBack"));
+}
+
+#[test]
+fn what_is_trained_of_2009_is_an_index_like_any_other() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), 2)]);
+    person.goes_to(Panel::Train);
+    person.click("Train it on these labels");
+    person.settle();
+    let train = &person.state().train;
+    assert_eq!(train.index.as_ref().unwrap().model.method(), "svrdm");
+    assert!(!train.bytes.is_empty());
+    let path = folder.path().join("2009.index");
+    person.command(Command::File(crate::state::FileCommand::ExportIndex(
+        path.clone(),
+    )));
+    let index = MotionIndex::from_bytes(&std::fs::read(path).unwrap()).unwrap();
+    assert_eq!(index.model.method(), "svrdm");
+    person.goes_to(Panel::Label);
+    person.settle();
+    assert!(person.state().detections.is_some());
+}
+
+#[test]
+fn a_class_of_one_clip_does_not_stop_the_judging_of_2009() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), 2)]);
+    let store = person.state().store.as_ref().unwrap();
+    let first = store.snapshot.accepted().next().unwrap().clone();
+    person.command(Command::Edit(Edit::Reclass {
+        ids: vec![first.id],
+        class: "once".to_owned(),
+    }));
+    person.goes_to(Panel::Train);
+    person.click("Cross-validate it");
+    person.settle();
+    let judged = person.state().train.judged.as_ref().unwrap();
+    assert_eq!(judged.untested, ["once"]);
 }
 
 #[test]

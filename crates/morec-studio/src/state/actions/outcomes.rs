@@ -154,7 +154,10 @@ impl State {
             JobOutcome::Similar(similar) => self.found_similar(similar),
             JobOutcome::Aligned(aligned) => self.aligned(aligned),
             JobOutcome::Channel(channel) => self.channel = Some(channel),
-            JobOutcome::Thesis(thesis) => self.thesis_trained(thesis),
+            JobOutcome::Thesis((thesis, trained)) => {
+                self.trained(*trained);
+                self.thesis_trained(thesis);
+            }
             JobOutcome::Map(map) => self.train.map = Some(map),
             JobOutcome::Written(said) => self.say(said),
             JobOutcome::Stopped(JobError::Failed(why)) => {

@@ -21,15 +21,16 @@ impl State {
             return;
         }
         let Some(store) = &self.store else { return };
-        let (db, classes) = (store.path().to_owned(), self.chosen());
-        self.show_line(train_line(&db, &self.thesis_settings(), "2009.index"));
+        let (db, settings) = (store.path().to_owned(), self.thesis_settings());
+        self.train.taught = self.train.now;
+        self.show_line(train_line(&db, &settings, "2009.index"));
         let params = self.train.thesis_params.clone();
         self.jobs.start(
             THESIS,
             true,
             &self.wake,
             JobOutcome::Thesis,
-            move |progress| thesis::run(&db, &classes, params, progress),
+            move |progress| thesis::run(&db, &settings, params, progress),
         );
     }
 

@@ -5,6 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use morec::index::MotionIndex;
+use morec::live::Model;
 use morec_db::labels::DbSample;
 use morec_ops::{CrossvalSettings, LeftOut, TrainSettings};
 
@@ -268,7 +269,12 @@ impl State {
             Err(why) => self.complain(format!("{name}: not written: {why}")),
         }
         if let Some(store) = &self.store {
-            let line = train_line(store.path(), &self.train_settings(), path);
+            let of_2009 = |index: &Arc<MotionIndex>| matches!(index.model, Model::Svrdm(_));
+            let settings = match self.train.index.as_ref().is_some_and(of_2009) {
+                true => self.thesis_settings(),
+                false => self.train_settings(),
+            };
+            let line = train_line(store.path(), &settings, path);
             self.show_line(line);
         }
     }
