@@ -5,6 +5,8 @@
 //! 1 if not) or leaves one out (1 each); its length is the number of such steps. With Eq. 3.45 as corrected: a match
 //! costs nothing, and `EDR(r, ∅) = len(r)`.
 
+use multiversion::multiversion;
+
 use super::{MAX_PROFILE_FRAMES, Normalisation};
 
 /// One unit of cost, in the same number that counts steps: costs first, and of equal costs the longer path is less.
@@ -219,6 +221,7 @@ impl Edr {
 }
 
 /// One diagonal: pairing comes from two diagonals before, leaving out from the one before.
+#[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 fn advance(
     r: &[f32],
     s: &[f32],

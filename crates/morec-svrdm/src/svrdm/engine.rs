@@ -123,9 +123,15 @@ impl SvrdmEngine {
         }
         self.column.fill(Cell::NOTHING);
         let shortest = self.model.params.min_chunks;
+        let least = self.model.params.min_confidence;
         let mut count = 0;
         self.segments
             .push(self.chunks.chunk(), &mut |window, segment| {
+                // Too long or too short for any class to count: nothing, as scoring would have it.
+                if !self.tracking.may_reach(window.chunks() - shortest, least) {
+                    observer.cell(window, Cell::NOTHING);
+                    return;
+                }
                 let (of, sums) = &mut self.ending[count];
                 *of = window;
                 sums.copy_from(segment);

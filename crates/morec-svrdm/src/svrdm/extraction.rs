@@ -61,10 +61,12 @@ impl FeatureExtraction {
     /// Prepares for the feature vectors of these segments, [`AT_ONCE`](super::leading::AT_ONCE) at most: faster than one by one.
     pub(super) fn prepare<'a>(&mut self, segments: impl Iterator<Item = &'a Gram>) {
         let centring = self.centring;
+        let mut set = 0;
         for (lane, segment) in segments.enumerate() {
             (self.leading).set(lane, |i, j| entry(segment, centring, i, j));
+            set = lane + 1;
         }
-        self.leading.solve();
+        self.leading.solve(set);
     }
 
     /// The [feature vector](Self::feature) of the `at`th of the segments that were prepared.

@@ -1,11 +1,11 @@
 //! The leading eigenvectors of several symmetric matrices at once, a matrix in each lane.
 //!
-//! All segments that end with a chunk are described together: what is one after the other in a matrix is then side by side in eight.
+//! All segments that end with a chunk are described together: what is one after the other in a matrix is then side by side in many.
 
 use multiversion::multiversion;
 
 /// Matrices that are solved together.
-pub const AT_ONCE: usize = 8;
+pub const AT_ONCE: usize = 24;
 
 /// A number of each matrix.
 type Lane = [f64; AT_ONCE];
@@ -95,8 +95,13 @@ impl LeadingEigenvectors {
         }
     }
 
-    /// Finds the vectors of all matrices that were [set](Self::set), which are no more after it.
-    pub fn solve(&mut self) {
+    /// Finds the vectors of the first `count` matrices, which were [set](Self::set) and are no more after it.
+    pub fn solve(&mut self, count: usize) {
+        // Lanes without a matrix repeat the first: what is left of an earlier one may take more rounds than any.
+        for entry in &mut self.matrix {
+            let first = entry[0];
+            entry[count.min(AT_ONCE)..].fill(first);
+        }
         solve(self);
     }
 
@@ -417,7 +422,7 @@ mod tests {
             for (lane, m) in matrices.iter().enumerate() {
                 leading.set(lane, |i, j| m[(i, j)]);
             }
-            leading.solve();
+            leading.solve(matrices.len());
             for (lane, m) in matrices.iter().enumerate() {
                 let all = SymmetricEigen::new(m.clone());
                 let mut order: Vec<usize> = (0..dim).collect();
@@ -441,6 +446,30 @@ mod tests {
         }
     }
 
+    proptest! {
+        #[test]
+        fn a_matrix_has_the_same_vectors_alone_and_among_others((dim, count, matrices) in matrices()) {
+            let mut together = LeadingEigenvectors::new(count, dim);
+            let mut alone = together.clone();
+            for (lane, m) in matrices.iter().enumerate() {
+                together.set(lane, |i, j| m[(i, j)]);
+            }
+            together.solve(matrices.len());
+            for (lane, m) in matrices.iter().enumerate() {
+                alone.set(0, |i, j| m[(i, j)]);
+                alone.solve(1);
+                let (Some(a), Some(b)) = (together.vectors(lane), alone.vectors(0)) else {
+                    prop_assert!(together.vectors(lane).is_none() && alone.vectors(0).is_none());
+                    continue;
+                };
+                for j in 0..count {
+                    prop_assert_eq!(together.share(lane, j).to_bits(), alone.share(0, j).to_bits());
+                    prop_assert!((0..dim).all(|i| a(j, i).to_bits() == b(j, i).to_bits()));
+                }
+            }
+        }
+    }
+
     #[test]
     fn what_has_no_direction_is_not_found() {
         let mut leading = LeadingEigenvectors::new(2, 3);
@@ -448,7 +477,7 @@ mod tests {
         leading.set(1, |i, j| if i == j { 1.0 } else { 0.0 });
         leading.set(2, |_, _| f64::NAN);
         leading.set(3, |i, j| if i == j { 3.0 - i as f64 } else { 0.0 });
-        leading.solve();
+        leading.solve(4);
         let found = [0, 1, 2, 3].map(|lane| leading.vectors(lane).is_some());
         assert_eq!(found, [false, false, false, true]);
     }

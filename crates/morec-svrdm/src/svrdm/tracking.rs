@@ -210,6 +210,11 @@ impl SegmentTracking {
         self.reset();
     }
 
+    /// True if a segment of this length, counted from the shortest, may be as certain as `least`.
+    pub(super) fn may_reach(&self, length: usize, least: f64) -> bool {
+        self.most[length] >= least
+    }
+
     /// Most maxima kept at once so far could be: what memory is there for.
     pub fn room(&self) -> usize {
         self.tracked.capacity()
