@@ -94,8 +94,15 @@ pub(crate) fn with<P: Serialize + DeserializeOwned>(
         return Ok(params);
     };
     let (mut tree, mut read, mut mistake) = (usual.clone(), params, None);
+    let unknown = |param: &Param| {
+        let known: Vec<String> = leaves(&usual).into_iter().map(|(path, _)| path).collect();
+        let (name, hint) = (&param.name, nearest(&param.name, &known));
+        of(param, format!("there is no parameter {name}{hint}"))
+    };
     for param in given {
-        put(&mut tree, &usual, param);
+        if !put(&mut tree, &usual, param) {
+            return Err(unknown(param));
+        }
         match serde_json::from_value(tree.clone()) {
             Ok(params) => (read, mistake) = (params, None),
             // A rule's fields may make sense together only: the first mistake stands unless what follows mends it.
@@ -111,11 +118,7 @@ pub(crate) fn with<P: Serialize + DeserializeOwned>(
     }
     let now = serde_json::to_value(&read).unwrap_or_default();
     let ignored = given.iter().find(|param| at(&now, &param.name).is_none());
-    ignored.map_or(Ok(read), |param| {
-        let known: Vec<String> = leaves(&usual).into_iter().map(|(path, _)| path).collect();
-        let (name, hint) = (&param.name, nearest(&param.name, &known));
-        Err(of(param, format!("there is no parameter {name}{hint}")))
-    })
+    ignored.map_or(Ok(read), |param| Err(unknown(param)))
 }
 
 /// The value at a path.
@@ -124,13 +127,16 @@ fn at<'t>(tree: &'t Value, name: &str) -> Option<&'t Value> {
 }
 
 /// Puts a value at its path. Where the path leads into another choice than that of `usual`, as `keep.quality` where
-/// `keep` has `dims`, the choice is exchanged.
-fn put(tree: &mut Value, usual: &Value, param: &Param) {
+/// `keep` has `dims`, the choice is exchanged. False where there is no such path.
+fn put(tree: &mut Value, usual: &Value, param: &Param) -> bool {
     let (mut place, mut usual) = (tree, Some(usual));
     for field in param.name.split('.') {
         usual = match usual {
             Some(Value::Object(fields)) if fields.len() > 1 || fields.contains_key(field) => {
-                fields.get(field)
+                match fields.get(field) {
+                    None => return false,
+                    known => known,
+                }
             }
             // A choice, by its name alone or with its fields.
             Some(_) => {
@@ -146,6 +152,7 @@ fn put(tree: &mut Value, usual: &Value, param: &Param) {
         place = &mut place[field];
     }
     *place = param.value.clone();
+    true
 }
 
 /// The parameters in which `params` is not `usual`, of the same type.

@@ -4,6 +4,7 @@ use morec::features::BoneSet;
 use morec::index::MotionIndex;
 use morec::progress::Progress;
 use morec::reproduce::Setting;
+use morec::svrdm::SegmentDistance;
 use morec::train::thesis::{SvrdmOptions, SvrdmTrainParams};
 use morec::train::{
     Everyday, Mirror, Recipe, TrainOptions, TrainParams, TrainingData, TrainingReport, train_index,
@@ -183,8 +184,23 @@ impl TrainSettings {
     }
 
     fn svrdm_options(&self, of: Setting, given: &[Param]) -> Result<SvrdmOptions, ParamError> {
+        let mut params = params::with(of.params(), given)?;
+        let is_given = |name: &str| given.iter().any(|param| param.name.starts_with(name));
+        // Chunks and rows are counted at the model's rate, and are times: at another rate they are other numbers.
+        if is_given("pose.rate_hz") {
+            let share = params.pose.rate_hz / of.params().pose.rate_hz;
+            let scaled = |frames: usize| ((frames as f64 * share).round() as usize).max(1);
+            if !is_given("stages.chunk_frames") {
+                params.stages.chunk_frames = scaled(params.stages.chunk_frames);
+            }
+            if let SegmentDistance::Rows { every } = &mut params.stages.comparison
+                && !is_given("stages.comparison")
+            {
+                *every = scaled(*every);
+            }
+        }
         Ok(SvrdmOptions {
-            params: params::with(of.params(), given)?,
+            params,
             unlabelled_is_background: self.unlabelled == Unlabelled::Background,
         })
     }
@@ -199,5 +215,32 @@ impl TrainSettings {
         progress: &dyn Progress,
     ) -> Result<(MotionIndex, TrainingReport), OperationError> {
         Ok(train_index(data, &self.recipe()?, progress)?)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn another_rate_brings_its_chunks_along() {
+        let stages = |given: &[&str]| {
+            let settings = TrainSettings {
+                method: Method::Svrdm,
+                params: given.iter().map(|p| p.parse().unwrap()).collect(),
+                ..TrainSettings::default()
+            };
+            let Recipe::Svrdm(options) = settings.recipe().unwrap() else {
+                panic!("another method")
+            };
+            let stages = options.params.stages;
+            (stages.chunk_frames, stages.comparison.every())
+        };
+        assert_eq!(stages(&[]), (16, 4));
+        assert_eq!(stages(&["pose.rate_hz=60"]), (8, 2));
+        assert_eq!(
+            stages(&["pose.rate_hz=60", "stages.chunk_frames=16"]),
+            (16, 2)
+        );
     }
 }
