@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use morec::eval::GroundTruth;
+use morec::labels::{ClassLengths, Sample, class_lengths};
 use morec::live::Model;
 use morec::pivots::{PivotMap, pose_rows_of_clip};
 use morec::svrdm::{Branch, Node, SampleClassifier, SvrdmEngine, SvrdmModel};
@@ -28,6 +29,10 @@ pub struct Thesis {
     pub params: SvrdmTrainParams,
     pub samples: Vec<GroundTruth>,
     pub nodes: Vec<TreeNodeView>,
+    /// For each sample, the nodes on its way down the tree.
+    pub paths: Vec<Vec<usize>>,
+    /// Lengths of the samples of each class.
+    pub lengths: Vec<ClassLengths>,
 }
 
 impl Thesis {
@@ -114,8 +119,14 @@ fn shown(
             TreeNodeView::Branch(boundary(&model, branch, &samples, &vectors, least))
         }
     });
+    let path = |vector: &Vec<f64>| {
+        let path = model.tree.path(vector, model.params.accept);
+        path.iter().map(|step| step.node).collect()
+    };
     Ok(Thesis {
         nodes: nodes.collect(),
+        paths: vectors.iter().map(path).collect(),
+        lengths: class_lengths(data.samples.iter().map(Sample::length)),
         samples,
         params,
         model: model.clone(),

@@ -33,6 +33,7 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
         let text = "The parameters have changed since it was trained.";
         ui.colored_label(c.warn, text);
     }
+    lengths(ui, thesis);
     ui.horizontal_top(|ui| {
         ui.vertical(|ui| {
             ui.set_width((0.25 * ui.available_width()).clamp(130.0, 260.0));
@@ -47,7 +48,35 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
     });
 }
 
-/// A node of the tree, and what is below it.
+/// Lengths of the samples of each class (Table 5.1).
+fn lengths(ui: &mut Ui, thesis: &Thesis) {
+    let table = egui::CollapsingHeader::new("Lengths of the classes");
+    table.show(ui, |ui| {
+        egui::Grid::new("lengths").striped(true).show(ui, |ui| {
+            for title in ["", "samples", "people", "shortest", "median", "longest"] {
+                ui.label(title);
+            }
+            ui.end_row();
+            for of in &thesis.lengths {
+                ui.label(&of.class);
+                ui.label(of.samples.to_string());
+                ui.label(of.people.to_string());
+                for secs in [of.shortest_secs, of.median_secs, of.longest_secs] {
+                    ui.label(format!("{secs:.2} s"));
+                }
+                ui.end_row();
+            }
+        });
+    });
+}
+
+/// True if the sample that was chosen comes through a node.
+fn is_on_path(state: &State, thesis: &Thesis, node: usize) -> bool {
+    let path = state.train.sample.and_then(|at| thesis.paths.get(at));
+    path.is_some_and(|path| path.contains(&node))
+}
+
+/// A node of the tree, and what is below it; those on the way of the sample that was chosen are marked (Fig. 5.2).
 fn node(ui: &mut Ui, state: &State, thesis: &Thesis, at: usize, depth: usize, out: Out) {
     // A tree of this many classes is no deeper; a broken one ends here.
     if depth > 64 {
@@ -59,7 +88,10 @@ fn node(ui: &mut Ui, state: &State, thesis: &Thesis, at: usize, depth: usize, ou
             ui.horizontal(|ui| {
                 ui.add_space(18.0 * depth as f32);
                 widgets::chip(ui, state.classes.place(class), class);
-                ui.label(class);
+                match is_on_path(state, thesis, at) {
+                    true => ui.label(RichText::new(format!("→ {class}")).strong()),
+                    false => ui.label(class),
+                };
             });
         }
         Some(TreeNodeView::Branch(branch)) => {
@@ -71,7 +103,13 @@ fn node(ui: &mut Ui, state: &State, thesis: &Thesis, at: usize, depth: usize, ou
                     branch.sides[0].join(", "),
                     branch.sides[1].join(", ")
                 );
-                let response = ui.add(egui::Button::selectable(on, &text).truncate());
+                let arrow = if is_on_path(state, thesis, at) {
+                    "→ "
+                } else {
+                    ""
+                };
+                let shown = format!("{arrow}{text}");
+                let response = ui.add(egui::Button::selectable(on, shown).truncate());
                 widgets::named(&response, WidgetType::Button, format!("Branch {at}"), on);
                 // Names of many classes are cut off.
                 if response.on_hover_text(text).clicked() {

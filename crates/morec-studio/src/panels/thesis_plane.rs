@@ -18,8 +18,8 @@ const REACH: f32 = 7.0;
 /// The picture, as large as there is room for.
 pub fn show(ui: &mut Ui, state: &State, thesis: &Thesis, branch: &Boundary, out: Out) {
     let c = Colours::now(ui);
-    // As much as is seen at once.
-    let tall = ui.clip_rect().bottom() - ui.cursor().top() - AXIS.y - LEGEND;
+    // As much as is seen at once when it is scrolled to.
+    let tall = ui.clip_rect().height() - AXIS.y - LEGEND;
     let side = (ui.available_width() - AXIS.x - 8.0)
         .min(tall)
         .clamp(300.0, 620.0);

@@ -251,6 +251,14 @@ fn the_figures_of_2009_are_set_and_its_plane_is_large_with_its_thresholds() {
         plane.width() >= 450.0 && plane.width() == plane.height(),
         "{plane:?}"
     );
+    person.click("Lengths of the classes");
+    assert!(person.sees("shortest") && person.sees("longest"));
+    let (first, class) = (&thesis.paths[0], &thesis.samples[0].class);
+    person.command(Command::Train(TrainCommand::Sample(0)));
+    let ends =
+        matches!(&thesis.nodes[*first.last().unwrap()], TreeNodeView::Leaf(leaf) if leaf == class);
+    assert_eq!(person.sees(&format!("→ {class}")), ends);
+    assert!(first[0] == 0 && person.sees_part("→ "));
     assert!(person.sees_part("it says T = 1.00"));
     assert!(person.sees_part("it says t = 0.40"));
     person.click("τ: share of variance");

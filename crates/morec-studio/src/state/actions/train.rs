@@ -184,7 +184,11 @@ impl State {
     /// Starts recognition in the clip that is shown.
     pub(in crate::state) fn want_detections(&mut self, motion: &Arc<ClipMotion>) {
         self.detections = None;
-        let Some(index) = self.train.index.clone() else {
+        // Of a clip of positions an index of rotations says nothing, as its tracks say.
+        let can_look = |index: &Arc<MotionIndex>| {
+            motion.clip.has_rotations() || !index.model.needs_rotations()
+        };
+        let Some(index) = self.train.index.clone().filter(can_look) else {
             return;
         };
         let motion = motion.clone();
