@@ -26,6 +26,8 @@ pub mod coder;
 pub mod humanoid;
 pub mod kinematics;
 pub mod math;
+#[doc(hidden)] // For lines of JSON that arrive live.
+pub mod nan;
 mod parse_error;
 pub mod pose;
 pub mod progress;

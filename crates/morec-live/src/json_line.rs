@@ -31,6 +31,7 @@ use crate::vmc::{HUMANOID, HUMANOID_BONES};
 use morec::features::Hand;
 use morec::live::Recording;
 use morec::math::{Quat, Vec3, rotation_of_xyzw};
+use morec::nan::{NoNumber, without_nan};
 use morec::roles::Role;
 use morec::roles::points::{NUMBERED_HANDS, NumberedPoints, hand_role};
 use serde_json::{Map, Value, json};
@@ -70,6 +71,7 @@ pub struct PoseLine {
 impl PoseLine {
     /// The pose that a line says; the error names the key, what was expected there and what was found.
     pub fn of_line(text: &str) -> Result<Self, String> {
+        let text: &str = &without_nan(text, NoNumber::InList);
         // A list would do for the values of a struct in their order; here it is a mistake.
         let line: PoseFields = match serde_json::from_str(text) {
             Ok(line) if text.trim_start().starts_with('{') => line,

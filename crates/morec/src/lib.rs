@@ -196,6 +196,8 @@ pub use labels::Labels;
 pub use live::{Detection, Event, Recognizer, Session};
 #[cfg(feature = "files")]
 pub use mocap::files;
+#[doc(hidden)] // For lines of JSON that arrive live.
+pub use mocap::nan;
 pub use mocap::{
     BoneSet, Clip, KeyPose, ParseError, Place, Skeleton, TimeSpan, Warning, clip, humanoid,
     kinematics, math, pose, progress, resample, rng, roles,

@@ -129,7 +129,7 @@ fn by_content(path: &Path, frames: Option<&FrameFiles>) -> FileKind {
     match probe(&head, "") {
         Ok(format) if format.is_skeleton() => FileKind::Needed,
         Ok(_) => FileKind::Clip,
-        Err(error) if error.found.starts_with("what looks like") && !is_media(&error.found) => {
+        Err(error) if is_motion(&error.found) => {
             FileKind::NotRead(FileErrorKind::NotRead(error.found))
         }
         Err(_) => FileKind::Other,
@@ -140,6 +140,13 @@ fn head_of(path: &Path) -> io::Result<Vec<u8>> {
     let mut head = Vec::new();
     File::open(path)?.take(HEAD_BYTES).read_to_end(&mut head)?;
     Ok(head)
+}
+
+/// True of what is found in a file that holds motion, but none that is read.
+fn is_motion(found: &str) -> bool {
+    let is_format = found.starts_with("what looks like") && !is_media(found);
+    let measures = ["x and y alone", "angles, rotations"];
+    is_format || measures.iter().any(|start| found.starts_with(start))
 }
 
 /// Pictures and videos lie beside motion without being any.

@@ -1,5 +1,8 @@
 //! Rows and cells of tables of text, and the numbers in them.
 
+use std::borrow::Cow;
+
+use super::encoding::Encoding;
 use super::{Limits, ParseError, Place};
 
 /// Decimal separator.
@@ -63,6 +66,15 @@ pub(super) fn clock(cell: &str) -> Option<f64> {
     (none_behind && (0.0..=90_000.0).contains(&secs)).then_some(secs)
 }
 
+/// Text in Shift-JIS or Latin-1 as UTF-8; what is UTF-8 or binary stays as it is. O(bytes).
+pub(super) fn utf8(bytes: &[u8]) -> Cow<'_, [u8]> {
+    match Encoding::of(bytes) {
+        Encoding::Utf8 => Cow::Borrowed(bytes),
+        _ if bytes.contains(&0) => Cow::Borrowed(bytes),
+        other => Cow::Owned(other.decode(bytes).into_bytes()),
+    }
+}
+
 /// Rows that are not blank, with their line numbers from 1. The text is UTF-8 but for single bytes in names, with or
 /// without a byte order mark.
 ///
@@ -86,9 +98,7 @@ pub(super) fn lines<'a>(
     let ends = bytes.iter().filter(|b| matches!(b, b'\n' | b'\r'));
     limits.afford(ends.count() + 1, 2 * size_of::<(u64, &str)>())?;
     let mut rows = Vec::new();
-    let mut line = 0;
-    for row in bytes.split(|&b| b == b'\n').flat_map(mac_lines) {
-        line += 1;
+    for (line, row) in numbered_lines(bytes) {
         if row.len() > limits.line_bytes {
             let expected = format!("a line of at most {} bytes", limits.line_bytes);
             return Err(ParseError::new(
@@ -102,14 +112,30 @@ pub(super) fn lines<'a>(
             Ok(text) => text,
             Err(error) => std::str::from_utf8(&row[..error.valid_up_to()]).unwrap_or_default(),
         };
-        if !text
-            .trim_matches(|c: char| c.is_whitespace() || matches!(c, ',' | ';' | '"'))
-            .is_empty()
-        {
+        if !is_blank(text) {
             rows.push((line, text.trim_end_matches('\r')));
         }
     }
     Ok(rows)
+}
+
+fn numbered_lines(bytes: &[u8]) -> impl Iterator<Item = (u64, &[u8])> {
+    let rows = bytes.split(|&b| b == b'\n').flat_map(mac_lines);
+    (1..).zip(rows)
+}
+
+fn is_blank(text: &str) -> bool {
+    let says_nothing = |c: char| c.is_whitespace() || matches!(c, ',' | ';' | '"');
+    text.trim_matches(says_nothing).is_empty()
+}
+
+/// The line numbers of rows whose cells are all empty.
+pub(super) fn empty_rows(bytes: &[u8]) -> impl Iterator<Item = u64> {
+    let rows = numbered_lines(bytes).filter(|(_, row)| {
+        let separated = row.iter().any(|b| matches!(b, b',' | b';' | b'\t'));
+        separated && std::str::from_utf8(row).is_ok_and(is_blank)
+    });
+    rows.map(|(line, _)| line)
 }
 
 /// The lines of old Macintosh files, which end in a carriage return alone.
@@ -121,7 +147,7 @@ fn mac_lines(row: &[u8]) -> impl Iterator<Item = &[u8]> {
 /// The cells of a row, without blanks and quotes around them; without a separator, at blanks.
 pub(super) fn split(row: &str, separator: Option<char>) -> Vec<&str> {
     let Some(separator) = separator else {
-        return row.split_whitespace().collect();
+        return at_blanks(row);
     };
     let mut cells = Vec::new();
     let (mut start, mut quoted) = (0, false);
@@ -135,6 +161,19 @@ pub(super) fn split(row: &str, separator: Option<char>) -> Vec<&str> {
     }
     cells.push(bare(&row[start..]));
     cells
+}
+
+/// Cells between blanks; one in quotes may hold some.
+fn at_blanks(row: &str) -> Vec<&str> {
+    if !row.contains('"') {
+        return row.split_whitespace().collect();
+    }
+    let mut quoted = false;
+    let cells = row.split(|c: char| {
+        quoted ^= c == '"';
+        c.is_whitespace() && !quoted
+    });
+    cells.filter(|cell| !cell.is_empty()).map(bare).collect()
 }
 
 fn bare(cell: &str) -> &str {

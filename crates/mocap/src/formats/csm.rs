@@ -6,7 +6,7 @@
 use super::cells::{Decimal, lines, number};
 use super::descriptor::FormatDescriptor;
 use super::points::{Point, UNSEEN, check_size};
-use super::timing::{Clock, TimedPoints};
+use super::timing::{Clock, Stamps, TimedPoints};
 use super::{Limits, Loaded, ParseError, Place, Warning};
 use crate::math::Vec3;
 use crate::parse_error::shortened;
@@ -44,7 +44,7 @@ pub fn read(
     let body = &rows[heading.rows..];
     check_size(heading.markers.len(), body.len(), bytes.len(), limits)?;
     let mut warnings = Vec::new();
-    let (points, times) = heading.frames(body, limits, &mut warnings)?;
+    let (points, numbers) = heading.frames(body, limits, &mut warnings)?;
     let clock = Clock {
         given_hz: rate_hz,
         stated_hz: heading.rate_hz,
@@ -52,7 +52,7 @@ pub fn read(
     };
     let timed = TimedPoints {
         points,
-        times_secs: times,
+        stamps: Stamps::none(numbers.len()).numbered(numbers),
         clock,
         metres_per_unit: None,
     };
@@ -94,7 +94,7 @@ impl<'a> CsmHeading<'a> {
         heading
     }
 
-    /// The markers, and the time of each frame by its number.
+    /// The markers, and the number of each frame.
     fn frames(
         &self,
         body: &[(u64, &str)],
@@ -109,10 +109,9 @@ impl<'a> CsmHeading<'a> {
                 positions: Vec::with_capacity(body.len()),
             })
             .collect();
-        let rate_hz = self.rate_hz.unwrap_or(ASSUMED_HZ);
-        let mut times = Vec::with_capacity(body.len());
+        let mut numbers = Vec::with_capacity(body.len());
         for &(line, row) in body {
-            if times.len() == limits.frames {
+            if numbers.len() == limits.frames {
                 let expected = format!("at most {} frames", limits.frames);
                 return Err(ParseError::new(Place::Line(line), expected, "more"));
             }
@@ -123,12 +122,12 @@ impl<'a> CsmHeading<'a> {
                 warnings.push(Warning::new(Place::Line(line), text));
                 continue;
             };
-            times.push(Some(frame / rate_hz));
+            numbers.push(Some(frame));
             self.push_frame(&mut points, words, line, warnings);
         }
-        self.check_count(times.len(), warnings);
-        match times.last() {
-            Some(_) => Ok((points, times)),
+        self.check_count(numbers.len(), warnings);
+        match numbers.last() {
+            Some(_) => Ok((points, numbers)),
             None => Err(ParseError::new(
                 Place::Line(body.last().map_or(1, |row| row.0)),
                 "frames below `$Points`",

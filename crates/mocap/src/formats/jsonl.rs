@@ -13,11 +13,12 @@ use super::cells::lines;
 use super::descriptor::FormatDescriptor;
 use super::head::Head;
 use super::points::{Point, PointTable, UNSEEN, check_size};
-use super::timing::{Clock, Schedule};
+use super::timing::{BetweenFrames, Clock, Schedule, Stamps};
 use super::{Limits, Loaded, ParseError, Place, Warning, json};
 use crate::clip::{Clip, Joint, JointTrack, Skeleton};
 use crate::humanoid::{HUMANOID, HumanoidBone};
 use crate::math::{Quat, Vec3, rotation_of_xyzw, same_hemisphere, slerp};
+use crate::nan::{NoNumber, without_nan};
 use crate::pose::Hand;
 use crate::roles::Role;
 use crate::roles::points::{NUMBERED_HANDS, NumberedPoints, hand_role};
@@ -99,7 +100,7 @@ impl PoseRecord {
 /// Recorded motion of one performer.
 #[derive(Default)]
 struct RecordedPerformer {
-    times: Vec<Option<f64>>,
+    stamps: Stamps,
     lines: Vec<PoseRecord>,
 }
 
@@ -129,7 +130,8 @@ pub fn read(
     }
     let mut broken: Vec<(u64, String)> = Vec::new();
     for (number, text) in &rows {
-        let line = serde_json::from_str::<PoseRecord>(text).map_err(|error| error.to_string());
+        let text = without_nan(text, NoNumber::InList);
+        let line = serde_json::from_str::<PoseRecord>(&text).map_err(|error| error.to_string());
         let named = |mut line: PoseRecord| line.name_points().map(|()| line);
         match line.and_then(named) {
             Ok(line) if line.positions.is_empty() && line.rotations.is_empty() => {
@@ -140,7 +142,7 @@ pub fn read(
             }
             Ok(line) => {
                 let performer = performers.entry((line.actor, line.hand)).or_default();
-                performer.times.push(line.t.filter(|t| t.is_finite()));
+                performer.stamps.secs.push(line.t.filter(|t| t.is_finite()));
                 performer.lines.push(line);
             }
             Err(error) => broken.push((*number, error)),
@@ -174,7 +176,7 @@ pub fn read(
             stated_hz: None,
             assumed_hz: ASSUMED_HZ,
         };
-        let schedule = Schedule::of(&performer.times, &clock, &mut warnings);
+        let schedule = Schedule::of(&performer.stamps, &clock, &mut warnings);
         if performer
             .lines
             .iter()
@@ -294,15 +296,15 @@ fn turned(
         warnings.push(Warning::new(Place::File, text));
     }
     if let Some(places) = &schedule.places {
-        let pose = |&(f, t, _): &(usize, f64, bool)| match t > 0.0 {
+        let pose = |place: &BetweenFrames| match place.t > 0.0 {
             true => (0..joints)
-                .map(|j| slerp(&poses[f][j], &poses[f + 1][j], t))
+                .map(|j| slerp(&poses[place.before][j], &poses[place.after][j], place.t))
                 .collect(),
-            false => poses[f].clone(),
+            false => poses[place.before].clone(),
         };
-        let root = |&(f, t, _): &(usize, f64, bool)| match t > 0.0 {
-            true => roots[f].lerp(&roots[f + 1], t),
-            false => roots[f],
+        let root = |place: &BetweenFrames| match place.t > 0.0 {
+            true => roots[place.before].lerp(&roots[place.after], place.t),
+            false => roots[place.before],
         };
         (poses, roots) = (
             places.iter().map(pose).collect(),
@@ -319,7 +321,7 @@ fn turned(
             joint: 0,
             positions: roots,
         }],
-        repaired: Vec::new(),
+        repaired: schedule.gaps(),
         points: None,
     })
 }

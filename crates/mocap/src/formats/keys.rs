@@ -32,6 +32,9 @@ const ANY_HZ: f64 = 60.0;
 /// Keys farther apart than this were set by hand; motion between them is sampled more finely.
 const SPARSE_SECS: f64 = 0.11;
 
+/// Keys that were reduced lie on some grid of many frames a second by chance: one of more than this many times what is stated is none.
+const MOST_OF_STATED: f64 = 2.0;
+
 /// Sampling times of keys.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct KeyGrid {
@@ -59,7 +62,7 @@ impl KeyGrid {
 }
 
 /// The grid on which `times` (seconds, in any order) lie: `preferred_hz` if they do, the rate at which they follow each
-/// other, the first usual rate of which they are a part, else 60 Hz. None without a key. O(n log n).
+/// other, the first usual rate of which they are a part, else what is preferred, else 60 Hz. None without a key. O(n log n).
 pub(super) fn grid(mut times: Vec<f64>, preferred_hz: Option<f64>) -> Option<KeyGrid> {
     times.retain(|time| time.is_finite());
     times.sort_by(f64::total_cmp);
@@ -72,21 +75,31 @@ pub(super) fn grid(mut times: Vec<f64>, preferred_hz: Option<f64>) -> Option<Key
     let found = preferred_hz
         .filter(|&hz| hz > 0.0 && fits(hz))
         .or_else(|| even_rate(&times))
-        .or_else(|| USUAL_HZ.into_iter().find(|&hz| fits(hz)));
-    let rate_hz = found.unwrap_or(ANY_HZ);
+        .or_else(|| {
+            let stated = preferred_hz.map_or(f64::INFINITY, |hz| MOST_OF_STATED * hz);
+            let usual = USUAL_HZ.into_iter().filter(|&hz| hz <= stated);
+            usual.into_iter().find(|&hz| fits(hz))
+        });
+    let plausible = preferred_hz.filter(|hz| (1.0..=1000.0).contains(hz));
+    let rate_hz = found.or(plausible).unwrap_or(ANY_HZ);
+    Some(at_rate(first, last, rate_hz, found.is_some()))
+}
+
+/// The grid of `rate_hz` from one time to another.
+pub(super) fn at_rate(first: f64, last: f64, rate_hz: f64, exact: bool) -> KeyGrid {
     let steps = (last - first) * rate_hz;
     let last_step = if (steps - steps.round()).abs() < 0.05 {
         steps.round()
     } else {
         steps.ceil()
     };
-    Some(KeyGrid {
+    KeyGrid {
         start_secs: first,
         rate_hz,
         // As floats saturate, a year of nanoseconds is a number, too; limits are the reader's business.
         frames: (last_step as usize).saturating_add(1),
-        exact: found.is_some(),
-    })
+        exact,
+    }
 }
 
 /// A usual rate within two hundredths of `hz`.
@@ -171,6 +184,9 @@ mod tests {
             (1.0, 24.0, 25)
         );
         let odd = vec![0.0, 0.0171, 0.0533, 0.1378, 0.1517, 0.2];
-        assert_eq!(rate(odd), (60.0, 13, false));
+        assert_eq!(rate(odd.clone()), (60.0, 13, false));
+        // The scene's rate, not one on which they lie by chance.
+        let stated = grid(odd, Some(30.0)).unwrap();
+        assert_eq!((stated.rate_hz, stated.frames), (30.0, 7));
     }
 }

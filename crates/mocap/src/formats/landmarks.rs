@@ -5,6 +5,7 @@
 //! places in the picture.
 
 mod hands;
+mod leap;
 mod matrix;
 mod rows;
 
@@ -12,12 +13,14 @@ use std::collections::HashMap;
 
 use serde_json::{Map, Value};
 
+use super::cells::clock;
 use super::descriptor::FormatDescriptor;
 use super::points::{Point, UNSEEN, check_size};
-use super::table::{axis_of, to_seconds};
-use super::timing::{Clock, TimedPoints};
+use super::table::axis_of;
+use super::timing::{Clock, Stamps, TimedPoints};
 use super::{Limits, Loaded, ParseError, Place, Warning, json};
 use crate::math::Vec3;
+use crate::nan::{NoNumber, without_nan};
 
 pub(super) const FORMAT: FormatDescriptor = FormatDescriptor {
     name: "landmarks",
@@ -47,7 +50,17 @@ pub(super) fn looks_so(head: &[u8]) -> bool {
         head.windows(word.len())
             .any(|at| at.eq_ignore_ascii_case(word))
     };
-    let words: [&[u8]; 7] = [
+    let words: [&[u8]; 17] = [
+        b"pointables",
+        b"palmPosition",
+        b"palm_position",
+        b"\"hips\"",
+        b"\"pelvis\"",
+        b"left_hip",
+        b"lefthip",
+        b"left_wrist",
+        b"left_hand\"",
+        b"\"frames\":[[",
         b"landmark",
         b"keypoint",
         b"joints",
@@ -65,18 +78,49 @@ pub(super) fn looks_so(head: &[u8]) -> bool {
             .any(|at| at[0] == b'[' && matches!(at[1], b'[' | b'-' | b'0'..=b'9'));
     let text = head.trim_ascii_start();
     matches!(text, [b'{' | b'[', ..])
-        && numbers
-        && (words.iter().any(|word| contains(word)) || is_list_of_lists(text))
+        && (numbers || is_list_of_lists(text))
+        && (words.iter().any(|word| contains(word))
+            || is_list_of_lists(text)
+            || has_many_places(head))
         && !others.iter().any(|word| contains(word))
 }
 
-/// Frames without a word: `[[[0.1, 0.9, 0.0], …`.
+/// True if there are more places `{"x": …, "y": …, "z": …}` than those of a camera or a scene.
+fn has_many_places(head: &[u8]) -> bool {
+    const LEAST: usize = 15;
+    let count = |axis: &[u8; 4]| {
+        let found = head
+            .windows(axis.len())
+            .filter(|at| at.eq_ignore_ascii_case(axis));
+        found.count()
+    };
+    [b"\"x\":", b"\"y\":", b"\"z\":"]
+        .into_iter()
+        .all(|axis| count(axis) >= LEAST)
+}
+
+/// Frames without a word: `[[[0.1, 0.9, 0.0], …`, `[[{"x": 0.1, …`, perhaps behind frames in which nobody is.
 fn is_list_of_lists(text: &[u8]) -> bool {
-    let mut marks = text.iter().filter(|b| !b.is_ascii_whitespace());
-    (0..3).all(|_| marks.next() == Some(&b'['))
-        && marks
-            .next()
-            .is_some_and(|b| matches!(b, b'-' | b'0'..=b'9'))
+    let marks = text.iter().filter(|b| !b.is_ascii_whitespace());
+    let marks: Vec<u8> = marks.take(4000).copied().collect();
+    let Some(mut rest) = marks.strip_prefix(b"[") else {
+        return false;
+    };
+    let nobody: [&[u8]; 4] = [b"[],", b"{},", b"null,", b"[[]],"];
+    while let Some(behind) = nobody.iter().find_map(|frame| rest.strip_prefix(*frame)) {
+        rest = behind;
+    }
+    // One list is a frame; one within it is a body or a point.
+    let lists = rest.iter().take_while(|b| **b == b'[').count();
+    let point = &rest[lists..];
+    let is_number = matches!(point, [b'-' | b'0'..=b'9', ..] | [b'N', b'a', ..]);
+    let axes: [&[u8]; 2] = [b"\"x\":", b"\"y\":"];
+    let is_place = point.starts_with(b"{")
+        && axes.iter().all(|axis| {
+            let mut found = point.windows(axis.len());
+            found.any(|at| at.eq_ignore_ascii_case(axis))
+        });
+    lists >= 2 && is_number || lists >= 1 && is_place
 }
 
 /// Lists of more are frames, not bodies.
@@ -117,9 +161,12 @@ pub fn read(
     rows::into_points(&mut document, names.as_ref().map(Vec::len));
     let by_name = tracks_in(&document, DEEPEST);
     let frames = frames_in(&document, DEEPEST)
-        .or_else(|| by_name.as_ref().map(|frames| frames.iter().collect()))
+        .or_else(|| {
+            let frames = by_name.as_ref()?.iter();
+            Some(frames.map(|frame| (None, frame)).collect())
+        })
         .ok_or_else(|| no_frames(&document))?;
-    let people = frames.iter().map(|frame| match hands_in(frame) {
+    let people = frames.iter().map(|(_, frame)| match hands_in(frame) {
         Some(_) => 0,
         None => people_in(frame, DEEPEST),
     });
@@ -132,8 +179,10 @@ pub fn read(
     }
     let mut points: Vec<Point> = Vec::new();
     let mut times = Vec::with_capacity(frames.len());
-    for (at, frame) in frames.iter().enumerate() {
+    let mut numbers = Vec::with_capacity(frames.len());
+    for (at, (number, frame)) in frames.iter().enumerate() {
         times.push(time_of(frame));
+        numbers.push(number.or_else(|| number_of(frame)));
         let found = hands_in(frame)
             .or_else(|| points_in(frame, DEEPEST))
             .unwrap_or_default();
@@ -167,7 +216,7 @@ pub fn read(
         point.positions.resize(frames.len(), UNSEEN);
     }
     // A field of times need not say its unit.
-    to_seconds(&mut times, None);
+    let stamps = Stamps::of_values(times, None).numbered(numbers);
     let clock = Clock {
         given_hz: rate_hz,
         stated_hz: rate_in(&document),
@@ -175,7 +224,7 @@ pub fn read(
     };
     let timed = TimedPoints {
         points,
-        times_secs: times,
+        stamps,
         clock,
         metres_per_unit: None,
     };
@@ -185,12 +234,14 @@ pub fn read(
 /// The points of hands whose sides a frame says.
 fn hands_in(frame: &Value) -> Option<Vec<(String, Vec3)>> {
     const WITHIN_HAND: usize = 3;
-    hands::in_frame(frame, &|hand| points_in(hand, WITHIN_HAND))
+    leap::hands_in(frame).or_else(|| hands::in_frame(frame, &|hand| points_in(hand, WITHIN_HAND)))
 }
 
 /// The document; several one behind the other, as in lines of JSON, are a list.
 fn parse(bytes: &[u8], warnings: &mut Vec<Warning>) -> Result<Value, ParseError> {
     let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
+    let plain = std::str::from_utf8(bytes).map(|text| without_nan(text, NoNumber::Alone));
+    let bytes = plain.as_ref().map_or(bytes, |text| text.as_bytes());
     let mut values = Vec::new();
     for value in serde_json::Deserializer::from_slice(bytes).into_iter::<Value>() {
         match value {
@@ -211,6 +262,10 @@ fn parse(bytes: &[u8], warnings: &mut Vec<Warning>) -> Result<Value, ParseError>
 
 fn no_frames(document: &Value) -> ParseError {
     let expected = "a list of frames, each with at least 5 points that have x, y and z";
+    if leap::is_so(document) {
+        let found = "a recording of a Leap Motion without places of fingers: give frames with `hands` and `pointables`";
+        return ParseError::new(Place::File, expected, found);
+    }
     if let Some(count) = rows::unknown(document) {
         let found = format!(
             "{count} numbers in a row, which are no set of points that is known: give each point as [x, y, z], or the names of \
@@ -256,12 +311,14 @@ fn is_flat(value: &Value, depth: usize) -> bool {
 }
 
 /// The first list, or object of numbered fields, of which most elements hold points.
-fn frames_in(value: &Value, depth: usize) -> Option<Vec<&Value>> {
+fn frames_in(value: &Value, depth: usize) -> Option<Vec<NumberedFrame<'_>>> {
     if depth == 0 {
         return None;
     }
     let list = elements(value).filter(|list| {
-        let holds = |frame: &&&Value| points_in(frame, depth - 1).is_some();
+        let holds = |frame: &&NumberedFrame| {
+            leap::hands_in(frame.1).is_some() || points_in(frame.1, depth - 1).is_some()
+        };
         // All over the list: nobody may be there for long.
         let step = list.len().div_ceil(LOOKED_AT).max(1);
         let looked_at = list.len().div_ceil(step);
@@ -299,10 +356,13 @@ fn tracks_in(value: &Value, depth: usize) -> Option<Vec<Value>> {
     own.or_else(|| children(value).find_map(|child| tracks_in(child, depth - 1)))
 }
 
+/// A frame with its number, where the field that it is in says it.
+type NumberedFrame<'a> = (Option<f64>, &'a Value);
+
 /// The elements of a list, or of an object whose fields are numbers, in their order.
-fn elements(value: &Value) -> Option<Vec<&Value>> {
+fn elements(value: &Value) -> Option<Vec<NumberedFrame<'_>>> {
     match value {
-        Value::Array(list) => Some(list.iter().collect()),
+        Value::Array(list) => Some(list.iter().map(|child| (None, child)).collect()),
         Value::Object(fields) => {
             let mut numbered: Option<Vec<(u64, &Value)>> = Some(Vec::with_capacity(fields.len()));
             for (key, child) in fields {
@@ -323,8 +383,10 @@ fn elements(value: &Value) -> Option<Vec<&Value>> {
             let mut numbered = numbered.filter(|fields| fields.len() > 1)?;
             numbered.sort_by_key(|field| field.0);
             numbered.dedup_by_key(|field| field.0);
-            (numbered.len() == fields.len())
-                .then(|| numbered.into_iter().map(|field| field.1).collect())
+            (numbered.len() == fields.len()).then(|| {
+                let frames = numbered.into_iter();
+                frames.map(|(n, frame)| (Some(n as f64), frame)).collect()
+            })
         }
         _ => None,
     }
@@ -513,32 +575,88 @@ fn place_of(point: &Value) -> Option<Vec3> {
     }
 }
 
-/// The time of a frame in seconds.
+/// The time of a frame in seconds, as far as the name of its field says the unit.
 fn time_of(frame: &Value) -> Option<f64> {
-    const KEYS: [(&str, f64); 14] = [
-        ("ts", 1.0),
-        ("Timestamp", 1.0),
-        ("RelativeTime", 1e-7),
-        ("t", 1.0),
-        ("time", 1.0),
-        ("timestamp", 1.0),
-        ("time_secs", 1.0),
-        ("timestamp_ms", 1e-3),
-        ("time_ms", 1e-3),
-        ("timestamp_us", 1e-6),
-        ("timestamp_usec", 1e-6),
-        ("timestamp_ns", 1e-9),
-        ("timestampMs", 1e-3),
-        ("univTime", 1e-3),
-    ];
-    KEYS.iter()
-        .find_map(|(key, unit)| Some(frame.get(key)?.as_f64()? * unit))
-        .filter(|time| time.is_finite())
+    const KEYS: [&str; 6] = ["t", "ts", "secs", "seconds", "zeit", "stamp"];
+    let fields = frame.as_object()?;
+    let time = |(key, value): (&String, &Value)| {
+        let lower = key.to_lowercase();
+        let known = KEYS.contains(&lower.as_str()) || lower.contains("time");
+        let other = ["zone", "step", "delta", "total", "frame"]
+            .iter()
+            .any(|o| lower.contains(o));
+        let number = value
+            .as_f64()
+            .or_else(|| clock(value.as_str()?))
+            .filter(|_| known && !other)?;
+        let unit = match () {
+            // Kinect's ticks of 100 ns.
+            () if lower == "relativetime" => 1e-7,
+            () if lower == "univtime" || lower.ends_with("ms") || lower.ends_with("millis") => 1e-3,
+            () if lower.ends_with("us") || lower.ends_with("usec") || lower.ends_with("micros") => {
+                1e-6
+            }
+            () if lower.ends_with("ns") || lower.ends_with("nanos") => 1e-9,
+            () => 1.0,
+        };
+        Some(number * unit).filter(|time| time.is_finite())
+    };
+    fields.iter().find_map(time)
 }
 
+/// The number of a frame.
+fn number_of(frame: &Value) -> Option<f64> {
+    const KEYS: [&str; 12] = [
+        "frame",
+        "frame_id",
+        "frameid",
+        "frame_number",
+        "framenumber",
+        "frame_num",
+        "frame_index",
+        "frameindex",
+        "frame_idx",
+        "frameidx",
+        "frame_no",
+        "index",
+    ];
+    let fields = frame.as_object()?;
+    let number = |(key, value): (&String, &Value)| {
+        let known = KEYS.contains(&key.to_lowercase().as_str());
+        value.as_f64().filter(|_| known)
+    };
+    fields.iter().find_map(number)
+}
+
+/// The rate in a field of the document, or of one within it, whatever it is called.
 fn rate_in(document: &Value) -> Option<f64> {
-    const KEYS: [&str; 5] = ["fps", "frame_rate", "frameRate", "rate", "framerate"];
-    let found = |value: &Value| KEYS.iter().find_map(|key| value.get(key)?.as_f64());
+    const KEYS: [&str; 16] = [
+        "fps",
+        "framerate",
+        "rate",
+        "currentframerate",
+        "samplingrate",
+        "samplerate",
+        "frequency",
+        "hz",
+        "framespersecond",
+        "ratehz",
+        "frameratehz",
+        "videofps",
+        "capturerate",
+        "samplingfrequency",
+        "avgframerate",
+        "recordingrate",
+    ];
+    let found = |value: &Value| {
+        let rate = |(key, value): (&String, &Value)| {
+            let letters: String = key.chars().filter(|c| c.is_alphabetic()).collect();
+            let known = KEYS.contains(&letters.to_lowercase().as_str());
+            let text = || value.as_str()?.trim().parse().ok();
+            value.as_f64().or_else(text).filter(|_| known)
+        };
+        value.as_object()?.iter().find_map(rate)
+    };
     found(document).or_else(|| children(document).find_map(found))
 }
 

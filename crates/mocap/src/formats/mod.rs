@@ -33,6 +33,7 @@ pub mod container;
 pub mod csm;
 pub mod deepmimic;
 mod descriptor;
+mod encoding;
 #[cfg(feature = "fbx")]
 pub mod fbx;
 mod fbx_format;

@@ -10,11 +10,11 @@ use super::builder::{self, ClipBuilder};
 use super::descriptor::FormatDescriptor;
 use super::npy::{self, Array};
 use super::points::{BODY_OF_THESE, Point, UNSEEN, WITH_HANDS_AND_FACE, check_size};
-use super::timing::{Clock, TimedPoints};
+use super::timing::{Clock, Stamps, TimedPoints};
 use super::{Limits, Loaded, ParseError, Place, Warning, container};
 use crate::clip::Joint;
 use crate::math::{Quat, Vec3, rotation_of_xyzw};
-use crate::roles::points::numbered_counts;
+use crate::roles::points::{NUMBERED_HANDS, numbered_counts};
 
 pub(super) const FORMAT: FormatDescriptor = FormatDescriptor {
     name: "numpy",
@@ -64,7 +64,20 @@ const NAMES: [&str; 8] = [
     "bodyparts",
     "landmark_names",
 ];
-const RATE: [&str; 7] = [
+const TIMES: [&str; 7] = [
+    "times",
+    "timestamps",
+    "time",
+    "timestamp",
+    "t",
+    "time_secs",
+    "times_secs",
+];
+const RATE: [&str; 11] = [
+    "sampling_rate",
+    "sample_rate",
+    "frequency",
+    "hz",
     "rate_hz",
     "fps",
     "frame_rate",
@@ -96,7 +109,7 @@ pub fn read(
     let mut archive = ArrayArchive::default();
     let mut limits = limits.of_packed(bytes.len());
     if bytes.starts_with(b"PK") {
-        let keys = || POSITIONS.iter().chain(&NAMES).chain(&RATE);
+        let keys = || POSITIONS.iter().chain(&NAMES).chain(&RATE).chain(&TIMES);
         let wanted = |path: &str| {
             let key = key_of(path);
             SKELETON.contains(&key) || keys().any(|known| *known == key)
@@ -140,9 +153,16 @@ pub fn read(
         stated_hz: stated,
         assumed_hz: ASSUMED_HZ,
     };
+    let times = archive
+        .first(&TIMES)
+        .filter(|times| times.values.len() == shape.frames);
+    let stamps = match times {
+        Some(times) => Stamps::of_values(times.values.iter().copied().map(Some).collect(), None),
+        None => Stamps::none(shape.frames),
+    };
     let timed = TimedPoints {
         points,
-        times_secs: vec![None; shape.frames],
+        stamps,
         clock,
         metres_per_unit: None,
     };
@@ -195,6 +215,7 @@ impl PointArray {
         let known = |numbers: usize| {
             let points = (numbers.is_multiple_of(3)).then_some(numbers / 3)?;
             let fits = numbered_counts()
+                .chain(NUMBERED_HANDS)
                 .chain(WITH_HANDS_AND_FACE)
                 .any(|known| known == points);
             fits.then_some(points)

@@ -5,7 +5,7 @@ mod point;
 
 pub(super) use self::point::{Point, SHORT_GAP_SECS, UNSEEN};
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use self::gaps::{Filled, union};
 use self::point::{SHOWN, is_seen};
@@ -13,6 +13,7 @@ use super::{Limits, Loaded, ParseError, Place, Warning};
 use crate::clip::{Clip, Points};
 use crate::math::{Quat, Vec3};
 use crate::pose::Hand;
+use crate::roles::Role;
 use crate::roles::points::{numbered_counts, recognise_posed, subject_of};
 
 /// Models of face and hands beside the body: their points come behind its 33.
@@ -47,10 +48,15 @@ impl PointTable {
             let found = self.points.len().to_string();
             return Err(ParseError::new(Place::File, expected, found));
         }
-        self.mark_unseen();
+        self.mark_unseen(&mut warnings);
         self.name_subjects();
         self.keep_body(&mut warnings);
         self.leave_out(&mut warnings);
+        if self.is_in_picture() {
+            let text = "these are places in a picture, with a guess at depth or none: directions of limbs are wrong; \
+                give places in the world (MediaPipe's `pose_world_landmarks`)";
+            warnings.push(Warning::new(Place::File, text));
+        }
         if self.points.is_empty() {
             return Err(ParseError::new(
                 Place::File,
@@ -67,18 +73,90 @@ impl PointTable {
     }
 
     /// Positions with a coordinate that is not finite, and those at the origin where that means so, become unseen.
-    fn mark_unseen(&mut self) {
+    fn mark_unseen(&mut self, warnings: &mut Vec<Warning>) {
         let zero_is_missing = self.zero_is_missing;
+        let mut nines = 0;
+        let rests = |p: &Vec3| *p == Vec3::zeros();
+        // Who has nothing but the origin was not there.
+        let moving: BTreeSet<String> = (self.points.iter())
+            .filter(|point| point.positions.iter().any(|p| is_seen(p) && !rests(p)))
+            .map(|point| subject_of(&point.name).to_owned())
+            .collect();
         for point in &mut self.points {
             // The middle of the hips may be the origin of every frame.
-            let rests = |p: &Vec3| *p == Vec3::zeros();
-            let is_origin = is_root_name(&point.name) && point.positions.iter().all(rests);
+            let is_origin = is_root_name(&point.name)
+                && moving.contains(subject_of(&point.name))
+                && point.positions.iter().all(rests);
             for position in &mut point.positions {
-                if !is_seen(position) || zero_is_missing && !is_origin && rests(position) {
+                let is_code = is_seen(position) && is_missing_code(position);
+                nines += usize::from(is_code);
+                if !is_seen(position) || is_code || zero_is_missing && !is_origin && rests(position)
+                {
                     *position = UNSEEN;
                 }
             }
         }
+        if nines > 0 {
+            let text = format!("{nines} places of nines alone (9999, -9999) are gaps");
+            warnings.push(Warning::new(Place::File, text));
+        }
+    }
+
+    /// True if the points are a body's landmarks in a picture: x and y are shares of its width and height, or pixels beside a depth that hardly differs, y points down, and places in the
+    /// world would lie around the middle of the hips.
+    fn is_in_picture(&self) -> bool {
+        const LEAST: usize = 15;
+        const INSIDE: f64 = 0.9;
+        // Of the height, where places are pixels and depth is another number or none.
+        const FLAT: f64 = 0.01;
+        let seen = || {
+            self.points
+                .iter()
+                .flat_map(|p| p.positions.iter().filter(|p| is_seen(p)))
+        };
+        let count = seen().count();
+        let inside = |p: &&Vec3| (0.0..=1.0).contains(&p.x) && (0.0..=1.0).contains(&p.y);
+        let inside = seen().filter(inside).count();
+        let range = |axis: usize| {
+            let values = seen().map(|p| p[axis]);
+            let (low, high) = values.fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(v), h.max(v)));
+            high - low
+        };
+        let shares = inside as f64 >= INSIDE * count as f64;
+        if self.points.len() < LEAST || count == 0 || !shares && range(2) > FLAT * range(1) {
+            return false;
+        }
+        let names: Vec<&str> = self
+            .points
+            .iter()
+            .map(|point| point.name.as_str())
+            .collect();
+        let known = recognise_posed(&names, &self.some_poses());
+        let height = |role: Role| -> Option<f64> {
+            let roles = &known.as_ref()?.roles;
+            let (_, place) = roles.iter().find(|(known, _)| *known == role)?;
+            let poses = self.some_poses();
+            let heights = poses
+                .iter()
+                .filter_map(|pose| Some(place.at(|p| pose[p])?.y));
+            let (sum, count) = heights.fold((0.0, 0.0), |(sum, n), y| (sum + y, n + 1.0));
+            (count > 0.0).then_some(sum / count)
+        };
+        // The head is above in the picture, which is a smaller y.
+        let head = height(Role::Head).or_else(|| height(Role::Neck));
+        let hips = height(Role::LeftThigh).or_else(|| height(Role::Hips));
+        matches!((head, hips), (Some(head), Some(hips)) if head < hips)
+    }
+
+    /// Places of all points in some frames.
+    fn some_poses(&self) -> Vec<Vec<Vec3>> {
+        const LOOKED_AT: usize = 8;
+        let frames = self.points.first().map_or(0, |point| point.positions.len());
+        (0..frames)
+            .step_by(frames.div_ceil(LOOKED_AT).max(1))
+            .map(|frame| self.points.iter().map(|p| p.positions[frame]).collect())
+            .filter(|pose: &Vec<Vec3>| pose.iter().all(is_seen))
+            .collect()
     }
 
     /// Leaves out what was never seen, and what a tracker could not name where other points have names.
@@ -229,6 +307,20 @@ impl PointTable {
         clip.repaired = union(filled.short);
         clip
     }
+}
+
+/// True of a place that stands for a missing one: a coordinate is 9999 or more such digits, or all are 999.
+fn is_missing_code(position: &Vec3) -> bool {
+    const CODES: [f64; 6] = [
+        9999.0,
+        99999.0,
+        999_999.0,
+        9_999_999.0,
+        99_999_999.0,
+        9999.99,
+    ];
+    let is_code = |value: &f64| CODES.contains(&value.abs());
+    position.iter().any(is_code) || position.iter().all(|value| value.abs() == 999.0)
 }
 
 /// A name's word in lower case and the number behind it.

@@ -2,7 +2,13 @@
 
 /// Parts in Japanese (as the models of MikuMikuDance have them), Chinese and Korean, longer ones first, as these languages put no
 /// blanks between words; and abbreviations that glue a side and a part together.
-const PIECES: [(&str, &str); 84] = [
+const PIECES: [(&str, &str); 90] = [
+    ("髋", " hip "),
+    ("胯", " hip "),
+    ("脖子", " neck "),
+    ("엉덩이", " hip "),
+    ("팔목", " wrist "),
+    ("鼻", " nose "),
     ("LUArm", "l upperarm"),
     ("RUArm", "r upperarm"),
     ("LFArm", "l forearm"),
@@ -100,7 +106,31 @@ const SHORT_PIECES: [(&str, &str); 5] = [
 
 /// Whole words of German, French, Spanish, Italian and Portuguese, lower case; but for those that mean something else in
 /// English names (`main`).
-const WORDS: [(&str, &str); 101] = [
+const WORDS: [(&str, &str); 125] = [
+    ("ellbogen", "elbow"),
+    ("ellenbogen", "elbow"),
+    ("handgelenk", "wrist"),
+    ("knöchel", "ankle"),
+    ("knoechel", "ankle"),
+    ("sprunggelenk", "ankle"),
+    ("ferse", "heel"),
+    ("talon", "heel"),
+    ("talón", "heel"),
+    ("tallone", "heel"),
+    ("calcanhar", "heel"),
+    ("nase", "nose"),
+    ("nez", "nose"),
+    ("nariz", "nose"),
+    ("ohr", "ear"),
+    ("oreille", "ear"),
+    ("muñeca", "wrist"),
+    ("muneca", "wrist"),
+    ("polso", "wrist"),
+    ("punho", "wrist"),
+    ("codo", "elbow"),
+    ("gomito", "elbow"),
+    ("cotovelo", "elbow"),
+    ("tornozelo", "ankle"),
     ("gauche", "left"),
     ("droite", "right"),
     ("droit", "right"),

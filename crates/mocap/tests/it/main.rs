@@ -13,3 +13,4 @@ mod partial_skeleton;
 mod smooth_real;
 #[path = "../../../morec/tests/testing/mod.rs"]
 mod testing;
+mod wild;

@@ -5,8 +5,9 @@ use std::ops::Range;
 
 use super::notes::Notes;
 use super::number;
-use super::text::{Cursor, Encoding, show};
+use super::text::{Cursor, show};
 use crate::clip::Joint;
+use crate::formats::encoding::Encoding;
 use crate::formats::{Limits, ParseError, Place};
 use crate::math::{Axis, Vec3};
 

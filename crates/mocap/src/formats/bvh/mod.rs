@@ -33,7 +33,8 @@ use self::hierarchy::BvhHierarchy;
 use self::notes::Notes;
 use self::positions::Votes;
 use self::source::{InFile, InMemory, TableText};
-use self::text::{Cursor, Encoding, show};
+use self::text::{Cursor, show};
+use super::encoding::Encoding;
 use super::{Limits, Loaded, ParseError, Place};
 use crate::clip::{Clip, Skeleton, Span};
 

@@ -282,6 +282,9 @@ fn note_missing(values: &[f64], line: u64, notes: &mut Notes) {
     }
 }
 
+/// Lines of a table in which one may be bad, whatever share that is.
+const LEAST_LINES: u64 = 4;
+
 /// Counts of repairs while reading line by line.
 #[derive(Debug, Default)]
 struct RepairCounts {
@@ -366,7 +369,9 @@ impl RepairCounts {
         width: usize,
         request: &TableSpec<'_>,
     ) -> Result<(), ParseError> {
-        if bad as f64 <= request.bad_line_share * self.lines as f64 {
+        // In a short clip one line is a large share.
+        let one = u64::from(self.lines >= LEAST_LINES) as f64;
+        if bad as f64 <= (request.bad_line_share * self.lines as f64).max(one) {
             return Ok(());
         }
         let Some((line, found)) = &self.first_bad else {

@@ -79,7 +79,12 @@ impl C3dLayout {
 
 fn no_points(parameters: &Parameters) -> ParseError {
     let channels = parameters.number("ANALOG", "USED").unwrap_or(0.0);
-    let found = if channels > 0.0 {
+    let rotations = parameters.number("ROTATION", "USED").unwrap_or(0.0);
+    let found = if rotations > 0.0 {
+        format!(
+            "none, but rotations of {rotations} segments (Theia, Visual3D), which are not read: export FBX, or C3D with joint centres"
+        )
+    } else if channels > 0.0 {
         format!("none, but {channels} analog channels: no motion can be read from it")
     } else {
         "none".to_owned()

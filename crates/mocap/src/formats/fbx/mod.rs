@@ -19,19 +19,18 @@ const MEMORY_A_BYTE: usize = 64;
 
 /// Reads an FBX file: a clip for each take and each skeleton that it moves, called `name` (`name#take` for several).
 ///
-/// Clips are sampled at the scene's frame rate if the keys lie on it, else at the keys' own (60 Hz for keys without a
-/// rate). Scales are folded into the positions. Axes and lengths are the file's.
+/// Clips are sampled at the scene's frame rate if the keys lie on it, else at the keys' own, else at the scene's. Scales are folded into the positions. Axes and lengths are the file's.
 ///
 /// # Errors
 /// The place and the cause: no FBX, a version before 3.0 or one that cannot be read, no animation of a skeleton, more than
 /// `limits` allow. O(bytes + frames × nodes).
 pub fn read(bytes: &[u8], name: &str, limits: &Limits) -> Result<Loaded, ParseError> {
     let fbx = load(bytes, limits)?;
-    read_scene(&fbx, bytes.len(), name, limits)
+    read_scene(&fbx, bytes.len(), name, None, limits)
 }
 
-/// [`read`], with what the scene's settings state about lengths and axes, if they do. A `rate_hz` that is given is not
-/// used, with a warning.
+/// [`read`], with what the scene's settings state about lengths and axes, if they do. `rate_hz` is the rate at which keys are sampled in
+/// place of the scene's.
 ///
 /// # Errors
 /// Those of [`read`].
@@ -42,10 +41,7 @@ pub fn read_stated(
     limits: &Limits,
 ) -> Result<(Loaded, Option<SceneSettings>), ParseError> {
     let fbx = load(bytes, limits)?;
-    let mut loaded = read_scene(&fbx, bytes.len(), name, limits)?;
-    if rate_hz.is_some() {
-        loaded.warnings.push(super::timing::rate_not_used());
-    }
+    let loaded = read_scene(&fbx, bytes.len(), name, rate_hz, limits)?;
     Ok((loaded, settings(&fbx)))
 }
 
@@ -81,13 +77,19 @@ fn settings(fbx: &Fbx) -> Option<SceneSettings> {
         })
 }
 
-fn read_scene(fbx: &Fbx, bytes: usize, name: &str, limits: &Limits) -> Result<Loaded, ParseError> {
+fn read_scene(
+    fbx: &Fbx,
+    bytes: usize,
+    name: &str,
+    rate_hz: Option<f64>,
+    limits: &Limits,
+) -> Result<Loaded, ParseError> {
     let mut warnings: Vec<Warning> = Vec::new();
     let mut nodes = nodes(fbx, limits)?;
     let order = scene::parents_first(&mut nodes, limits)?;
     mark_joints(fbx, &order, &mut nodes);
     let rigs = scene::worthwhile(scene::rigs(&nodes, &order), &nodes, &mut warnings);
-    let takes = takes(fbx, &rigs, &mut warnings);
+    let takes = takes(fbx, &rigs, rate_hz, &mut warnings);
     if takes.is_empty() {
         let joints: usize = rigs.iter().map(SceneSkeleton::len).sum();
         let found = match joints {
@@ -270,12 +272,15 @@ struct AnimationStack<'a> {
     rig: &'a SceneSkeleton,
     /// Seconds.
     keys: Vec<f64>,
+    /// In place of what keys and scene say.
+    rate_hz: Option<f64>,
 }
 
 /// The takes that move a skeleton. A take whose keys are one pose is left out where others move.
 fn takes<'a>(
     fbx: &'a Fbx,
     rigs: &'a [SceneSkeleton],
+    rate_hz: Option<f64>,
     warnings: &mut Vec<Warning>,
 ) -> Vec<AnimationStack<'a>> {
     let mut takes = Vec::new();
@@ -289,6 +294,7 @@ fn takes<'a>(
                     stack,
                     rig,
                     keys,
+                    rate_hz,
                 });
             }
         }
@@ -343,6 +349,11 @@ fn grid(
             "{clip_name}: keys outside of the take's {begin:.3} s to {end:.3} s are left out"
         );
         warnings.push(Warning::new(Place::File, text));
+    }
+    if let Some(rate_hz) = take.rate_hz {
+        let first = times.iter().copied().fold(f64::INFINITY, f64::min);
+        let last = times.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        return keys::at_rate(first, last, rate_hz, true);
     }
     let grid = keys::grid(times, Some(stated)).unwrap_or(KeyGrid {
         start_secs: 0.0,

@@ -144,7 +144,7 @@ fn hands_are_named_by_their_lines() {
     assert!(
         error
             .to_string()
-            .contains("7 points of a hand, where 20, 21, 25, 26 are known"),
+            .contains("7 points of a hand, where 20, 21, 22, 25, 26 are known"),
         "{error}"
     );
 }

@@ -11,10 +11,12 @@ use roxmltree::{Document, Node};
 use self::body::MvnxSegment;
 use super::builder::{ClipBuilder, check_size, clip_names};
 use super::descriptor::FormatDescriptor;
+use super::timing::{Clock, Schedule, Stamps};
 use super::xml::{child, is, limits_beside, parse, place, text_of};
 use super::{Limits, Loaded, ParseError, Warning};
 use crate::clip::{Clip, Joint};
 use crate::math::{Axis, Quat, Vec3};
+use crate::resample::usual_step;
 
 pub(super) const FORMAT: FormatDescriptor = FormatDescriptor {
     name: "mvnx",
@@ -113,11 +115,24 @@ fn read_subject(
         .collect();
     check_size(frames.len(), segments.len(), earlier, bytes, limits)?;
     let mut builder = ClipBuilder::new(joints(&segments));
-    builder.reserve(frames.len())?;
     let mut broken = 0;
     let mut first = None;
-    for frame in &frames {
-        match read_frame(*frame, &segments) {
+    let rate_hz = rate(subject, &frames, warnings);
+    let schedule = Schedule::of(&stamps(&frames, rate_hz), &clock_of(rate_hz), warnings);
+    let all: Vec<Option<usize>> = match &schedule.places {
+        Some(places) => places
+            .iter()
+            .map(|at| at.known.then_some(at.before))
+            .collect(),
+        None => (0..frames.len()).map(Some).collect(),
+    };
+    check_size(all.len(), segments.len(), earlier, bytes, limits)?;
+    for frame in all {
+        let Some(frame) = frame.map(|at| frames[at]) else {
+            builder.push_missing();
+            continue;
+        };
+        match read_frame(frame, &segments) {
             Ok((rotations, positions)) => builder.push_world(&rotations, &positions),
             Err(flaw) => {
                 builder.push_missing();
@@ -140,8 +155,37 @@ fn read_subject(
         );
         warnings.push(Warning::new(first.at, text));
     }
-    let rate_hz = rate(subject, &frames, warnings);
     builder.finish(name, rate_hz)
+}
+
+/// The rate is settled: frames are where their numbers, or their times at this rate, are.
+fn clock_of(rate_hz: f64) -> Clock {
+    Clock {
+        given_hz: Some(rate_hz),
+        stated_hz: None,
+        assumed_hz: rate_hz,
+    }
+}
+
+fn stamps(frames: &[Node<'_, '_>], rate_hz: f64) -> Stamps {
+    let number = |frame: &Node, name: &str| frame.attribute(name)?.trim().parse::<f64>().ok();
+    let indices: Vec<Option<f64>> = frames.iter().map(|f| number(f, "index")).collect();
+    if indices.iter().all(Option::is_some) {
+        return Stamps::none(frames.len()).numbered(indices);
+    }
+    let by_time = |frame: &Node| Some(number(frame, "time")? / 1000.0 * rate_hz);
+    let by_time: Vec<Option<f64>> = frames.iter().map(by_time).collect();
+    let steps: Vec<f64> = by_time
+        .windows(2)
+        .filter_map(|pair| Some(pair[1]? - pair[0]?))
+        .collect();
+    // Times that disagree with the rate say nothing of frames.
+    let agree = usual_step(&steps).is_some_and(|step| (step - 1.0).abs() < 0.2);
+    let numbers = by_time.into_iter().map(|number| Some(number?.round()));
+    match agree {
+        true => Stamps::none(frames.len()).numbered(numbers.collect()),
+        false => Stamps::none(frames.len()),
+    }
 }
 
 fn joints(segments: &[MvnxSegment]) -> Vec<Joint> {

@@ -2,7 +2,7 @@
 
 use super::super::builder::{ClipBuilder, check_size};
 use super::super::cells::{Decimal, lines, number, split};
-use super::super::timing::{Clock, Schedule};
+use super::super::timing::{Clock, Schedule, Stamps};
 use super::super::{Limits, Loaded, ParseError, Place, Warning};
 use super::model::{BodyPlacement, JointAxis, OsimBody, OsimModel};
 use crate::clip::Joint;
@@ -32,7 +32,7 @@ pub fn read_motion(
         stated_hz: None,
         assumed_hz: ASSUMED_HZ,
     };
-    let schedule = Schedule::of(&table.times_secs, &clock, &mut warnings);
+    let schedule = Schedule::of(&table.stamps, &clock, &mut warnings);
     let frames = schedule.places.as_ref().map_or(table.rows.len(), Vec::len);
     check_size(frames, model.bodies.len(), 0, bytes.len(), limits)?;
     let mut builder = ClipBuilder::new(model.joints());
@@ -49,15 +49,14 @@ pub fn read_motion(
     match &schedule.places {
         None => table.rows.iter().for_each(|row| push(row.as_deref())),
         Some(places) => {
-            for &(before, t, known) in places {
-                let after = table.rows.get(before + 1).or(table.rows.get(before));
-                let both = table.rows[before]
-                    .as_ref()
-                    .zip(after.and_then(Option::as_ref));
+            for place in places {
+                let row = |at: usize| table.rows[at].as_ref();
+                let both = row(place.before).zip(row(place.after));
                 let mix = |(a, b): (&Vec<f64>, &Vec<f64>)| -> Vec<f64> {
-                    a.iter().zip(b).map(|(a, b)| a + t * (b - a)).collect()
+                    let mixed = a.iter().zip(b);
+                    mixed.map(|(a, b)| a + place.t * (b - a)).collect()
                 };
-                push(both.filter(|_| known).map(mix).as_deref());
+                push(both.filter(|_| place.known).map(mix).as_deref());
             }
         }
     }
@@ -113,7 +112,7 @@ impl JointAxis {
 
 /// Values of all coordinates of a model, row by row.
 struct CoordinateTable {
-    times_secs: Vec<Option<f64>>,
+    stamps: Stamps,
     /// `None`: a row that lacks numbers.
     rows: Vec<Option<Vec<f64>>>,
 }
@@ -135,6 +134,7 @@ impl CoordinateTable {
         warnings: &mut Vec<Warning>,
     ) -> Result<Self, ParseError> {
         let rows = lines(bytes, limits)?;
+        refuse_other(&rows)?;
         let header = Header::read(&rows)?;
         let columns = coordinates_of(&header, model, warnings)?;
         let body = &rows[header.rows..];
@@ -147,7 +147,7 @@ impl CoordinateTable {
             ));
         }
         let mut table = Self {
-            times_secs: Vec::with_capacity(body.len()),
+            stamps: Stamps::default(),
             rows: Vec::with_capacity(body.len()),
         };
         let mut spoilt = None;
@@ -172,7 +172,7 @@ impl CoordinateTable {
                 let (_, count) = spoilt.get_or_insert((*line, 0));
                 *count += 1;
             }
-            table.times_secs.push(value(0));
+            table.stamps.secs.push(value(0));
             table
                 .rows
                 .push(found.map(|found| model.defaults_with(&columns, &found)));
@@ -287,6 +287,71 @@ impl<'a> Header<'a> {
     }
 }
 
+/// Refuses what the first line says to be no positions: columns of speeds or errors have the names of coordinates, too.
+fn refuse_other(rows: &[(u64, &str)]) -> Result<(), ParseError> {
+    const OTHERS: [&str; 13] = [
+        "speed",
+        "velocit",
+        "accelerat",
+        "error",
+        "jerk",
+        "forces",
+        "moments",
+        "powers",
+        "controls",
+        "activation",
+        "excitation",
+        "residual",
+        "dudt",
+    ];
+    let Some((line, title)) = rows.first() else {
+        return Ok(());
+    };
+    let is_turned =
+        |(_, text): &&(u64, &str)| text.trim().eq_ignore_ascii_case("DataType=Quaternion");
+    if let Some((line, _)) = rows.iter().take(20).find(is_turned) {
+        let found =
+            "orientations of sensors, which place nothing: give the joint angles made of them";
+        return Err(ParseError::new(
+            Place::Line(*line),
+            "a table of coordinates",
+            found,
+        ));
+    }
+    let lower = title.to_lowercase();
+    let is_other = OTHERS.iter().any(|other| lower.contains(other)) || lower.trim() == "u";
+    if lower.contains('=') || lower.contains("kinematics_q") || !is_other {
+        return Ok(());
+    }
+    let found = format!(
+        "a table of `{}`, which is no motion",
+        shortened(title.trim())
+    );
+    let expected = "a table of coordinates (OpenSim's `Coordinates`, `…_q.sto`)";
+    Err(ParseError::new(Place::Line(*line), expected, found))
+}
+
+/// What a table holds whose columns are no coordinates, as far as their names tell.
+fn shown_columns(columns: &[&str]) -> String {
+    let count = |end: &str| {
+        let ends = |name: &&&str| name.to_lowercase().ends_with(end);
+        columns.iter().filter(ends).count()
+    };
+    let most = |ends: &[&str]| ends.iter().map(|end| count(end)).sum::<usize>() * 3 > columns.len();
+    let what = match () {
+        () if count("_ox") > 0 => "places and turns of bodies' centres of mass (BodyKinematics)",
+        () if most(&["_moment", "_force"]) => "forces and moments of joints (inverse dynamics)",
+        () if most(&["_vx", "_px", "_vy", "_py", "_torque_x"]) => "forces of the ground",
+        () if most(&["/speed"]) => "speeds of coordinates",
+        () if most(&["/activation", ".activation", ".fiber_length"]) => "states of muscles",
+        () => {
+            let names: Vec<&str> = columns.iter().take(5).copied().collect();
+            return shortened(&names.join(", ")).into_owned();
+        }
+    };
+    format!("{what}: give the coordinates of the model")
+}
+
 /// Column and number of each coordinate that the table has: named as in the model, or by its path (`/jointset/hip_r/hip_flexion_r/value`).
 fn coordinates_of(
     header: &Header<'_>,
@@ -309,11 +374,10 @@ fn coordinates_of(
         .filter_map(coordinate)
         .collect();
     if found.is_empty() {
-        let names: Vec<&str> = header.columns.iter().take(5).copied().collect();
         return Err(ParseError::new(
             Place::Line(header.line),
             "columns of the model's coordinates",
-            shortened(&names.join(", ")),
+            shown_columns(&header.columns),
         ));
     }
     let follows = |k: usize| model.couplings.iter().any(|c| c.dependent == k);

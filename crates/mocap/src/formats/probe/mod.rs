@@ -40,11 +40,13 @@ pub fn probe(bytes: &[u8], name: &str) -> Result<Format, ParseError> {
         ));
     }
     let found = match bytes {
-        [] => "an empty file",
-        _ if head.is_binary() => "unknown binary content",
-        _ if head.is_markup() => "XML of an unknown kind",
-        _ if head.starts("{") || head.starts("[") => "JSON without points, poses or joints",
-        _ => table::what_it_measures(head.bytes).unwrap_or("unknown text"),
+        [] => "an empty file".to_owned(),
+        _ if head.is_binary() => "unknown binary content".to_owned(),
+        _ if head.is_markup() => "XML of an unknown kind".to_owned(),
+        _ if head.starts("{") || head.starts("[") => {
+            "JSON without points, poses or joints".to_owned()
+        }
+        _ => table::what_it_is(head.bytes).unwrap_or_else(|| "unknown text".to_owned()),
     };
     let expected = match format_of_name(name) {
         // What it is called and is not.

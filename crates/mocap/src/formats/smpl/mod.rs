@@ -68,6 +68,9 @@ const RATE: [&str; 6] = [
     "mocap_fps",
 ];
 
+/// What `smpl_trans` of AIST++ is to be divided by for metres.
+const SCALING: [&str; 3] = ["smpl_scaling", "scaling", "smpl_scale"];
+
 /// Reads an archive of one motion, called `name`.
 ///
 /// # Errors
@@ -76,7 +79,7 @@ const RATE: [&str; 6] = [
 pub fn read(bytes: &[u8], name: &str, limits: &Limits) -> Result<Loaded, ParseError> {
     let wanted = |path: &str| {
         let key = key_of(path);
-        [&POSES[..], &ROOT, &BODY, &PLACE, &RATE]
+        [&POSES[..], &ROOT, &BODY, &PLACE, &RATE, &SCALING]
             .iter()
             .any(|keys| keys.contains(&key))
     };
@@ -109,7 +112,15 @@ pub fn read(bytes: &[u8], name: &str, limits: &Limits) -> Result<Loaded, ParseEr
         warnings.push(Warning::new(Place::File, text));
     }
     let rate_hz = rate(find(&RATE), &mut warnings);
-    let places = places(find(&PLACE), frames.count, &mut warnings)?;
+    let mut places = places(find(&PLACE), frames.count, &mut warnings)?;
+    let scaling = find(&SCALING).and_then(|array| array.values.first().copied());
+    if let Some(scaling) =
+        scaling.filter(|scale| scale.is_finite() && *scale > 0.0 && *scale != 1.0)
+    {
+        places.iter_mut().for_each(|place| *place /= scaling);
+        let text = format!("places are divided by the {scaling} of `smpl_scaling`");
+        warnings.push(Warning::new(Place::File, text));
+    }
     let note = "rotations are the file's; bone lengths are those of an average person of 1.70 m, not of the one recorded, and the hips lie at `trans`, up to 0.3 m from where the body model has them";
     warnings.push(Warning::new(Place::File, note));
     let clip = clip(&frames, &places).finish(name.to_owned(), rate_hz)?;

@@ -1,8 +1,8 @@
 //! Which columns are a point's x, y and z, by the rows above them.
 
 use super::layout::{ColumnLayout, TableLine};
-use super::quantities::{is_other, is_other_unit, is_plate, is_position, unit_in};
-use crate::formats::cells::{Decimal, number};
+use super::quantities::{self, is_other, is_other_unit, is_plate, is_position, unit_in};
+use crate::formats::cells::{Decimal, clock, number};
 use crate::formats::points::metres_of;
 use crate::math::Axis;
 
@@ -16,26 +16,55 @@ pub(super) fn layout(rows: &[TableLine]) -> Option<ColumnLayout> {
         rate_hz: rate_above(header),
         ..ColumnLayout::default()
     };
-    let mut open: Vec<(String, [Option<usize>; 3])> = Vec::new();
+    if quantities::says_other_above(header) {
+        return None;
+    }
     let has_sides = labels.iter().any(|label| is_left_alone(label));
+    let open = named_points(&labels, units, &|label| axis_with(label, has_sides));
+    let is_whole = |open: &[OpenPoint]| {
+        open.iter()
+            .any(|(_, axes)| axes.iter().all(Option::is_some))
+    };
+    let glued = || {
+        [suffix_glued, prefix_glued].into_iter().find_map(|axis| {
+            let open = named_points(&labels, units, &|label| axis_glued(label, axis, &labels));
+            // `kneerx` is how a knee turns; where sides are meant, there are left ones, too.
+            let is_turned = open.iter().all(|(name, _)| name.ends_with(['r', 'R']));
+            (is_whole(&open) && open.len() > 1 && !is_turned).then_some(open)
+        })
+    };
+    let open = match is_whole(&open) {
+        true => open,
+        false => glued().unwrap_or(open),
+    };
+    let is_axis = |column: usize| {
+        let of = |(_, axes): &OpenPoint| axes.contains(&Some(column));
+        open.iter().any(of)
+    };
     for (column, label) in labels.iter().enumerate() {
-        if let Some((name, axis)) = axis_with(label, has_sides) {
-            match open.iter_mut().find(|(known, _)| *known == name) {
-                Some((_, columns)) => columns[axis] = columns[axis].or(Some(column)),
-                None => {
-                    let mut columns = [None; 3];
-                    columns[axis] = Some(column);
-                    open.push((name, columns));
-                }
-            }
+        if is_axis(column) {
             let below = || metres_of(units?.get(column)?);
             let unit = unit_of(label).or_else(below);
             found.metres_per_unit = found.metres_per_unit.or(unit);
         } else if found.time.is_none() && is_time(label) {
-            found.time = Some((column, seconds_of(label)));
+            let below = || units?.get(column).and_then(|unit| seconds_of(unit));
+            found.time = Some((column, seconds_of(label).or_else(below)));
         } else if found.frame.is_none() && is_frame(label, column) {
             found.frame = Some(column);
         }
+    }
+    if found.time.is_none() {
+        let first = (0..labels.len())
+            .find(|column| is_axis(*column))
+            .unwrap_or(0);
+        let mut before = (0..first).filter(|column| found.frame != Some(*column));
+        let rising = before.find(|column| rises_evenly(&rows[header_rows..], *column));
+        let whole =
+            |column: &usize| found.frame.is_none() || !counts(&rows[header_rows..], *column);
+        found.time = rising.filter(whole).map(|column| {
+            let below = || units?.get(column).and_then(|unit| seconds_of(unit));
+            (column, seconds_of(&labels[column]).or_else(below))
+        });
     }
     for (name, columns) in open {
         match columns {
@@ -52,10 +81,69 @@ pub(super) fn layout(rows: &[TableLine]) -> Option<ColumnLayout> {
     (!found.points.is_empty()).then_some(found)
 }
 
+/// A point's name and the columns of its axes that are found so far.
+type OpenPoint = (String, [Option<usize>; 3]);
+
+/// The points whose axes `axis` finds in labels, but for columns of angles, speeds or forces by their units.
+fn named_points(
+    labels: &[String],
+    units: Option<&[&str]>,
+    axis: &dyn Fn(&str) -> Option<(String, usize)>,
+) -> Vec<OpenPoint> {
+    let mut open: Vec<OpenPoint> = Vec::new();
+    let mut places = std::collections::HashMap::new();
+    for (column, label) in labels.iter().enumerate() {
+        let unit = units.and_then(|units| units.get(column));
+        let is_length =
+            unit.is_none_or(|unit| !is_other_unit(unit.trim_matches(['(', ')', '[', ']'])));
+        let Some((name, axis)) = axis(label).filter(|_| is_length) else {
+            continue;
+        };
+        let at = *places.entry(name.clone()).or_insert_with(|| {
+            open.push((name, [None; 3]));
+            open.len() - 1
+        });
+        open[at].1[axis] = open[at].1[axis].or(Some(column));
+    }
+    open
+}
+
+/// True if the values of a column rise, most by the same step: times or numbers of frames, whatever they are called.
+fn rises_evenly(rows: &[TableLine], column: usize) -> bool {
+    const LEAST: usize = 3;
+    let value = |(_, cells): &TableLine| {
+        let cell = cells.get(column)?;
+        number(cell, Decimal::Either).or_else(|| clock(cell))
+    };
+    let values: Option<Vec<f64>> = rows.iter().map(value).collect();
+    let Some(values) = values.filter(|values| values.len() >= LEAST) else {
+        return false;
+    };
+    let steps: Vec<f64> = values.windows(2).map(|w| w[1] - w[0]).collect();
+    let mut sorted = steps.clone();
+    sorted.sort_unstable_by(f64::total_cmp);
+    let usual = sorted[sorted.len() / 2];
+    let near = |step: &&f64| (*step - usual).abs() <= 0.25 * usual;
+    let rising = steps.iter().filter(|step| **step >= 0.0).count();
+    let even = steps.iter().filter(near).count();
+    usual > 0.0 && 10 * rising >= 9 * steps.len() && 4 * even >= 3 * steps.len()
+}
+
+/// True if a column counts rows one by one.
+pub(super) fn counts(rows: &[TableLine], column: usize) -> bool {
+    let value = |(_, cells): &TableLine| number(cells.get(column)?, Decimal::Either);
+    let values: Vec<f64> = rows.iter().filter_map(value).collect();
+    values.windows(2).all(|w| w[1] - w[0] == 1.0)
+}
+
 /// The words above each column, if there is a header.
 pub(super) fn header_labels(rows: &[TableLine]) -> Option<Vec<String>> {
-    let header_rows = header_rows(rows)?;
-    Some(labels(without_units(&rows[..header_rows]).0))
+    Some(labels(header_above(rows)?))
+}
+
+/// The rows above the numbers, but for one of units.
+pub(super) fn header_above<'a, 'b>(rows: &'a [TableLine<'b>]) -> Option<&'a [TableLine<'b>]> {
+    Some(without_units(&rows[..header_rows(rows)?]).0)
 }
 
 /// True if the columns have x and y, and z nowhere.
@@ -89,9 +177,9 @@ fn without_units<'a, 'b>(
     }
 }
 
-/// The rate that a row above the names states, `# fps: 60` or `Frame Rate,120`.
+/// The rate that a row above the names states, in whatever words: `# fps: 60`, `Frame Rate,120`, `100,Hz`, `Frame time: 0.01`.
 fn rate_above(header: &[TableLine]) -> Option<f64> {
-    const KEYS: [&str; 7] = [
+    const RATE: [&str; 14] = [
         "fps",
         "framerate",
         "samplingrate",
@@ -99,32 +187,53 @@ fn rate_above(header: &[TableLine]) -> Option<f64> {
         "capturerate",
         "frequency",
         "datarate",
+        "camerarate",
+        "updaterate",
+        "framespersecond",
+        "hz",
+        "frequenz",
+        "bildrate",
+        "abtastrate",
+    ];
+    const STEP: [&str; 5] = [
+        "frametime",
+        "timestep",
+        "dt",
+        "sampletime",
+        "samplinginterval",
     ];
     let (_, above) = header.split_last()?;
-    let stated = |text: &str| {
-        let key_ends = text.find([':', '=', ','])?;
-        let (key, value) = (&text[..key_ends], &text[key_ends + 1..]);
-        let key: String = key
-            .split(['(', '['])
-            .next()
-            .unwrap_or_default()
-            .chars()
-            .filter(|c| c.is_alphanumeric())
+    let stated = |cells: &[&str]| {
+        let text = cells.join(",").to_lowercase();
+        let letters: String = text.chars().filter(|c| c.is_alphabetic()).collect();
+        // Without what is a list of words: a value stands beside its key.
+        let numbers: Vec<f64> = text
+            .split(|c: char| {
+                c.is_whitespace() || matches!(c, ',' | ':' | '=' | ';' | '(' | ')' | '[' | ']')
+            })
+            .filter_map(|word| number(word.trim_end_matches(char::is_alphabetic), Decimal::Point))
             .collect();
-        let value = value.trim().split([' ', ',']).next()?;
-        let known = KEYS.contains(&key.to_ascii_lowercase().as_str());
-        let rate = number(value, Decimal::Either).filter(|_| known)?;
+        let [value] = numbers[..] else { return None };
+        let is_key = |key: &&str| match key.len() {
+            // Short words stand for themselves.
+            ..=3 => text
+                .split(|c: char| !c.is_alphabetic())
+                .any(|word| word == *key),
+            _ => letters.contains(*key),
+        };
+        let rate = match () {
+            () if RATE.iter().any(|key| is_key(&key)) => value,
+            () if STEP.iter().any(|key| is_key(&key)) && letters.contains("ms") => 1e3 / value,
+            () if STEP.iter().any(|key| is_key(&key)) => 1.0 / value,
+            () => return None,
+        };
         (rate > 0.0 && rate < 1e5).then_some(rate)
     };
-    above.iter().find_map(|(_, cells)| {
-        let mut pairs = cells
-            .windows(2)
-            .map(|pair| format!("{},{}", pair[0], pair[1]));
-        cells
-            .iter()
-            .find_map(|cell| stated(cell))
-            .or_else(|| pairs.find_map(|pair| stated(&pair)))
-    })
+    // A row of keys and values has a pair of them for each.
+    let paired = |cells: &[&str]| cells.windows(2).find_map(stated);
+    above
+        .iter()
+        .find_map(|(_, cells)| stated(cells).or_else(|| paired(cells)))
 }
 
 /// Rows before the first of numbers; `None` if there is none, or no row of numbers.
@@ -160,12 +269,15 @@ fn header_rows(rows: &[TableLine]) -> Option<usize> {
 }
 
 /// A number, or that there is none.
-fn is_value(cell: &str) -> bool {
+pub(super) fn is_value(cell: &str) -> bool {
     number(cell, Decimal::Either).is_some() || is_nan(cell)
 }
 
 fn is_nan(cell: &str) -> bool {
-    cell.eq_ignore_ascii_case("nan")
+    const NONE: [&str; 9] = [
+        "nan", "-nan", "na", "n/a", "null", "none", "inf", "-inf", "#n/a",
+    ];
+    NONE.iter().any(|none| cell.eq_ignore_ascii_case(none))
 }
 
 /// The words above each column. In a row with blanks, a word holds for the columns up to the next; a last row of axes
@@ -270,7 +382,8 @@ fn axis_with(label: &str, has_sides: bool) -> Option<(String, usize)> {
         (start, name[start..].to_ascii_lowercase())
     };
     let (start, word) = last(name);
-    if is_other(&word) && start > 0 && !(has_sides && word == "r") || is_plate(name) {
+    let is_turned = quantities::names_other(name);
+    if is_other(&word) && start > 0 && !(has_sides && word == "r") || is_plate(name) || is_turned {
         return None;
     }
     if is_position(&word) && start > 0 {
@@ -338,16 +451,66 @@ fn prefix(label: &str) -> Option<(&str, usize)> {
     (is_mark(next) || next.is_ascii_digit()).then(|| (rest.trim_start_matches(is_mark), axis))
 }
 
-/// A label without a unit in brackets behind it.
+/// A label without a unit behind it, in brackets or behind its axis, `hips_x_mm`.
 fn without_unit(label: &str) -> &str {
     match label.find(['(', '[']) {
         Some(at) if label.ends_with([')', ']']) => label[..at].trim_end(),
-        _ => label,
+        _ => unit_behind(label).map_or(label, |(rest, _)| rest),
     }
 }
 
+/// What stands before a unit of length that follows an axis, and the unit.
+fn unit_behind(label: &str) -> Option<(&str, &str)> {
+    let at = label.rfind(is_mark)?;
+    let (rest, unit) = (&label[..at], &label[at + 1..]);
+    // `knee_m` is a medial one.
+    let is_behind = unit.len() > 1 && prefix(rest).is_some();
+    let is_axis = suffix(rest).is_some() || axis_alone(rest) || is_behind;
+    (is_axis && metres_of(unit).is_some()).then_some((rest, unit))
+}
+
+fn axis_alone(label: &str) -> bool {
+    label.len() == 1 && label.chars().all(|c| axis_number(c).is_some())
+}
+
 fn unit_of(label: &str) -> Option<f64> {
-    metres_of(unit_in(label)?)
+    metres_of(unit_in(label).or_else(|| Some(unit_behind(label)?.1))?)
+}
+
+/// `hipsx`.
+fn suffix_glued(label: &str) -> Option<(&str, usize)> {
+    let last = label.chars().next_back()?;
+    Some((&label[..label.len() - last.len_utf8()], axis_number(last)?))
+}
+
+/// `Xhips`.
+fn prefix_glued(label: &str) -> Option<(&str, usize)> {
+    let first = label.chars().next()?;
+    Some((&label[first.len_utf8()..], axis_number(first)?))
+}
+
+/// An axis glued to a name, where there are labels of the same name with the other two.
+fn axis_glued(
+    label: &str,
+    split: fn(&str) -> Option<(&str, usize)>,
+    labels: &[String],
+) -> Option<(String, usize)> {
+    if unit_in(label).is_some_and(is_other_unit) {
+        return None;
+    }
+    let (name, axis) = split(without_unit(label))?;
+    let has = |wanted: usize| {
+        let same = |other: &String| split(without_unit(other)) == Some((name, wanted));
+        labels.iter().any(same)
+    };
+    let last = name.rsplit(is_mark).next().unwrap_or(name);
+    let is_place = name.len() > 1
+        && !name.starts_with(is_mark)
+        && !name.ends_with(is_mark)
+        && !is_other(&last.to_lowercase())
+        && !quantities::names_other(name)
+        && !quantities::is_glued_other(name);
+    (is_place && (0..3).all(has)).then(|| (name.to_owned(), axis))
 }
 
 /// The label of x in whose place this one has w: `hips_w`, `W Element`.

@@ -1,6 +1,7 @@
 //! Layout of a table from its header, and its rows and frames.
 
 use crate::formats::points::Point;
+use crate::formats::timing::Stamps;
 
 /// A row: its line and its cells.
 pub(super) type TableLine<'a> = (u64, Vec<&'a str>);
@@ -24,26 +25,5 @@ pub(super) struct ColumnLayout {
     pub(super) notes: Vec<String>,
 }
 
-/// Frames: points, times, and the layout they were read by.
-pub(super) type TableFrames = (Vec<Point>, Vec<Option<f64>>, ColumnLayout);
-
-/// Times in their unit to seconds; an unknown unit follows from the usual step.
-pub(in crate::formats) fn to_seconds(times: &mut [Option<f64>], secs: Option<f64>) {
-    let known: Vec<f64> = times.iter().copied().flatten().collect();
-    let mut steps: Vec<f64> = known.windows(2).map(|w| w[1] - w[0]).collect();
-    steps.sort_by(f64::total_cmp);
-    let usual = steps.get(steps.len() / 2).copied().unwrap_or(0.0);
-    let secs = secs.unwrap_or(match usual {
-        step if step >= 1e6 => 1e-9,
-        // Ticks of 100 ns, as Windows and Kinect count.
-        step if step >= 1e5 => 1e-7,
-        step if step >= 1e3 => 1e-6,
-        step if step >= 2.0 => 1e-3,
-        _ => 1.0,
-    });
-    let first = known.first().copied().unwrap_or(0.0);
-    for time in times.iter_mut().flatten() {
-        // Times since 1970 leave few digits for the fraction.
-        *time = (*time - first) * secs;
-    }
-}
+/// Frames: points, when each was, and the layout they were read by.
+pub(super) type TableFrames = (Vec<Point>, Stamps, ColumnLayout);

@@ -1,9 +1,10 @@
 //! The long form: a row for each joint of each frame.
 
 use super::columns::{is_frame, is_time, seconds_of};
-use super::layout::{ColumnLayout, TableFrames, TableLine, to_seconds};
+use super::layout::{ColumnLayout, TableFrames, TableLine};
 use crate::formats::cells::{Decimal, clock, number};
 use crate::formats::points::{Point, UNSEEN, check_size};
+use crate::formats::timing::Stamps;
 use crate::formats::{Limits, ParseError, Place};
 use crate::math::Vec3;
 
@@ -60,7 +61,11 @@ const NAMES: [&str; 30] = [
 ];
 
 /// The columns, if `row` is the header of a long table.
-pub(super) fn columns(header: usize, (_, cells): &TableLine) -> Option<Columns> {
+pub(super) fn columns(
+    header: usize,
+    (_, cells): &TableLine,
+    below: &[TableLine],
+) -> Option<Columns> {
     let lower: Vec<String> = cells.iter().map(|cell| cell.to_ascii_lowercase()).collect();
     let find = |is: &dyn Fn(&str) -> bool| lower.iter().position(|cell| is(cell));
     let axis = |axis: &str| {
@@ -94,6 +99,17 @@ pub(super) fn columns(header: usize, (_, cells): &TableLine) -> Option<Columns> 
     let name = name.or_else(|| find(&numbers))?;
     let time = find(&|cell| is_time(cell)).map(|column| (column, seconds_of(&lower[column])));
     let frame = find(&|cell| !cell.is_empty() && is_frame(cell, 1));
+    // What rises without a name of its own is a time.
+    let unnamed = |column: &usize| {
+        *column != name
+            && !axes.contains(column)
+            && person != Some(*column)
+            && never_falls(below, *column)
+    };
+    let unnamed = (0..cells.len())
+        .find(unnamed)
+        .filter(|_| time.is_none() && frame.is_none());
+    let time = time.or_else(|| Some((unnamed?, None)));
     let parts = lower.iter().enumerate();
     let parts = parts.filter(|(at, cell)| *at != name && PARTS.contains(&cell.as_str()));
     (time.is_some() || frame.is_some()).then_some(Columns {
@@ -104,6 +120,15 @@ pub(super) fn columns(header: usize, (_, cells): &TableLine) -> Option<Columns> 
         axes,
         time,
         frame,
+    })
+}
+
+/// True if the values of a column are numbers that rise and never fall.
+fn never_falls(rows: &[TableLine], column: usize) -> bool {
+    let value = |(_, cells): &TableLine| number(cells.get(column)?, Decimal::Either);
+    let values: Option<Vec<f64>> = rows.iter().map(value).collect();
+    values.is_some_and(|values| {
+        values.windows(2).all(|w| w[1] >= w[0]) && values.first() < values.last()
     })
 }
 
@@ -141,6 +166,7 @@ pub(super) fn frames(
     let decimal = Decimal::of(body.iter().flat_map(|(_, cells)| cells).copied());
     let mut points: Vec<Point> = Vec::new();
     let mut times: Vec<Option<f64>> = Vec::new();
+    let mut numbers: Vec<Option<f64>> = Vec::new();
     let mut of_name = std::collections::HashMap::new();
     let mut of_frame = std::collections::HashMap::new();
     for (line, cells) in body {
@@ -164,6 +190,7 @@ pub(super) fn frames(
                 return Err(ParseError::new(Place::Line(*line), expected, "more"));
             }
             times.push(time);
+            numbers.push(columns.frame.and_then(value));
         }
         let next = points.len();
         let point = *of_name.entry((whose, name)).or_insert(next);
@@ -202,14 +229,13 @@ pub(super) fn frames(
     for point in &mut points {
         point.positions.resize(times.len(), UNSEEN);
     }
-    if let Some((_, secs)) = columns.time {
-        to_seconds(&mut times, secs);
-    }
+    let secs = columns.time.and_then(|(_, secs)| secs);
+    let stamps = Stamps::of_values(times, secs).numbered(numbers);
     let layout = ColumnLayout {
         notes,
         ..ColumnLayout::default()
     };
-    Ok((points, times, layout))
+    Ok((points, stamps, layout))
 }
 
 impl Columns {

@@ -17,12 +17,12 @@ mod qualisys;
 mod quantities;
 
 pub(super) use self::columns::axis_of;
-pub(super) use self::layout::to_seconds;
+use self::columns::is_value;
 use self::layout::{ColumnLayout, TableFrames, TableLine};
-use super::cells::{Decimal, clock, lines, number, split};
+use super::cells::{Decimal, clock, empty_rows, lines, number, split, utf8};
 use super::descriptor::FormatDescriptor;
 use super::points::{Point, UNSEEN, check_size};
-use super::timing::{Clock, TimedPoints};
+use super::timing::{Clock, Stamps, TimedPoints};
 use super::{Limits, Loaded, ParseError, Place, Warning, opensim};
 use crate::math::Vec3;
 
@@ -52,7 +52,8 @@ pub fn read(
     rate_hz: Option<f64>,
     limits: &Limits,
 ) -> Result<Loaded, ParseError> {
-    let rows = lines(bytes, limits)?;
+    let text = utf8(bytes);
+    let rows = lines(&text, limits)?;
     let separator = separator(&rows);
     let limits = &limits_beside(&rows, separator, limits)?;
     let mut cells: Vec<TableLine> = Vec::with_capacity(rows.len());
@@ -65,10 +66,11 @@ pub fn read(
     let mut warnings = Vec::new();
     // Sections of other measurements may stand above that of positions.
     let section = nexus::layout(&cells).map(TableHeader::Wide);
-    let (points, times, layout) = match section.or_else(|| header(head)) {
+    let (points, stamps, layout) = match section.or_else(|| header(head)) {
         Some(TableHeader::Long(columns)) => long::frames(&columns, &cells, limits)?,
         Some(TableHeader::Wide(layout)) => {
             check_size(layout.points.len(), cells.len(), bytes.len(), limits)?;
+            let cells = with_empty_rows(cells, &layout, &text);
             wide(layout, &cells, limits, &mut warnings)?
         }
         None => match plain::layout(&cells) {
@@ -76,7 +78,7 @@ pub fn read(
             None => return Err(no_columns(&cells)),
         },
     };
-    check_size(points.len(), times.len(), bytes.len(), limits)?;
+    check_size(points.len(), stamps.secs.len(), bytes.len(), limits)?;
     for note in layout.notes {
         warnings.push(Warning::new(Place::File, note));
     }
@@ -87,11 +89,39 @@ pub fn read(
     };
     let timed = TimedPoints {
         points,
-        times_secs: times,
+        stamps,
         clock,
         metres_per_unit: layout.metres_per_unit,
     };
     timed.into_loaded(name, warnings, limits)
+}
+
+/// The rows of a table that has neither times nor numbers of frames with those whose cells are all empty: frames in which nobody was
+/// seen. One below the header, and those behind the last frame, are none.
+fn with_empty_rows<'a>(
+    rows: Vec<TableLine<'a>>,
+    layout: &ColumnLayout,
+    text: &[u8],
+) -> Vec<TableLine<'a>> {
+    let first = rows.get(layout.header_rows).map(|row| row.0);
+    let (Some(first), Some(&(last, _))) = (first, rows.last()) else {
+        return rows;
+    };
+    if layout.time.is_some() || layout.frame.is_some() || layout.stop_row.is_some() {
+        return rows;
+    }
+    let above = rows.get(layout.header_rows.wrapping_sub(1));
+    let header = above.map_or(0, |row| row.0);
+    let mut empty: Vec<u64> = empty_rows(text)
+        .filter(|line| (header..last).contains(line))
+        .collect();
+    if empty.iter().filter(|line| **line < first).count() == 1 {
+        empty.remove(0);
+    }
+    let mut all = rows;
+    all.extend(empty.into_iter().map(|line| (line, vec![""])));
+    all.sort_by_key(|row| row.0);
+    all
 }
 
 /// Rows among which a header is looked for.
@@ -103,7 +133,8 @@ pub(super) fn looks_so(head: &[u8]) -> bool {
         line_bytes: usize::MAX,
         ..Limits::default()
     };
-    let Ok(rows) = lines(head, &limits) else {
+    let text = utf8(head);
+    let Ok(rows) = lines(&text, &limits) else {
         return false;
     };
     let separator = separator(&rows);
@@ -138,7 +169,7 @@ fn header(rows: &[TableLine]) -> Option<TableHeader> {
     if let Some(columns) = rows
         .iter()
         .enumerate()
-        .find_map(|(r, row)| long::columns(r, row))
+        .find_map(|(r, row)| long::columns(r, row, &rows[r + 1..]))
     {
         return Some(TableHeader::Long(columns));
     }
@@ -221,24 +252,46 @@ fn measured(rows: &[TableLine]) -> Option<&'static str> {
     if columns::is_flat(&labels) {
         return Some("x and y alone: two dimensions are not enough");
     }
-    quantities::is_turned(&labels).then_some(
+    let above = columns::header_above(rows).is_some_and(quantities::says_other_above);
+    (above || quantities::is_turned(&labels)).then_some(
         "angles, rotations or what sensors measure: without a skeleton they place nothing (give positions, or BVH)",
     )
 }
 
-/// [`measured`] of the beginning of a text that may be a table.
-pub(super) fn what_it_measures(head: &[u8]) -> Option<&'static str> {
+/// What the beginning of a text that may be a table holds in place of positions: [`measured`], labels, or rows of numbers.
+pub(super) fn what_it_is(head: &[u8]) -> Option<String> {
+    const LEAST_ROWS: usize = 5;
+    const LEAST_NUMBERS: usize = 6;
     let limits = Limits {
         line_bytes: usize::MAX,
         ..Limits::default()
     };
-    let rows = lines(head, &limits).ok()?;
+    let text = utf8(head);
+    let rows = lines(&text, &limits).ok()?;
     let separator = separator(&rows);
     let cells = rows
         .iter()
         .take(HEAD_ROWS)
         .map(|(line, row)| (*line, split(row, separator)));
-    measured(&cells.collect::<Vec<TableLine>>())
+    let cells: Vec<TableLine> = cells.collect();
+    if let Some(found) = measured(&cells) {
+        return Some(found.to_owned());
+    }
+    let (_, first) = cells.first()?;
+    let has = |name: &str| first.iter().any(|cell| cell.eq_ignore_ascii_case(name));
+    if (has("clip") || has("file")) && (has("class") || has("label")) {
+        return Some("a table of labels: give it where labels are asked for".to_owned());
+    }
+    let is_number = |cell: &&str| cell.is_empty() || number(cell, Decimal::Either).is_some();
+    let numbers =
+        |(_, cells): &TableLine| cells.len() == first.len() && cells.iter().all(|c| is_number(&c));
+    let whole = &cells[..cells.len().saturating_sub(1)];
+    (whole.len() >= LEAST_ROWS && first.len() >= LEAST_NUMBERS && whole.iter().all(numbers)).then(|| {
+        format!(
+            "rows of {} numbers without names, as many as no known set of points has: put a row of names above them",
+            first.len()
+        )
+    })
 }
 
 /// The frames of a table with three columns for each point.
@@ -272,7 +325,11 @@ fn wide(
             .or(layout.time.map(|t| t.0))
             .and_then(value)
             .is_some();
-        if !is_frame && !has_number {
+        // Without either, a row is a frame by where it stands.
+        let is_unseen = layout.frame.is_none()
+            && layout.time.is_none()
+            && cells.iter().all(|cell| cell.is_empty() || is_value(cell));
+        if !is_frame && !has_number && !is_unseen {
             let text = format!(
                 "a row that begins with `{}` is no frame and left out",
                 cells[0]
@@ -305,42 +362,14 @@ fn wide(
             "none",
         ));
     }
-    if let Some((_, secs)) = layout.time {
-        to_seconds(&mut times, secs);
-    } else {
-        insert_missing(&numbers, &mut points, &mut times, limits);
-    }
-    Ok((points, times, layout))
-}
-
-/// Puts frames in which nothing was seen where numbers of frames are left out.
-fn insert_missing(
-    numbers: &[Option<f64>],
-    points: &mut [Point],
-    times: &mut Vec<Option<f64>>,
-    limits: &Limits,
-) {
-    let whole: Option<Vec<f64>> = numbers.iter().copied().collect();
-    let Some(numbers) = whole.filter(|n| n.iter().all(|v| v.fract() == 0.0)) else {
-        return;
+    let secs = layout.time.and_then(|(_, secs)| secs);
+    // A column without a name, or with a wrong one, may hold times.
+    let is_fraction = |number: &Option<f64>| number.is_some_and(|number| number.fract() != 0.0);
+    let stamps = match layout.time.is_none() && numbers.iter().any(is_fraction) {
+        true => Stamps::of_values(numbers, None),
+        false => Stamps::of_values(times, secs).numbered(numbers),
     };
-    let (Some(&first), Some(&last)) = (numbers.first(), numbers.last()) else {
-        return;
-    };
-    let count = last - first + 1.0;
-    let increasing = numbers.windows(2).all(|w| w[1] > w[0]);
-    let most = (10 * numbers.len()).min(limits.frames) as f64;
-    if !increasing || count > most || count as usize == numbers.len() {
-        return;
-    }
-    for point in points {
-        let mut positions = vec![UNSEEN; count as usize];
-        for (number, position) in numbers.iter().zip(&point.positions) {
-            positions[(number - first) as usize] = *position;
-        }
-        point.positions = positions;
-    }
-    times.resize(count as usize, None);
+    Ok((points, stamps, layout))
 }
 
 #[cfg(test)]

@@ -16,15 +16,21 @@ const TITLES: [&str; 7] = [
     "analog",
 ];
 
-/// True if a file begins as such an export does.
+/// True if a file begins as such an export does, perhaps behind what is said of the trial.
 pub(super) fn begins(rows: &[TableLine]) -> bool {
-    let rate = |row: &TableLine| number(row.1[0], Decimal::Either).is_some();
-    match rows {
-        [title, next, ..] => {
-            is_title(title) && (rate(next) || title.1[0].eq_ignore_ascii_case("events"))
-        }
-        _ => false,
-    }
+    const PREAMBLE: usize = 12;
+    let begins = |pair: &[TableLine]| {
+        let is_events = pair[0].1[0].eq_ignore_ascii_case("events");
+        is_title(&pair[0]) && (rate(&pair[1]).is_some() || is_events)
+    };
+    let pairs = rows[..rows.len().min(PREAMBLE)].windows(2);
+    pairs.into_iter().any(begins)
+}
+
+/// The rate below a title: `100`, `100,Hz`, `100 Hz`.
+fn rate((_, cells): &TableLine) -> Option<f64> {
+    let word = cells.first()?.split_whitespace().next()?;
+    number(word, Decimal::Either)
 }
 
 fn is_title((_, cells): &TableLine) -> bool {
@@ -64,7 +70,7 @@ const SECTION_HEAD: usize = 6;
 fn section(rows: &[TableLine], title: usize) -> Option<ColumnLayout> {
     let is_axes = |(_, cells): &TableLine| {
         let first = cells[0].to_ascii_lowercase();
-        first.starts_with("frame") || first.starts_with("field") || first.starts_with("sample")
+        (["frame", "field", "sample"].iter()).any(|word| first.starts_with(word))
     };
     let head = rows.get(title..(title + SECTION_HEAD).min(rows.len()))?;
     let axes = title + head.iter().position(is_axes)?;
@@ -83,7 +89,7 @@ fn section(rows: &[TableLine], title: usize) -> Option<ColumnLayout> {
         header_rows: begin,
         stop_row: end.map(|rows| begin + rows),
         frame: Some(0),
-        rate_hz: number(rows.get(title + 1)?.1[0], Decimal::Either),
+        rate_hz: rate(rows.get(title + 1)?),
         ..ColumnLayout::default()
     };
     let mut name = "";

@@ -1,5 +1,6 @@
 //! Tables of numbers without names.
 
+use super::columns;
 use super::layout::{ColumnLayout, TableLine};
 use crate::formats::cells::{Decimal, number};
 use crate::roles::points::{NUMBERED_HANDS, numbered_counts};
@@ -92,12 +93,26 @@ pub(super) fn layout(rows: &[TableLine]) -> Option<ColumnLayout> {
         let known = values.is_multiple_of(width) && is_known(values / width);
         known.then_some((before, width, values / width))
     };
+    // A count that fits says nothing against a first column that counts frames: then a hand's points may be behind it.
+    let counted = rows.len() > header_rows + 2 && columns::counts(&rows[header_rows..], 0);
+    let behind_count = || {
+        fits(1, 3)
+            .or_else(|| fits(1, 4))
+            .or_else(|| hand_width(cells, 1))
+    };
     // A fourth number is how sure the sensor was.
-    let (before, width, count) = fits(0, 3)
+    let (before, width, count) = (counted.then(behind_count).flatten())
+        .or_else(|| fits(0, 3))
         .or_else(|| fits(1, 3))
         .or_else(|| fits(0, 4))
         .or_else(|| fits(1, 4))
-        .or_else(|| hand_width(cells))?;
+        .or_else(|| (0..3).find_map(|before| hand_width(cells, before)))
+        .or_else(|| two_bodies(cells.len()))?;
+    let bodies = if is_known(count) || NUMBERED_HANDS.contains(&count) {
+        1
+    } else {
+        2
+    };
     let named = names_above(&rows[..header_rows], before, width, count);
     if named.is_none() && header_rows > 0 && is_telling(first) {
         return None;
@@ -105,10 +120,14 @@ pub(super) fn layout(rows: &[TableLine]) -> Option<ColumnLayout> {
     let point = |number: usize| {
         let x = before + width * number;
         let name = named.as_ref().map(|names| names[number].to_owned());
-        (
-            name.unwrap_or_else(|| number.to_string()),
-            [x, x + 1, x + 2],
-        )
+        let numbered = || match bodies {
+            1 => number.to_string(),
+            _ => {
+                let own = count / bodies;
+                format!("{}:{}", number / own + 1, number % own)
+            }
+        };
+        (name.unwrap_or_else(numbered), [x, x + 1, x + 2])
     };
     let value = |(_, cells): &TableLine| number(cells[0], Decimal::Either);
     let counts = rows[header_rows..]
@@ -120,7 +139,11 @@ pub(super) fn layout(rows: &[TableLine]) -> Option<ColumnLayout> {
     } else {
         ""
     };
-    let text = format!("no names of columns; read as x, y and z of {count} points{turned}");
+    let whose = match bodies {
+        1 => format!("{count} points"),
+        _ => format!("{} points of each of {bodies} bodies", count / bodies),
+    };
+    let text = format!("no names of columns; read as x, y and z of {whose}{turned}");
     let notes = if named.is_some() {
         Vec::new()
     } else {
@@ -128,21 +151,27 @@ pub(super) fn layout(rows: &[TableLine]) -> Option<ColumnLayout> {
     };
     Some(ColumnLayout {
         points: (0..count).map(point).collect(),
-        time: match before {
-            1 => (!counts).then_some((0, None)),
-            2 => Some((1, None)),
-            _ => None,
-        },
-        frame: (before > 0 && counts).then_some(0),
+        time: (before > 0).then(|| (before - 1, None)),
+        frame: (before > 1 && counts).then_some(0),
         header_rows,
         notes,
         ..ColumnLayout::default()
     })
 }
 
-/// Columns before the points, columns of a point and number of points in a row that holds a hand: places alone, or each with a
-/// rotation x, y, z, w as in the rows of SHREC.
-fn hand_width(cells: &[&str]) -> Option<(usize, usize, usize)> {
+/// Columns before the points, columns of a point and number of points in a row of `columns` that holds two bodies.
+fn two_bodies(columns: usize) -> Option<(usize, usize, usize)> {
+    let fits = |(before, width): (usize, usize)| {
+        let values = columns.checked_sub(before)?;
+        let is_two = values.is_multiple_of(2 * width) && is_known(values / width / 2);
+        is_two.then_some((before, width, values / width))
+    };
+    [(0, 3), (1, 3), (0, 4), (1, 4)].into_iter().find_map(fits)
+}
+
+/// Columns before the points, columns of a point and number of points in a row that holds a hand behind `before` columns: places alone, or
+/// each with a rotation x, y, z, w as in the rows of SHREC.
+fn hand_width(cells: &[&str], before: usize) -> Option<(usize, usize, usize)> {
     let value = |at: usize| number(cells.get(at)?, Decimal::Either);
     let is_rotation = |at: usize| {
         let squares = (at..at + 4).map(|at| Some(value(at)?.powi(2)));
@@ -150,15 +179,14 @@ fn hand_width(cells: &[&str]) -> Option<(usize, usize, usize)> {
             .sum::<Option<f64>>()
             .is_some_and(|length| (length - 1.0).abs() < 0.02)
     };
-    let fits = |(before, width): (usize, usize)| {
+    let fits = |width: usize| {
         let values = cells.len().checked_sub(before)?;
         let count = values / width;
         let is_hand = values.is_multiple_of(width) && NUMBERED_HANDS.contains(&count);
         let turned = width < 7 || (0..count).all(|point| is_rotation(before + width * point + 3));
         (is_hand && turned).then_some((before, width, count))
     };
-    let mut layouts = [(0, 3), (1, 3), (0, 7), (1, 7), (2, 7)].into_iter();
-    layouts.find_map(fits)
+    [3, 7].into_iter().find_map(fits)
 }
 
 /// True if a row names its columns by more than numbers: then they are not x, y and z of a point each.

@@ -1,5 +1,7 @@
 //! What columns hold besides positions: words and units that say so.
 
+use super::layout::TableLine;
+
 /// Words behind a name that say that its position is meant.
 const POSITION: [&str; 11] = [
     "position",
@@ -107,4 +109,69 @@ pub(super) fn is_turned(labels: &[String]) -> bool {
     };
     let turned = labels.iter().filter(|label| says(label)).count();
     turned > 0 && turned * 2 > labels.len()
+}
+
+/// What is measured in place of positions, glued to a name or in a title.
+const QUANTITIES: [&str; 13] = [
+    "angle",
+    "angles",
+    "velocity",
+    "velocities",
+    "acceleration",
+    "accelerations",
+    "moment",
+    "moments",
+    "force",
+    "forces",
+    "power",
+    "powers",
+    "winkel",
+];
+
+/// True of what Plug-in Gait and others call angles and loads of joints, `LHipAngles`.
+pub(super) fn names_other(name: &str) -> bool {
+    let lower = name.to_lowercase();
+    let glued = |end: &&str| lower.ends_with(*end) && lower.len() > end.len();
+    QUANTITIES.iter().any(|end| glued(&end)) && !lower.ends_with("triangle")
+}
+
+/// True if a row above the names is a title of angles, speeds or loads, `Joint Angle`.
+pub(super) fn says_other_above(header: &[TableLine]) -> bool {
+    /// Longer cells are sentences.
+    const LONGEST: usize = 40;
+    let says = |cell: &&str| {
+        let lower = cell.to_lowercase();
+        let words: Vec<&str> = lower.split(|c: char| !c.is_alphabetic()).collect();
+        let has = |known: &[&str]| words.iter().any(|word| known.contains(word));
+        cell.len() <= LONGEST
+            && has(&QUANTITIES)
+            && !has(&[
+                "position",
+                "positions",
+                "marker",
+                "markers",
+                "trajectories",
+                "no",
+                "without",
+            ])
+    };
+    let above = header.split_last().map_or(&[][..], |(_, above)| above);
+    // In the row of kinds each column says what it is.
+    let titles = above.iter().filter(|(_, cells)| {
+        let mut filled = cells
+            .iter()
+            .filter(|cell| !cell.is_empty() && **cell != "#");
+        filled.next().is_some() && filled.next().is_none()
+    });
+    titles.flat_map(|(_, cells)| cells).any(says)
+}
+
+/// True of a name to which a word for something else is glued, `headrot`, `kneeR` before an axis.
+pub(super) fn is_glued_other(name: &str) -> bool {
+    const LEAST: usize = 3;
+    let lower = name.to_lowercase();
+    let long = NO_POSITION.iter().filter(|word| word.len() >= LEAST);
+    let is_channel =
+        name.ends_with(['R', 'Q']) && name.chars().nth_back(1).is_some_and(char::is_lowercase);
+    is_channel || long.into_iter().any(|word| lower.ends_with(word))
 }

@@ -12,7 +12,7 @@ use super::descriptor::FormatDescriptor;
 use super::head::Head;
 use super::points::{Point, UNSEEN, check_size, metres_of};
 use super::table::axis_of;
-use super::timing::{Clock, TimedPoints};
+use super::timing::{Clock, Stamps, TimedPoints};
 use super::{Limits, Loaded, ParseError, Place, Warning};
 use crate::math::Vec3;
 
@@ -91,10 +91,13 @@ pub fn read(
         .collect();
     check_size(columns.len(), body.len(), bytes.len(), limits)?;
     let table = frames(&columns, &body, limits, &mut warnings)?;
-    if let Some(stated) = heading.frames.filter(|&n| n != table.times.len() as f64) {
+    if let Some(stated) = heading
+        .frames
+        .filter(|&n| n != table.stamps.secs.len() as f64)
+    {
         let text = format!(
             "{} frames are there, the header says {stated}",
-            table.times.len()
+            table.stamps.secs.len()
         );
         warnings.push(Warning::new(Place::File, text));
     }
@@ -110,7 +113,7 @@ pub fn read(
     }
     let timed = TimedPoints {
         points: table.points,
-        times_secs: table.times,
+        stamps: table.stamps,
         clock,
         metres_per_unit: unit,
     };
@@ -221,10 +224,10 @@ fn is_axes_row(cells: &[&str]) -> bool {
     first.is_none_or(|cell| cell.starts_with(['X', 'x']))
 }
 
-/// Points and times of all frames.
+/// Points of all frames, and when they are.
 pub(super) struct TrcFrames {
     points: Vec<Point>,
-    times: Vec<Option<f64>>,
+    stamps: Stamps,
 }
 
 fn frames(
@@ -242,9 +245,10 @@ fn frames(
             positions: Vec::with_capacity(body.len()),
         })
         .collect();
-    let mut times = Vec::with_capacity(body.len());
+    let mut stamps = Stamps::default();
     for (line, cells) in body {
-        if number(cells[0], decimal).is_none() {
+        let frame = number(cells[0], decimal);
+        if frame.is_none() {
             let text = format!(
                 "a row that begins with `{}` and no frame's number is left out",
                 cells[0]
@@ -252,12 +256,13 @@ fn frames(
             warnings.push(Warning::new(Place::Line(*line), text));
             continue;
         }
-        if times.len() == limits.frames {
+        if stamps.secs.len() == limits.frames {
             let expected = format!("at most {} frames", limits.frames);
             return Err(ParseError::new(Place::Line(*line), expected, "more"));
         }
         let value = |column: usize| cells.get(column).and_then(|cell| number(cell, decimal));
-        times.push(if first > 1 { value(1) } else { None });
+        stamps.secs.push(if first > 1 { value(1) } else { None });
+        stamps.numbers.push(frame);
         for ((_, column), point) in columns.iter().zip(&mut points) {
             let at = [value(*column), value(column + 1), value(column + 2)];
             point.positions.push(match at {
@@ -266,7 +271,7 @@ fn frames(
             });
         }
     }
-    if times.is_empty() {
+    if stamps.secs.is_empty() {
         let line = body.last().map_or(1, |row| row.0);
         return Err(ParseError::new(
             Place::Line(line),
@@ -274,7 +279,7 @@ fn frames(
             "none",
         ));
     }
-    Ok(TrcFrames { points, times })
+    Ok(TrcFrames { points, stamps })
 }
 
 #[cfg(test)]

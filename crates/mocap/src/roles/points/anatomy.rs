@@ -4,13 +4,22 @@
 //! markers on both sides of them, as in the published sets. Sources: the marker guides of Plug-in Gait, Helen Hayes, CAST (Cappozzo et
 //! al. 1995), van Sint Jan (2007), Visual3D and Qualisys.
 
+use super::place::PointJoint;
 use super::set::{LEAST_ROLES, PointSet, Recognised};
+use crate::roles::Role;
 
 /// Abbreviation of each bony landmark, and its spellings, without the side.
 const SPELLINGS: [(&str, &[&str]); 18] = [
     (
         "asi",
         &[
+            "asias",
+            "sias",
+            "siasi",
+            "crestfront",
+            "asipelvis",
+            "ant",
+            "pelvisfront",
             "asi",
             "asis",
             "ias",
@@ -24,6 +33,10 @@ const SPELLINGS: [(&str, &[&str]); 18] = [
     (
         "psi",
         &[
+            "psias",
+            "sips",
+            "pelvisback",
+            "post",
             "psi",
             "psis",
             "ips",
@@ -37,6 +50,14 @@ const SPELLINGS: [(&str, &[&str]); 18] = [
     (
         "tro",
         &[
+            "troc",
+            "troch",
+            "grtr",
+            "gtroc",
+            "gtro",
+            "hipcenter",
+            "hipcentre",
+            "hipjc",
             "tro",
             "gtr",
             "gt",
@@ -51,6 +72,18 @@ const SPELLINGS: [(&str, &[&str]); 18] = [
     (
         "knel",
         &[
+            "knee1",
+            "lfemc",
+            "lfep",
+            "lcondyle",
+            "lfemcond",
+            "klateral",
+            "femlat",
+            "kneeext",
+            "lepik",
+            "ep",
+            "lfemepi",
+            "kn",
             "kne",
             "knel",
             "lk",
@@ -78,6 +111,16 @@ const SPELLINGS: [(&str, &[&str]); 18] = [
     (
         "knem",
         &[
+            "knee2",
+            "mfemc",
+            "mfep",
+            "mcondyle",
+            "mfemcond",
+            "kmedial",
+            "femmed",
+            "kneeint",
+            "mepik",
+            "mfemepi",
             "knem",
             "mk",
             "mfe",
@@ -104,6 +147,13 @@ const SPELLINGS: [(&str, &[&str]); 18] = [
     (
         "ankl",
         &[
+            "mall",
+            "lmalleolus",
+            "lateralmalleolus",
+            "mlat",
+            "ankleext",
+            "anlat",
+            "latmall",
             "ank",
             "ankl",
             "la",
@@ -131,6 +181,12 @@ const SPELLINGS: [(&str, &[&str]); 18] = [
     (
         "ankm",
         &[
+            "mmalleolus",
+            "medialmalleolus",
+            "mmed",
+            "ankleint",
+            "anmed",
+            "medmall",
             "ankm",
             "ma",
             "mm",
@@ -157,6 +213,14 @@ const SPELLINGS: [(&str, &[&str]); 18] = [
     (
         "acr",
         &[
+            "should",
+            "shou",
+            "acrom",
+            "shld",
+            "gleno",
+            "lac",
+            "clo1",
+            "shol",
             "acr",
             "acro",
             "ac",
@@ -175,6 +239,18 @@ const SPELLINGS: [(&str, &[&str]); 18] = [
     (
         "elbl",
         &[
+            "elbow1",
+            "el",
+            "lep",
+            "lhep",
+            "lehum",
+            "elboext",
+            "lelbepi",
+            "lhumepi",
+            "epl",
+            "humlat",
+            "lhc",
+            "ell",
             "elb",
             "elbl",
             "lel",
@@ -194,6 +270,17 @@ const SPELLINGS: [(&str, &[&str]); 18] = [
     (
         "elbm",
         &[
+            "elbow2",
+            "em",
+            "mep",
+            "mhep",
+            "mehum",
+            "elboint",
+            "melbepi",
+            "mhumepi",
+            "epm",
+            "hummed",
+            "mhc",
             "elbm",
             "mel",
             "hme",
@@ -213,6 +300,14 @@ const SPELLINGS: [(&str, &[&str]); 18] = [
     (
         "wrir",
         &[
+            "faradius",
+            "rs",
+            "rstyl",
+            "radial",
+            "wristradius",
+            "wrirad",
+            "wrl",
+            "rst",
             "wra",
             "wrir",
             "rad",
@@ -235,6 +330,14 @@ const SPELLINGS: [(&str, &[&str]); 18] = [
     (
         "wriu",
         &[
+            "faulna",
+            "us",
+            "ustyl",
+            "ulnar",
+            "wristulna",
+            "wriuln",
+            "wrm",
+            "ust",
             "wrb",
             "wriu",
             "uln",
@@ -270,6 +373,9 @@ const SPELLINGS: [(&str, &[&str]); 18] = [
             "sacr",
             "sacrum",
             "vsacral",
+            "vsac",
+            "vsacr",
+            "sacro",
             "sacral",
             "s1",
             "s2",
@@ -277,7 +383,7 @@ const SPELLINGS: [(&str, &[&str]); 18] = [
             "waistback",
         ],
     ),
-    ("c7", &["c7", "cv7", "spinetop", "backtop"]),
+    ("c7", &["c7", "cv7", "vc7", "c7t1", "spinetop", "backtop"]),
     (
         "clav",
         &[
@@ -330,17 +436,43 @@ const ANATOMY: PointSet = PointSet {
     more_roles: &[],
 };
 
-/// The roles of points of these normalised names, if both legs are there.
+/// The roles of points of these normalised names, if both legs are there, or both arms.
 pub(super) fn assign(names: &[String]) -> Option<Recognised> {
+    let found = ANATOMY.assign(&spellings(names))?;
+    let has = |role| found.roles.iter().any(|(known, _)| *known == role);
+    let arms = [
+        [Role::LeftArm, Role::LeftForearm, Role::LeftHand],
+        [Role::RightArm, Role::RightForearm, Role::RightHand],
+    ];
+    let has_arms = arms.into_iter().flatten().all(has);
+    // Two roles more than a published set needs: short labels such as `LA` mean other things on other things than people.
+    let is_body = found.has_hips() || has_arms;
+    (is_body && found.roles.len() >= LEAST_ROLES + 2).then_some(found)
+}
+
+/// `found` with the limbs that only these spellings know: what is stuck beside a published set, or called otherwise in it.
+pub(super) fn complete(mut found: Recognised, names: &[String]) -> Recognised {
+    let Some(more) = ANATOMY.assign(&spellings(names)) else {
+        return found;
+    };
+    for (role, place) in more.roles {
+        let known = |(known, at): &(Role, PointJoint)| *known == role || *at == place;
+        if role != Role::Torso && !found.roles.iter().any(known) {
+            found.roles.push((role, place));
+        }
+    }
+    found.roles.sort_by_key(|(role, _)| role.index());
+    found
+}
+
+fn spellings(names: &[String]) -> Vec<String> {
     let mut known: Vec<String> = Vec::with_capacity(names.len());
     for name in names {
         let spelt = spelt(name).filter(|spelt| !known.contains(spelt));
         // What is spelt in no known way keeps its own name, out of the way of those that are.
         known.push(spelt.unwrap_or_else(|| format!("?{name}")));
     }
-    let found = ANATOMY.assign(&known)?;
-    // Two roles more than a published set needs: short labels such as `LA` mean other things on other things than people.
-    (found.has_hips() && found.roles.len() >= LEAST_ROLES + 2).then_some(found)
+    known
 }
 
 /// The one spelling of a marker's name, its side in front.

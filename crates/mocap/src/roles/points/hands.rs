@@ -30,13 +30,13 @@ impl HandPoint {
 /// Points of a hand that are enough to be one: fewer belong to a body.
 const LEAST: usize = 8;
 
-/// The counts of points of a hand whose order is known: SHREC, MediaPipe, WebXR, OpenXR.
-pub const NUMBERED_HANDS: [usize; 4] = [20, 21, 25, 26];
+/// The counts of points of a hand whose order is known: SHREC 2021, MediaPipe, SHREC 2017, WebXR, OpenXR.
+pub const NUMBERED_HANDS: [usize; 5] = [20, 21, 22, 25, 26];
 
 /// What each of `count` points of `hand` is, in the order of the model with this many points: `None` for a joint within the palm. `None` as a
 /// whole if there is no such model.
 pub fn numbered_hand(count: usize, hand: Hand) -> Option<Vec<Option<Role>>> {
-    let (_, model) = numbered(count)?;
+    let (_, model) = models(count).first()?;
     let role = |number| Some(model(number)?.of(hand));
     Some((0..count).map(role).collect())
 }
@@ -156,19 +156,19 @@ pub fn recognise_numbered_hand(
     for (before, group) in groups {
         let own: Vec<&str> = group.iter().map(|at| names[*at]).collect();
         let order = numbers(&own)?;
-        let (set, model) = numbered(own.len())?;
-        let known = order.into_iter().zip(&group);
-        let points: Vec<(HandPoint, usize)> = known
-            .filter_map(|(number, at)| Some((model(number)?, *at)))
-            .collect();
-        let told = side_of(before).unwrap_or_else(|| side(&points, poses));
-        // Whose other hand is known, this is not it.
-        let taken = all.iter().any(|(role, _)| Hand::of(*role) == Some(told));
-        let hand = if taken { told.other() } else { told };
-        let roles: Vec<_> = points.iter().map(|(p, at)| (p.of(hand), *at)).collect();
-        if !is_like_a_hand(&roles, poses, hand) {
-            return None;
-        }
+        let of_model = |(set, model): &(&'static str, NumberedHand)| {
+            let known = order.iter().zip(&group);
+            let points: Vec<(HandPoint, usize)> = known
+                .filter_map(|(number, at)| Some((model(*number)?, *at)))
+                .collect();
+            let told = side_of(before).unwrap_or_else(|| side(&points, poses));
+            // Whose other hand is known, this is not it.
+            let taken = all.iter().any(|(role, _)| Hand::of(*role) == Some(told));
+            let hand = if taken { told.other() } else { told };
+            let roles: Vec<_> = points.iter().map(|(p, at)| (p.of(hand), *at)).collect();
+            is_like_a_hand(&roles, poses, hand).then_some((*set, roles))
+        };
+        let (set, roles) = models(own.len()).iter().find_map(of_model)?;
         sets.push(set);
         all.extend(roles);
     }
@@ -188,29 +188,45 @@ fn side_of(name: &str) -> Option<Hand> {
 /// The set of this many numbered points, and what each number is.
 type NumberedHand = fn(usize) -> Option<HandPoint>;
 
-fn numbered(count: usize) -> Option<(&'static str, NumberedHand)> {
-    Some(match count {
-        // developers.google.com/mediapipe, "Hand landmarks detection"; OpenPose's hands have the same order.
-        21 => ("MediaPipe hand (21)", |number| match number {
+/// The models of this many points, the commonest first; lengths of bones tell them apart.
+fn models(count: usize) -> &'static [(&'static str, NumberedHand)] {
+    match count {
+        21 => &[
+            // developers.google.com/mediapipe, "Hand landmarks detection"; OpenPose's hands have the same order.
+            ("MediaPipe hand (21)", |number| match number {
+                0 => Some(HandPoint::Wrist),
+                _ => Some(HandPoint::Finger((number - 1) / 4, (number - 1) % 4)),
+            }),
+            // BigHand2.2M (Yuan et al. 2017) and First-Person Hand Action (Garcia-Hernando et al. 2018): the bases of all fingers
+            // first.
+            ("BigHand (21)", |number| match number {
+                0 => Some(HandPoint::Wrist),
+                1..=5 => Some(HandPoint::Finger(number - 1, 0)),
+                _ => Some(HandPoint::Finger((number - 6) / 3, (number - 6) % 3 + 1)),
+            }),
+        ],
+        // DHG-14/28 (De Smedt et al. 2016) and SHREC 2017: wrist and palm, then four points of each finger.
+        22 => &[("DHG hand (22)", |number| match number {
             0 => Some(HandPoint::Wrist),
-            _ => Some(HandPoint::Finger((number - 1) / 4, (number - 1) % 4)),
-        }),
+            1 => Some(HandPoint::Palm),
+            _ => Some(HandPoint::Finger((number - 2) / 4, (number - 2) % 4)),
+        })],
         // SHREC 2021, track on gestures of hands: palm, three points of the thumb, four of each finger.
-        20 => ("SHREC hand (20)", |number| match number {
+        20 => &[("SHREC hand (20)", |number| match number {
             0 => Some(HandPoint::Palm),
             1 | 2 => Some(HandPoint::Finger(0, number - 1)),
             3 => Some(HandPoint::Finger(0, 3)),
             _ => Some(HandPoint::Finger(number / 4, number % 4)),
-        }),
+        })],
         // XrHandJointEXT of OpenXR 1.0.
-        26 => ("OpenXR hand (26)", |number| match number {
+        26 => &[("OpenXR hand (26)", |number| match number {
             0 => Some(HandPoint::Palm),
             _ => xr(number - 1),
-        }),
+        })],
         // XRHandJoint of WebXR Hand Input: the same without the palm.
-        25 => ("WebXR hand (25)", xr),
-        _ => return None,
-    })
+        25 => &[("WebXR hand (25)", xr)],
+        _ => &[],
+    }
 }
 
 /// The joints of WebXR in their order: the wrist, four of the thumb, five of each finger with the metacarpal first.

@@ -20,7 +20,7 @@ const fn markers(
     }
 }
 
-pub(super) const SETS: [PointSet; 9] = [
+pub(super) const SETS: [PointSet; 10] = [
     // Vicon, "Plug-in Gait Reference Guide": full body, with joint centres where the model's outputs are in the file
     // (FEP, FEO, TIO, HUP, HUO, RAO). Medial markers as labs add them.
     markers(
@@ -74,6 +74,12 @@ pub(super) const SETS: [PointSet; 9] = [
         "?ias ?ips ?ftc ?fle ?fme ?fax ?ttc ?fal ?tam ?fcc ?fm1 ?fm2 ?fm5 ?head sgl ?sae cv7 tv2 tv7 sjn sxs ?hle ?hme ?rsp \
          ?usp",
         RIZZOLI,
+    ),
+    // BTS, protocols "Davis" of SMART-Clinic, after Davis et al., "A gait analysis data collection and reduction technique" (1991).
+    markers(
+        "BTS Davis",
+        "c7 ?should sacrum ?asis ?bar1 ?knee1 ?bar2 ?mall ?heel ?met",
+        BTS,
     ),
     // OptiTrack, Motive documentation: Baseline marker sets of 37 to 41 markers.
     markers(
@@ -175,6 +181,18 @@ const RIZZOLI: Roles = &[
     ("neck", "cv7+sjn|cv7|c7+ij|c7|@left_arm+@right_arm"),
     ("torso", "tv7+sxs|tv2|tv7|mai|sxs"),
     ("head", "lhead+rhead+sgl|lhead+rhead|sgl|head"),
+];
+
+const BTS: Roles = &[
+    ("?_thigh", "hip(?;lasis;rasis;sacrum)|?troch|?gt"),
+    ("?_shin", "?knee1+?knee2|?knee1|?knee"),
+    ("?_foot", "?mall+?mallm|?mall"),
+    ("?_arm", "?should"),
+    ("?_forearm", "?elbow|?elb"),
+    ("?_hand", "?wrist|?radius+?ulna|?wri"),
+    ("hips", "lasis+rasis+sacrum|lasis+rasis"),
+    ("neck", "c7|@left_arm+@right_arm"),
+    ("head", "head|lhead+rhead"),
 ];
 
 const OPTITRACK: Roles = &[

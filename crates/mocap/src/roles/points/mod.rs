@@ -105,6 +105,10 @@ pub fn recognise_posed(names: &[&str], poses: &[Vec<Vec3>]) -> Option<Recognised
         .filter(|(_, set)| set.coverage(&names) >= LEAST_COVERAGE)
         .find_map(|(_, set)| {
             let found = set.assign(&names)?;
+            let found = match set.numbered {
+                true => found,
+                false => anatomy::complete(found, &names),
+            };
             let is_named = !set.numbered || set.coverage(&names) >= LEAST_NAMED;
             let name = if is_named { set } else { &landmarks::JOINTS }.name;
             Some(Recognised { set: name, ..found })
@@ -112,7 +116,7 @@ pub fn recognise_posed(names: &[&str], poses: &[Vec<Vec3>]) -> Option<Recognised
     let joints = landmarks::JOINTS.assign(&names);
     // Words for joints say more than those of bones that markers are stuck to.
     best.or_else(|| match joints {
-        Some(found) if found.has_hips() => Some(found),
+        Some(found) if found.has_hips() => Some(anatomy::complete(found, &names)),
         joints => anatomy::assign(&names).or(joints),
     })
 }

@@ -1,5 +1,6 @@
 //! Names of points in one spelling.
 
+use crate::roles::languages::{in_english, words_in_english};
 use crate::roles::words::words_of;
 
 /// Names without subject and marks, in lower case, a side in front: `lshoulder` for `LEFT_SHOULDER`, `ShoulderLeft`,
@@ -34,7 +35,17 @@ pub(super) fn normalised_one(name: &str) -> String {
 /// Lower-case words, cut at marks and where the case changes; digits stay with the word before them.
 pub(super) fn words(name: &str) -> Vec<String> {
     let bare = name.rsplit(':').next().unwrap_or(name);
-    words_of(bare, char::is_alphanumeric)
+    if bare.is_ascii() {
+        return words_in_english(words_of(bare, char::is_alphanumeric));
+    }
+    let words = words_of(&in_english(bare), char::is_alphanumeric);
+    // In Japanese a point between waist and knee is called the leg, and the root the waist.
+    let of_point = |word: String| match word.as_str() {
+        "leg" if bare.contains('足') => "thigh".to_owned(),
+        "waist" if bare.contains('腰') => "hips".to_owned(),
+        _ => word,
+    };
+    words_in_english(words).into_iter().map(of_point).collect()
 }
 
 /// The side first, then the rest.
@@ -47,8 +58,8 @@ fn joined(mut words: Vec<String>) -> String {
         words.remove(0);
     }
     let is_side = |word: &str| match word {
-        "left" | "l" => Some("l"),
-        "right" | "r" => Some("r"),
+        "left" | "l" | "links" => Some("l"),
+        "right" | "r" | "rechts" => Some("r"),
         _ => None,
     };
     let spelt = words.iter().position(|word| is_side(word).is_some());
@@ -109,6 +120,14 @@ mod tests {
             ("body_left_hip", "lhip"),
             ("Spine1", "spine1"),
             ("Right", "right"),
+            ("Schulter_links", "lshoulder"),
+            ("Handgelenk rechts", "rwrist"),
+            ("Knöchel_links", "lankle"),
+            ("左ひじ", "lelbow"),
+            ("右足", "rthigh"),
+            ("右足首", "rankle"),
+            ("腰", "hips"),
+            ("rodilla_izq", "lknee"),
         ] {
             assert_eq!(normalised_one(name), expected, "{name}");
         }

@@ -26,6 +26,10 @@ fn every_set_knows_itself_by_name_and_gives_a_body() {
         for role in [Hips, LeftThigh, RightThigh, LeftFoot, RightFoot] {
             assert!(roles.contains(&role), "{found}: {role}");
         }
+        if set.name == "BTS Davis" {
+            // Of the upper body it has shoulders and neck.
+            continue;
+        }
         let whole_body =
             !["Plug-in Gait, lower body", "Helen Hayes (Vicon labels)"].contains(&set.name);
         for role in [
