@@ -58,10 +58,10 @@ fn one(path: &Path) -> Result<Labels> {
     if form == LabelFormat::Tsv {
         return Labels::read(&bytes).with_context(shown);
     }
+    // What a file says of its clip goes before what it is called.
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-    let clip = form
-        .is_of_one_clip()
-        .then(|| exchange::clip_of_file_name(&stem));
+    let clip = exchange::clip_of_file_name(&stem);
+    let clip = (form.is_of_one_clip() && !exchange::names_clip(form, &bytes)).then_some(clip);
     let read =
         exchange::read(form, &bytes, clip.as_deref(), &ClipLengths::new()).with_context(shown)?;
     if let Some((clip, count)) = read.absent.iter().next() {
@@ -93,6 +93,26 @@ fn one(path: &Path) -> Result<Labels> {
         rows: rows.collect(),
         warnings,
     })
+}
+
+/// A question about a class by whose name nothing happens.
+pub fn doubt_of_none<'a>(classes: impl IntoIterator<Item = &'a str>) -> Option<String> {
+    const NONE: [&str; 9] = [
+        "none",
+        "null",
+        "nothing",
+        "no action",
+        "no_action",
+        "background",
+        "no gesture",
+        "no_gesture",
+        "nan",
+    ];
+    let is_none = |class: &&str| NONE.contains(&class.to_lowercase().as_str());
+    let class = classes.into_iter().find(is_none)?;
+    Some(format!(
+        "is `{class}` a class of motion? Where nothing happens needs no label: leave its rows out, or they are learnt as a motion"
+    ))
 }
 
 /// True if text is a table of labels with its header: what Audacity writes has none.

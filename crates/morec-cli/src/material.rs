@@ -167,6 +167,10 @@ impl MaterialArgs {
         let path = self.labels.as_deref().context("--labels: which?")?;
         let labels = labels::read(path)?;
         warn(path, &labels.warnings);
+        let classes = labels.rows.iter().map(|row| row.class.as_str());
+        if let Some(doubt) = labels::doubt_of_none(classes) {
+            eprintln!("morec: {}: {doubt}", shown(path));
+        }
         let Some(path) = &self.people else {
             return Ok((labels, None));
         };

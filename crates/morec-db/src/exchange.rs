@@ -10,13 +10,15 @@
 //! | CSV | seconds and frames | all but who set it |
 //! | JSON | seconds and frames | all but who set it |
 //! | ELAN | milliseconds, so frames of up to 500 Hz | clip, class, person; state by tier |
-//! | Audacity | seconds | class; the clip by the file's name ([`file_name`]) |
+//! | Audacity | seconds | class; the clip by the file's name ([`file_name`]); Praat's TextGrids and subtitles are read as it |
+//! | BORIS (read as TSV or CSV) | seconds | clip, class, person |
 //! | BABEL | seconds | clip, class, whole clips, state (a key of ours) |
 //! | Label Studio | seconds | clip, class, score; accepted ones as annotations, others as predictions |
 
 mod annotation;
 mod audacity;
 mod babel;
+mod boris;
 mod csv;
 mod eaf;
 mod file_names;
@@ -25,6 +27,7 @@ mod label_studio;
 mod resolve;
 #[cfg(test)]
 mod tests;
+mod timed_text;
 mod tsv;
 
 pub use file_names::{clip_of_file_name, file_name, file_names};
@@ -32,17 +35,17 @@ pub use file_names::{clip_of_file_name, file_name, file_names};
 use morec::formats::ParseError;
 
 use annotation::text;
-pub use annotation::{Annotation, ClipLengths, LabelFormat, ReadLabels, snap};
+pub use annotation::{Annotation, ClipLengths, LabelContext, LabelFormat, ReadLabels, snap};
 pub use resolve::{ResolvedLabels, clip_lengths, clip_of_file, resolve};
 
 impl LabelFormat {
-    /// The form that a file's ending says; text files are Audacity's, JSON is distinguished by its content.
+    /// The form that a file's ending says; text files are Audacity's, Praat's or subtitles, JSON is distinguished by its content.
     pub fn of_file(name: &str, bytes: &[u8]) -> Option<Self> {
         match name.rsplit_once('.')?.1.to_ascii_lowercase().as_str() {
             "tsv" => Some(LabelFormat::Tsv),
             "csv" => Some(LabelFormat::Csv),
             "eaf" => Some(LabelFormat::Eaf),
-            "txt" => Some(LabelFormat::Audacity),
+            "txt" | "textgrid" | "srt" | "vtt" => Some(LabelFormat::Audacity),
             "json" => Some(json::which(bytes)),
             _ => None,
         }
@@ -59,15 +62,37 @@ pub fn read(
     clip: Option<&str>,
     lengths: &ClipLengths,
 ) -> Result<ReadLabels, ParseError> {
+    let context = LabelContext {
+        clip,
+        lengths: Some(lengths),
+        ..LabelContext::default()
+    };
+    read_with(form, bytes, &context)
+}
+
+/// [`read`] with what is said beside the file.
+///
+/// # Errors
+/// As [`read`]; a tier that the file does not have.
+pub fn read_with(
+    form: LabelFormat,
+    bytes: &[u8],
+    context: &LabelContext,
+) -> Result<ReadLabels, ParseError> {
     match form {
-        LabelFormat::Tsv => tsv::read(bytes, lengths),
-        LabelFormat::Csv => csv::read(bytes, lengths),
-        LabelFormat::Json => json::read(bytes, lengths),
-        LabelFormat::Eaf => eaf::read(text(bytes)?, clip),
-        LabelFormat::Audacity => audacity::read(text(bytes)?, clip),
+        LabelFormat::Tsv => tsv::read(bytes, context),
+        LabelFormat::Csv => csv::read(bytes, context),
+        LabelFormat::Json => json::read(bytes, context),
+        LabelFormat::Eaf => eaf::read(text(bytes)?, context),
+        LabelFormat::Audacity => audacity::read(text(bytes)?, context.clip, context.tiers),
         LabelFormat::Babel => babel::read(bytes),
-        LabelFormat::LabelStudio => label_studio::read(bytes),
+        LabelFormat::LabelStudio => label_studio::read(bytes, context),
     }
+}
+
+/// True if a file of one clip says which.
+pub fn names_clip(form: LabelFormat, bytes: &[u8]) -> bool {
+    form == LabelFormat::Eaf && text(bytes).is_ok_and(eaf::names_clip)
 }
 
 /// Writes labels. Forms of one clip take the annotations of one clip only.

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use morec::formats::{ParseError, Place, Warning};
-use morec::labels::ClipLength;
+use morec::labels::{ClipLength, names_of_clip};
 
 use crate::labels::{DbSample, SampleState};
 
@@ -22,6 +22,20 @@ pub struct Annotation {
     pub score: Option<f64>,
     /// Its state.
     pub state: SampleState,
+}
+
+impl Annotation {
+    /// A stretch of a clip as people set it, of nobody who is named.
+    pub(super) fn accepted(clip: &str, class: &str, extent: (f64, f64)) -> Self {
+        Self {
+            clip: clip.to_owned(),
+            class: class.to_owned(),
+            extent: Some(extent),
+            person: None,
+            score: None,
+            state: SampleState::Accepted,
+        }
+    }
 }
 
 impl From<DbSample> for Annotation {
@@ -176,6 +190,52 @@ pub(super) fn state(cell: &str, line: u64) -> Result<SampleState, ParseError> {
     })
 }
 
+/// What is said of a file's labels beside the file.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct LabelContext<'a> {
+    /// The clip that a file of one clip refers to.
+    pub clip: Option<&'a str>,
+    /// Lengths of the clips: frames need their rates.
+    pub lengths: Option<&'a ClipLengths>,
+    /// Frames a second of what was labelled, where it is not the clip: a video.
+    pub label_rate_hz: Option<f64>,
+    /// Tiers that are read, of forms that have some; all if empty.
+    pub tiers: &'a [String],
+}
+
+impl LabelContext<'_> {
+    /// Frames a second in which labels of this clip count.
+    pub(super) fn rate_of(&self, clip: &str) -> Option<f64> {
+        let of_clip = || Some(length_of(clip, self.lengths?)?.rate_hz);
+        self.label_rate_hz.or_else(of_clip)
+    }
+
+    pub(super) fn knows(&self, clip: &str) -> bool {
+        self.lengths
+            .is_some_and(|lengths| length_of(clip, lengths).is_some())
+    }
+}
+
+impl ReadLabels {
+    /// The extent if it has a length. A moment is left out with a warning, so that the rest of the file is read.
+    ///
+    /// # Errors
+    /// Times that cannot be any.
+    pub(super) fn stretch(
+        &mut self,
+        at: Place,
+        class: &str,
+        (start, stop): (f64, f64),
+    ) -> Result<Option<(f64, f64)>, String> {
+        if start == stop && start >= 0.0 && start.is_finite() {
+            let text = format!("`{class}` is a moment at {start} s, without a length; left out");
+            self.warnings.push(Warning::new(at, text));
+            return Ok(None);
+        }
+        checked(start, stop).map(Some)
+    }
+}
+
 /// A time that can be one.
 pub(super) fn checked(start: f64, stop: f64) -> Result<(f64, f64), String> {
     if start.is_finite() && stop.is_finite() && start >= 0.0 && stop > start {
@@ -196,9 +256,7 @@ pub(super) fn json_error(error: &serde_json::Error, expected: &str) -> ParseErro
 
 /// The length of a clip, whose file ending may stand behind its name.
 pub(super) fn length_of(clip: &str, lengths: &ClipLengths) -> Option<ClipLength> {
-    let stem = || {
-        clip.rsplit_once('.')
-            .and_then(|(stem, _)| lengths.get(stem))
-    };
-    lengths.get(clip).or_else(stem).copied()
+    names_of_clip(clip)
+        .find_map(|name| lengths.get(name))
+        .copied()
 }

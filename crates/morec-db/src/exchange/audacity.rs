@@ -2,10 +2,10 @@
 
 use morec::formats::{ParseError, Place};
 
-use super::annotation::{Annotation, ClipLengths, ReadLabels, checked, secs};
-use crate::labels::SampleState;
+use super::annotation::{Annotation, ClipLengths, ReadLabels, secs};
+use super::timed_text;
 
-pub fn read(text: &str, clip: Option<&str>) -> Result<ReadLabels, ParseError> {
+pub fn read(text: &str, clip: Option<&str>, tiers: &[String]) -> Result<ReadLabels, ParseError> {
     let clip = clip.ok_or_else(|| {
         ParseError::new(
             Place::File,
@@ -13,6 +13,12 @@ pub fn read(text: &str, clip: Option<&str>) -> Result<ReadLabels, ParseError> {
             "no clip given",
         )
     })?;
+    if timed_text::is_textgrid(text) {
+        return timed_text::textgrid(text, clip, tiers);
+    }
+    if timed_text::is_subtitles(text) {
+        return timed_text::subtitles(text, clip);
+    }
     let mut read = ReadLabels::default();
     for (line, raw) in (1..).zip(text.lines()) {
         // Lines that begin with a backslash hold frequencies of the label above.
@@ -34,15 +40,12 @@ pub fn read(text: &str, clip: Option<&str>) -> Result<ReadLabels, ParseError> {
         };
         let (start, stop) = number().zip(number()).ok_or_else(|| error(raw))?;
         let class = cells.next().unwrap_or("").trim();
-        let extent = checked(start, stop).map_err(|found| error(&found))?;
-        read.annotations.push(Annotation {
-            clip: clip.to_owned(),
-            class: class.to_owned(),
-            extent: Some(extent),
-            person: None,
-            score: None,
-            state: SampleState::Accepted,
-        });
+        let extent = read.stretch(Place::Line(line), class, (start, stop));
+        let Some(extent) = extent.map_err(|found| error(&found))? else {
+            continue;
+        };
+        read.annotations
+            .push(Annotation::accepted(clip, class, extent));
     }
     Ok(read)
 }

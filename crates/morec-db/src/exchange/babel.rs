@@ -3,7 +3,7 @@
 use morec::formats::{ParseError, Place};
 use serde_json::{Map, Value, json};
 
-use super::annotation::{Annotation, ClipLengths, ReadLabels, checked, json_error, secs};
+use super::annotation::{Annotation, ClipLengths, ReadLabels, json_error, secs};
 use crate::labels::SampleState;
 
 pub fn read(bytes: &[u8]) -> Result<ReadLabels, ParseError> {
@@ -17,10 +17,22 @@ pub fn read(bytes: &[u8]) -> Result<ReadLabels, ParseError> {
             .as_str()
             .filter(|path| *path != key.as_str());
         let clip = path.map_or(key.as_str(), stem);
+        // What BABEL says of a whole sequence sums up its stretches. In files of ours clips have both.
+        let has_stretches = ["frame_ann", "frame_anns"].iter().any(|set| {
+            let set = &sequence[*set];
+            let sets = set
+                .as_array()
+                .map_or(std::slice::from_ref(set), Vec::as_slice);
+            sets.iter()
+                .any(|set| set["labels"].as_array().is_some_and(|l| !l.is_empty()))
+        });
         for (one, several, timed) in [
             ("seq_ann", "seq_anns", false),
             ("frame_ann", "frame_anns", true),
         ] {
+            if !timed && has_stretches && path.is_some() {
+                continue;
+            }
             let sets = sequence[several]
                 .as_array()
                 .into_iter()
@@ -48,7 +60,12 @@ fn stem(path: &str) -> &str {
 fn read_label(clip: &str, label: &Value, timed: bool, read: &mut ReadLabels) -> Result<(), String> {
     let extent = match (timed, label["start_t"].as_f64(), label["end_t"].as_f64()) {
         (false, _, _) => None,
-        (true, Some(start), Some(stop)) => Some(checked(start, stop)?),
+        (true, Some(start), Some(stop)) => {
+            let class = label["proc_label"].as_str().unwrap_or_default();
+            let extent = read.stretch(Place::File, class, (start, stop))?;
+            let Some(extent) = extent else { return Ok(()) };
+            Some(extent)
+        }
         (true, _, _) => return Err(label.to_string()),
     };
     // Not of BABEL: what morec writes of labels that are no accepted ones.

@@ -1,15 +1,31 @@
-//! Comma-separated tables (RFC 4180): `file,label,start_s,end_s,start_frame,end_frame,score,actor,source`.
+//! Tables separated by commas (RFC 4180), or by semicolons or tabs as spreadsheets write them: `file,label,start_s,end_s,start_frame,end_frame,score,actor,source`.
 
 use morec::formats::{ParseError, Place, Warning};
 
-use super::annotation::{Annotation, ClipLengths, ReadLabels, checked, frames, secs};
+use super::annotation::{Annotation, ClipLengths, LabelContext, ReadLabels, frames, secs};
+use super::boris;
 use crate::labels::SampleState;
 
 const HEADER: &str =
     "file,label,start_s,end_s,start_frame,end_frame,whole_clip,score,actor,source,state";
 
-pub fn read(bytes: &[u8], lengths: &ClipLengths) -> Result<ReadLabels, ParseError> {
-    let mut records = records(super::annotation::text(bytes)?)?.into_iter();
+pub fn read(bytes: &[u8], context: &LabelContext) -> Result<ReadLabels, ParseError> {
+    let text = super::annotation::text(bytes)?;
+    let separator = separator(text);
+    let mut records = records(text, separator)?;
+    if boris::is_tabular(&records) {
+        return boris::read(&records, context);
+    }
+    // A name may begin with the sign of a comment.
+    let header = records
+        .iter()
+        .find(|(_, record)| !record[0].starts_with('#'));
+    let width = header.map_or(0, |(_, record)| record.len());
+    records.retain(|(_, record)| {
+        let first = &record[0];
+        !(first.starts_with("# ") || first.starts_with('#') && record.len() < width)
+    });
+    let mut records = records.into_iter();
     let (line, header) = records.next().ok_or_else(|| {
         ParseError::new(
             Place::File,
@@ -17,94 +33,184 @@ pub fn read(bytes: &[u8], lengths: &ClipLengths) -> Result<ReadLabels, ParseErro
             "an empty file",
         )
     })?;
-    let find = |names: &[&str]| {
-        header
-            .iter()
-            .position(|h| names.iter().any(|n| h.trim().eq_ignore_ascii_case(n)))
-    };
-    let need = |names: &[&str]| {
-        find(names).ok_or_else(|| {
-            ParseError::new(
-                Place::Line(line),
-                format!("a column `{}`", names[0]),
-                format!("`{}`", header.join(",")),
-            )
-        })
-    };
-    let (file, label) = (need(&["file", "clip"])?, need(&["label", "class"])?);
-    let seconds = find(&["start_s", "start_secs"]).zip(find(&["end_s", "stop_secs"]));
-    let framed = find(&["start_frame", "start"]).zip(find(&["end_frame", "stop"]));
-    let (whole, score, actor) = (
-        find(&["whole_clip"]),
-        find(&["score"]),
-        find(&["actor", "person"]),
-    );
-    let state = find(&["state"]);
+    let columns = Columns::of(line, &header)?;
     let mut read = ReadLabels::default();
     for (line, record) in records {
-        let cell =
-            |column: Option<usize>| column.and_then(|c| record.get(c)).map_or("", |c| c.trim());
-        let number = |column: usize| -> Result<f64, ParseError> {
-            let found = cell(Some(column));
-            found
-                .parse()
-                .map_err(|_| ParseError::new(Place::Line(line), "a number", format!("`{found}`")))
+        let row = CsvRow {
+            line,
+            record: &record,
+            has_comma: separator != ',',
         };
-        let filled = |pair: &(usize, usize)| !cell(Some(pair.0)).is_empty();
-        let extent = if cell(whole) == "1" {
-            None
-        } else if let Some((start, stop)) = seconds.filter(filled) {
-            Some((number(start)?, number(stop)?))
-        } else if let Some((start, stop)) = framed.filter(filled) {
-            let Some(length) = super::annotation::length_of(cell(Some(file)), lengths) else {
-                *read.absent.entry(cell(Some(file)).to_owned()).or_default() += 1;
-                continue;
-            };
-            Some((
-                number(start)? / length.rate_hz,
-                number(stop)? / length.rate_hz,
-            ))
-        } else {
-            None
-        };
-        if let Some((start, stop)) = extent {
-            checked(start, stop).map_err(|found| {
-                ParseError::new(
-                    Place::Line(line),
-                    "a stop after a start of at least 0",
-                    found,
-                )
-            })?;
+        if let Some(annotation) = columns.annotation(&row, context, &mut read)? {
+            read.annotations.push(annotation);
         }
-        let state = state.map_or(Ok(SampleState::Accepted), |column| {
-            super::annotation::state(cell(Some(column)), line)
-        })?;
-        if cell(Some(label)).is_empty() {
-            read.warnings.push(Warning::new(
-                Place::Line(line),
-                "a row without a label; left out",
-            ));
-            continue;
-        }
-        read.annotations.push(Annotation {
-            clip: cell(Some(file)).to_owned(),
-            class: cell(Some(label)).to_owned(),
-            extent,
-            person: Some(cell(actor))
-                .filter(|p| !p.is_empty())
-                .map(str::to_owned),
-            score: cell(score)
-                .parse()
-                .ok()
-                .filter(|score: &f64| score.is_finite()),
-            state,
-        });
     }
     Ok(read)
 }
 
+/// The columns of a table, by their names.
+struct Columns {
+    file: usize,
+    label: usize,
+    secs: Option<(usize, usize)>,
+    frames: Option<(usize, usize)>,
+    whole: Option<usize>,
+    score: Option<usize>,
+    person: Option<usize>,
+    state: Option<usize>,
+}
+
+impl Columns {
+    fn of(line: u64, header: &[String]) -> Result<Self, ParseError> {
+        let find = |names: &[&str]| {
+            let named = |name: &&str| {
+                header
+                    .iter()
+                    .position(|h| h.trim().eq_ignore_ascii_case(name))
+            };
+            names.iter().find_map(named)
+        };
+        let need = |names: &[&str]| {
+            find(names).ok_or_else(|| {
+                ParseError::new(
+                    Place::Line(line),
+                    format!("a column `{}`", names[0]),
+                    format!("`{}`", header.join(",")),
+                )
+            })
+        };
+        let framed = find(&["start_frame", "start"]).zip(find(&["end_frame", "stop"]));
+        Ok(Self {
+            // The last ones are those of BORIS' aggregated events.
+            file: need(&["file", "clip", "filename", "file_name", "observation id"])?,
+            label: need(&["label", "class", "behavior", "behaviour"])?,
+            secs: find(&[
+                "start_s",
+                "start_secs",
+                "start (s)",
+                "start_sec",
+                "start_seconds",
+            ])
+            .zip(find(&[
+                "end_s",
+                "stop_secs",
+                "stop (s)",
+                "end (s)",
+                "stop_s",
+                "end_secs",
+                "end_sec",
+                "stop_sec",
+                "stop_seconds",
+                "end_seconds",
+            ])),
+            frames: framed,
+            whole: find(&["whole_clip"]),
+            score: find(&["score"]),
+            person: find(&["actor", "person", "subject"]),
+            state: find(&["state"]),
+        })
+    }
+
+    /// The label of a row; `None` if it is left out, which `read` then says.
+    fn annotation(
+        &self,
+        row: &CsvRow<'_>,
+        context: &LabelContext,
+        read: &mut ReadLabels,
+    ) -> Result<Option<Annotation>, ParseError> {
+        let (clip, class) = (row.cell(self.file), row.cell(self.label));
+        let filled = |pair: &(usize, usize)| !row.cell(pair.0).is_empty();
+        let extent = if self.whole.is_some_and(|column| row.cell(column) == "1") {
+            None
+        } else if let Some((start, stop)) = self.secs.filter(filled) {
+            Some((row.number(start)?, row.number(stop)?))
+        } else if let Some((start, stop)) = self.frames.filter(filled) {
+            let Some(rate_hz) = context.rate_of(clip) else {
+                *read.absent.entry(clip.to_owned()).or_default() += 1;
+                return Ok(None);
+            };
+            Some((row.number(start)? / rate_hz, row.number(stop)? / rate_hz))
+        } else {
+            None
+        };
+        if let Some(extent) = extent {
+            let stretch = read.stretch(Place::Line(row.line), class, extent);
+            let stretch = stretch.map_err(|found| {
+                let expected = "a stop after a start of at least 0";
+                ParseError::new(Place::Line(row.line), expected, found)
+            })?;
+            if stretch.is_none() {
+                return Ok(None);
+            }
+        }
+        let state = self.state.map_or(Ok(SampleState::Accepted), |column| {
+            super::annotation::state(row.cell(column), row.line)
+        })?;
+        if class.is_empty() {
+            let text = "a row without a label; left out";
+            read.warnings
+                .push(Warning::new(Place::Line(row.line), text));
+            return Ok(None);
+        }
+        let cell = |column: Option<usize>| column.map_or("", |column| row.cell(column));
+        Ok(Some(Annotation {
+            clip: clip.to_owned(),
+            class: class.to_owned(),
+            extent,
+            person: Some(cell(self.person))
+                .filter(|p| !p.is_empty())
+                .map(str::to_owned),
+            score: cell(self.score)
+                .parse()
+                .ok()
+                .filter(|score: &f64| score.is_finite()),
+            state,
+        }))
+    }
+}
+
+/// A record below the header.
+struct CsvRow<'a> {
+    line: u64,
+    record: &'a [String],
+    /// True if numbers may have a comma for a point.
+    has_comma: bool,
+}
+
+impl CsvRow<'_> {
+    fn cell(&self, column: usize) -> &str {
+        self.record.get(column).map_or("", |cell| cell.trim())
+    }
+
+    fn number(&self, column: usize) -> Result<f64, ParseError> {
+        let found = self.cell(column);
+        let point = match self.has_comma {
+            true => found.replacen(',', ".", 1),
+            false => found.to_owned(),
+        };
+        point
+            .parse()
+            .map_err(|_| ParseError::new(Place::Line(self.line), "a number", format!("`{found}`")))
+    }
+}
+
+/// What separates cells: of comma, semicolon and tab the one that the first line that is no comment has most often.
+pub(super) fn separator(text: &str) -> char {
+    let mut lines = text.lines().filter(|line| !line.trim().is_empty());
+    let first = lines
+        .find(|line| !line.starts_with('#'))
+        .unwrap_or_default();
+    let count = |c: char| first.matches(c).count();
+    // Of several that are as often the first.
+    [';', '\t', ',']
+        .into_iter()
+        .max_by_key(|&c| count(c))
+        .filter(|&c| count(c) > 0)
+        .unwrap_or(',')
+}
+
 /// Records with the line each begins at; blank lines are none.
-fn records(text: &str) -> Result<Vec<(u64, Vec<String>)>, ParseError> {
+pub(super) fn records(text: &str, separator: char) -> Result<Vec<(u64, Vec<String>)>, ParseError> {
     let (mut records, mut record, mut cell) = (Vec::new(), Vec::new(), String::new());
     let (mut line, mut begun, mut quoted) = (1, 1, false);
     let mut chars = text.chars().peekable();
@@ -115,7 +221,7 @@ fn records(text: &str) -> Result<Vec<(u64, Vec<String>)>, ParseError> {
             '"' if quoted => quoted = false,
             _ if quoted => cell.push(c),
             '"' if cell.is_empty() => quoted = true,
-            ',' => record.push(std::mem::take(&mut cell)),
+            c if c == separator => record.push(std::mem::take(&mut cell)),
             '\r' if chars.peek() == Some(&'\n') => {}
             '\n' | '\r' => {
                 record.push(std::mem::take(&mut cell));

@@ -6,7 +6,7 @@ use std::fmt::Write;
 use morec::formats::{ParseError, Place, Warning};
 use roxmltree::{Document, Node, ParsingOptions};
 
-use super::annotation::{Annotation, ClipLengths, ReadLabels, secs};
+use super::annotation::{Annotation, ClipLengths, LabelContext, ReadLabels, secs};
 use crate::labels::SampleState;
 
 /// Under this name a header property keeps the clip.
@@ -18,7 +18,7 @@ const RATE: &str = "morec:rate_hz";
 /// Most elements read of one file.
 const MOST_NODES: u32 = 4_000_000;
 
-pub fn read(text: &str, clip: Option<&str>) -> Result<ReadLabels, ParseError> {
+pub fn read(text: &str, context: &LabelContext) -> Result<ReadLabels, ParseError> {
     let options = ParsingOptions {
         nodes_limit: MOST_NODES,
         ..ParsingOptions::default()
@@ -37,7 +37,7 @@ pub fn read(text: &str, clip: Option<&str>) -> Result<ReadLabels, ParseError> {
         let found = format!("<{}>", root.tag_name().name());
         return Err(ParseError::new(place(root), "<ANNOTATION_DOCUMENT>", found));
     }
-    let clip = match clip.map(str::to_owned).or_else(|| clip_of(root)) {
+    let clip = match context.clip.map(str::to_owned).or_else(|| clip_of(root)) {
         Some(clip) => clip,
         None => {
             return Err(ParseError::new(
@@ -48,43 +48,63 @@ pub fn read(text: &str, clip: Option<&str>) -> Result<ReadLabels, ParseError> {
         }
     };
     let elements = |name: &'static str| root.descendants().filter(move |n| n.has_tag_name(name));
-    let slots: BTreeMap<&str, Option<f64>> = elements("TIME_SLOT")
+    let a_second = units_a_second(root).ok_or_else(|| {
+        let found = "another TIME_UNITS".to_owned();
+        ParseError::new(place(root), "times in milliseconds or frames", found)
+    })?;
+    let slots: BTreeMap<&str, f64> = elements("TIME_SLOT")
         .filter_map(|slot| {
-            let millis = slot
-                .attribute("TIME_VALUE")
-                .and_then(|v| v.parse::<i64>().ok());
-            Some((
-                slot.attribute("TIME_SLOT_ID")?,
-                millis.map(|m| m as f64 / 1000.0),
-            ))
+            let units = slot.attribute("TIME_VALUE")?.parse::<i64>().ok()?;
+            Some((slot.attribute("TIME_SLOT_ID")?, units as f64 / a_second))
         })
         .collect();
     let mut read = ReadLabels::default();
     let ours = own_property(root, CLIP).is_some();
+    let ids: Vec<&str> = elements("TIER")
+        .filter_map(|tier| tier.attribute("TIER_ID"))
+        .collect();
+    if let Some(none) = context
+        .tiers
+        .iter()
+        .find(|tier| !ids.contains(&tier.as_str()))
+    {
+        let found = format!("`{none}`");
+        return Err(ParseError::new(
+            Place::File,
+            format!("one of the tiers {}", ids.join(", ")),
+            found,
+        ));
+    }
+    let times: BTreeMap<&str, (f64, f64)> = elements("TIER")
+        .flat_map(|tier| times_of(tier, &slots))
+        .collect();
     for tier in elements("TIER") {
+        let is_chosen = |id: &str| context.tiers.iter().any(|tier| tier == id);
+        let chosen = tier.attribute("TIER_ID").is_some_and(is_chosen);
+        if !context.tiers.is_empty() && !chosen {
+            continue;
+        }
         let state = match tier.attribute("TIER_ID").filter(|_| ours) {
             Some(id) => state_of_tier(id),
             None => SampleState::Accepted,
         };
         let person = tier.attribute("PARTICIPANT").filter(|p| !p.is_empty());
-        for annotation in tier
-            .descendants()
-            .filter(|n| n.has_tag_name("ALIGNABLE_ANNOTATION"))
-        {
-            let slot = |name| {
-                annotation
-                    .attribute(name)
-                    .and_then(|id| slots.get(id))
-                    .copied()
-                    .flatten()
-            };
+        // What hangs on annotations of another tier is read if it is asked for.
+        let is_read = |n: &Node| {
+            n.has_tag_name("ALIGNABLE_ANNOTATION") || chosen && n.has_tag_name("REF_ANNOTATION")
+        };
+        for annotation in tier.descendants().filter(is_read) {
             let value = annotation
                 .descendants()
                 .find(|n| n.has_tag_name("ANNOTATION_VALUE"));
             // Blanks about what somebody typed mean nothing; in what morec wrote they are part of the name.
             let text = value.and_then(|v| v.text()).unwrap_or("");
             let class = if ours { text } else { text.trim() }.to_owned();
-            let extent = slot("TIME_SLOT_REF1").zip(slot("TIME_SLOT_REF2"));
+            let extent = times_in(annotation, &times);
+            if let Some((start, _)) = extent.filter(|(start, stop)| start == stop) {
+                let _ = read.stretch(place(annotation), &class, (start, start));
+                continue;
+            }
             let Some((start, stop)) = extent.filter(|(start, stop)| *start >= 0.0 && stop > start)
             else {
                 read.warnings.push(Warning::new(
@@ -116,6 +136,84 @@ pub fn read(text: &str, clip: Option<&str>) -> Result<ReadLabels, ParseError> {
             .unwrap_or(std::cmp::Ordering::Equal)
     });
     Ok(read)
+}
+
+/// True if the clip stands in the file.
+pub fn names_clip(text: &str) -> bool {
+    Document::parse(text).is_ok_and(|document| clip_of(document.root_element()).is_some())
+}
+
+/// Units of `TIME_VALUE` in a second: ELAN knows milliseconds and frames of two kinds of video.
+fn units_a_second(root: Node) -> Option<f64> {
+    let header = root.descendants().find(|n| n.has_tag_name("HEADER"));
+    let units = header.and_then(|header| header.attribute("TIME_UNITS"));
+    match units.unwrap_or("milliseconds") {
+        "" | "milliseconds" => Some(1000.0),
+        "NTSC-frames" => Some(30_000.0 / 1001.0),
+        "PAL-frames" => Some(25.0),
+        "PAL-50-frames" => Some(50.0),
+        _ => None,
+    }
+}
+
+/// The times of a tier's annotations by their ids. Between two times that are known, annotations that follow each other without one are
+/// equally long, as ELAN shows them.
+fn times_of<'a>(tier: Node<'a, '_>, slots: &BTreeMap<&str, f64>) -> Vec<(&'a str, (f64, f64))> {
+    let aligned = tier
+        .descendants()
+        .filter(|n| n.has_tag_name("ALIGNABLE_ANNOTATION"));
+    let refs: Vec<(&str, &str, &str)> = aligned
+        .filter_map(|n| {
+            let of = |name| n.attribute(name);
+            Some((
+                of("ANNOTATION_ID")?,
+                of("TIME_SLOT_REF1")?,
+                of("TIME_SLOT_REF2")?,
+            ))
+        })
+        .collect();
+    let mut times = Vec::with_capacity(refs.len());
+    let mut at = 0;
+    while at < refs.len() {
+        let chain = refs[at..].windows(2).take_while(|pair| {
+            let ends = pair[0].2;
+            !slots.contains_key(ends) && ends == pair[1].1
+        });
+        let count = chain.count() + 1;
+        let (first, last) = (refs[at].1, refs[at + count - 1].2);
+        if let (Some(&start), Some(&stop)) = (slots.get(first), slots.get(last)) {
+            let step = (stop - start) / count as f64;
+            let of = |k: usize| start + k as f64 * step;
+            let chain = refs[at..at + count].iter().enumerate();
+            times.extend(chain.map(|(k, &(id, ..))| {
+                let end = if k + 1 == count { stop } else { of(k + 1) };
+                (id, (of(k), end))
+            }));
+        }
+        at += count;
+    }
+    times
+}
+
+/// The times of an annotation, or of the one that it refers to: those that divide one between them are equally long.
+fn times_in(annotation: Node, times: &BTreeMap<&str, (f64, f64)>) -> Option<(f64, f64)> {
+    let id = annotation.attribute("ANNOTATION_ID");
+    if let Some(own) = id.and_then(|id| times.get(id)) {
+        return Some(*own);
+    }
+    let parent = annotation.attribute("ANNOTATION_REF")?;
+    let &(start, stop) = times.get(parent)?;
+    let tier = annotation.ancestors().find(|n| n.has_tag_name("TIER"))?;
+    let all = tier
+        .descendants()
+        .filter(|n| n.attribute("ANNOTATION_REF") == Some(parent));
+    let all: Vec<Node> = all.collect();
+    let place = all.iter().position(|n| *n == annotation)?;
+    let step = (stop - start) / all.len() as f64;
+    Some((
+        start + place as f64 * step,
+        start + (place + 1) as f64 * step,
+    ))
 }
 
 fn own_property<'a>(root: Node<'a, '_>, name: &str) -> Option<&'a str> {

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::annotation::{
-    Annotation, ClipLengths, LabelFormat, ReadLabels, checked, frames, json_error, secs,
+    Annotation, ClipLengths, LabelContext, LabelFormat, ReadLabels, frames, json_error, secs,
 };
 use crate::labels::SampleState;
 
@@ -51,12 +51,12 @@ pub fn which(bytes: &[u8]) -> LabelFormat {
     }
 }
 
-pub fn read(bytes: &[u8], lengths: &ClipLengths) -> Result<ReadLabels, ParseError> {
+pub fn read(bytes: &[u8], context: &LabelContext) -> Result<ReadLabels, ParseError> {
     let expected = "{\"labels\": [{\"clip\", \"class\", \"start_secs\", \"stop_secs\"}]}";
     let file: File = serde_json::from_slice(bytes).map_err(|error| json_error(&error, expected))?;
     let mut read = ReadLabels::default();
     for (index, row) in file.labels.into_iter().enumerate() {
-        let rate = super::annotation::length_of(&row.clip, lengths).map(|length| length.rate_hz);
+        let rate = context.rate_of(&row.clip);
         let extent = match (
             row.start_secs.zip(row.stop_secs),
             row.start.zip(row.stop),
@@ -73,11 +73,15 @@ pub fn read(bytes: &[u8], lengths: &ClipLengths) -> Result<ReadLabels, ParseErro
             }
             (None, None, _) => None,
         };
-        if let Some((start, stop)) = extent {
-            checked(start, stop).map_err(|found| {
+        if let Some(extent) = extent {
+            let stretch = read.stretch(Place::File, &row.class, extent);
+            let stretch = stretch.map_err(|found| {
                 let expected = format!("labels[{index}]: a stop after a start of at least 0");
                 ParseError::new(Place::File, expected, found)
             })?;
+            if stretch.is_none() {
+                continue;
+            }
         }
         read.annotations.push(Annotation {
             clip: row.clip,

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use morec::labels::ClipLength;
+use morec::labels::{ClipLength, names_of_clip};
 
 use super::annotation::{Annotation, ClipLengths, snap};
 use super::clip_of_file_name;
@@ -39,15 +39,13 @@ pub fn clip_of_file(path: &Path, lengths: &ClipLengths) -> Option<String> {
     lengths.contains_key(&clip).then_some(clip)
 }
 
-/// Finds the clips of annotations by name, with or without a file ending; times come to whole frames, a label that runs over the end
+/// Finds the clips of annotations by name, with or without a file ending or the folders before it; times come to whole frames, a label that runs over the end
 /// of its clip is cut there, and one that lies behind it is left out.
 pub fn resolve(annotations: Vec<Annotation>, clips: &[ClipInfo]) -> ResolvedLabels {
     let by_name: BTreeMap<&str, &ClipInfo> = clips.iter().map(|c| (c.name.as_str(), c)).collect();
     let mut resolved = ResolvedLabels::default();
     for a in annotations {
-        let stem = a.clip.rsplit_once('.').map(|(stem, _)| stem);
-        let names = [Some(a.clip.as_str()), stem];
-        let found = names.into_iter().flatten().find_map(|n| by_name.get(n));
+        let found = names_of_clip(&a.clip).find_map(|name| by_name.get(name));
         let Some(clip) = found else {
             *resolved.absent.entry(a.clip).or_default() += 1;
             continue;

@@ -336,3 +336,176 @@ fn labels_of_clips_that_are_not_there_are_counted() {
     assert_eq!(labels.absent, [("elsewhere".to_owned(), 2)].into());
     assert!(labels.annotations.is_empty());
 }
+
+/// Reads a file by its ending and content, with what it says of the rest.
+fn opened(name: &str, text: &str, clip: Option<&str>) -> (Vec<String>, String) {
+    let form = LabelFormat::of_file(name, text.as_bytes()).unwrap();
+    let read = read(form, text.as_bytes(), clip, &lengths()).unwrap();
+    let shown = |a: &Annotation| {
+        let (start, stop) = a.extent.unwrap_or_default();
+        format!("{} {} {start:.3} {stop:.3}", a.clip, a.class)
+    };
+    let said: Vec<String> = read.warnings.iter().map(|w| w.text.clone()).collect();
+    (
+        read.annotations.iter().map(shown).collect(),
+        said.join("\n"),
+    )
+}
+
+#[test]
+fn a_moment_costs_no_other_label() {
+    let studio = r#"[{"data": {"csv": "/data/upload/1/ab12cd34-take_1.csv"}, "annotations": [{"result": [
+        {"value": {"start": 1.2, "end": 2.4, "timeserieslabels": ["wave"]}},
+        {"value": {"start": 3, "end": 3, "instant": true, "timeserieslabels": ["tap"]}}]}]}]"#;
+    let babel = r#"{"1": {"feat_p": "X/take_1.npz", "seq_ann": {"labels": [{"act_cat": ["wave"]}]},
+        "frame_ann": {"labels": [{"act_cat": ["wave"], "start_t": 1.2, "end_t": 2.4},
+        {"proc_label": "tap", "act_cat": ["tap"], "start_t": 3, "end_t": 3}]}}}"#;
+    let own = r#"{"labels": [{"clip": "take_1", "class": "wave", "start_secs": 1.2, "stop_secs": 2.4},
+        {"clip": "take_1", "class": "tap", "start_secs": 3, "stop_secs": 3}]}"#;
+    let aggregated = "Observation id\tMedia file\tSubject\tBehavior\tBehavior type\tStart (s)\tStop (s)\n\
+        take_1\tx.mp4\tp\twave\tSTATE\t1.2\t2.4\ntake_1\tx.mp4\tp\ttap\tPOINT\t3\t3\n";
+    let tabular = "Observation id,take_1\nMedia file(s),\n\nTime,Media file path,Subject,Behavior,Status\n\
+        1.2,x.mp4,p,wave,START\n2.4,x.mp4,p,wave,STOP\n3,x.mp4,p,tap,POINT\n";
+    let grid = "File type = \"ooTextFile\"\nObject class = \"TextGrid\"\n\nxmin = 0\nxmax = 9\ntiers? <exists>\nsize = 2\nitem []:\n\
+        item [1]:\nclass = \"IntervalTier\"\nname = \"m\"\nxmin = 0\nxmax = 9\nintervals: size = 2\n\
+        intervals [1]:\nxmin = 0\nxmax = 1.2\ntext = \"\"\nintervals [2]:\nxmin = 1.2\nxmax = 2.4\ntext = \"wave\"\n\
+        item [2]:\nclass = \"TextTier\"\nname = \"p\"\nxmin = 0\nxmax = 9\npoints: size = 1\npoints [1]:\nnumber = 3\nmark = \"tap\"\n";
+    let elan = r#"<ANNOTATION_DOCUMENT><HEADER TIME_UNITS="milliseconds"/><TIME_ORDER>
+        <TIME_SLOT TIME_SLOT_ID="a" TIME_VALUE="1200"/><TIME_SLOT TIME_SLOT_ID="b" TIME_VALUE="2400"/>
+        <TIME_SLOT TIME_SLOT_ID="c" TIME_VALUE="3000"/></TIME_ORDER><TIER TIER_ID="t">
+        <ANNOTATION><ALIGNABLE_ANNOTATION ANNOTATION_ID="1" TIME_SLOT_REF1="a" TIME_SLOT_REF2="b"><ANNOTATION_VALUE>wave</ANNOTATION_VALUE></ALIGNABLE_ANNOTATION></ANNOTATION>
+        <ANNOTATION><ALIGNABLE_ANNOTATION ANNOTATION_ID="2" TIME_SLOT_REF1="c" TIME_SLOT_REF2="c"><ANNOTATION_VALUE>tap</ANNOTATION_VALUE></ALIGNABLE_ANNOTATION></ANNOTATION>
+        </TIER></ANNOTATION_DOCUMENT>"#;
+    for (name, text) in [
+        ("a.txt", "1.2\t2.4\twave\n3\t3\ttap\n"),
+        ("a.json", studio),
+        ("a.json", babel),
+        ("a.json", own),
+        (
+            "a.csv",
+            "file,label,start_s,end_s\ntake_1,wave,1.2,2.4\ntake_1,tap,3,3\n",
+        ),
+        (
+            "a.csv",
+            "clip;class;start_secs;stop_secs\nclips/take_1.bvh;wave;1,2;2,4\ntake_1;tap;3;3\n",
+        ),
+        (
+            "a.tsv",
+            "clip\tclass\tstart_secs\tstop_secs\ntake_1\twave\t1.2\t2.4\ntake_1\ttap\t3\t3\n",
+        ),
+        ("a.tsv", aggregated),
+        ("a.csv", tabular),
+        ("a.TextGrid", grid),
+        ("a.eaf", elan),
+    ] {
+        let (labels, said) = opened(name, text, Some("take_1"));
+        assert_eq!(labels.len(), 1, "{text}");
+        assert!(
+            labels[0].ends_with("wave 1.200 2.400"),
+            "{labels:?}: {text}"
+        );
+        assert!(said.contains("`tap` is a moment"), "{said}: {text}");
+    }
+    let (cues, _) = opened(
+        "a.srt",
+        "1\n00:00:01,200 --> 00:00:02,400\nwave\n\n2\n00:01:00,000 --> 00:01:01,000\nturn\nround\n",
+        Some("take_1"),
+    );
+    assert_eq!(
+        cues,
+        ["take_1 wave 1.200 2.400", "take_1 turn round 60.000 61.000"]
+    );
+}
+
+#[test]
+fn results_of_label_studio_of_every_kind() {
+    let task = |result: &str| {
+        format!(
+            r#"[{{"data": {{"video": "take_1.mp4"}}, "annotations": [{{"was_cancelled": true, "result": [{{"value": {{"start": 5, "end": 6, "labels": ["no"]}}}}]}},
+            {{"result": [{result}]}}]}}]"#
+        )
+    };
+    for result in [
+        r#"{"value": {"start": 1.2, "end": 2.4, "labels": ["wave"]}}"#,
+        r#"{"value": {"ranges": [{"start": 145, "end": 288}], "timelinelabels": ["wave"]}}"#,
+        r#"{"value": {"sequence": [{"frame": 31, "enabled": true, "time": 1.2}, {"frame": 60, "enabled": false, "time": 2.4}], "labels": ["wave"]}}"#,
+    ] {
+        let (labels, said) = opened("a.json", &task(result), None);
+        assert_eq!(labels, ["take_1 wave 1.200 2.400"], "{result}");
+        assert!(said.contains("skipped"), "{said}");
+    }
+    let short = r#"[{"id": 1, "csv": "take_1.csv", "label": [{"start": 1.2, "end": 2.4, "timeserieslabels": ["wave"]}]}]"#;
+    assert_eq!(opened("a.json", short, None).0, ["take_1 wave 1.200 2.400"]);
+    let dated = task(
+        r#"{"value": {"start": "2020-03-12 06:18:01", "end": "2020-03-12 06:18:02", "timeserieslabels": ["wave"]}}"#,
+    );
+    let error = read(LabelFormat::LabelStudio, dated.as_bytes(), None, &lengths()).unwrap_err();
+    assert!(error.found.contains("date"), "{error}");
+}
+
+#[test]
+fn times_of_elan_between_those_that_are_known() {
+    let slot = |id: usize, value: &str| format!(r#"<TIME_SLOT TIME_SLOT_ID="s{id}"{value}/>"#);
+    let note = |id: usize, text: &str| {
+        let next = id + 1;
+        format!(
+            r#"<ANNOTATION><ALIGNABLE_ANNOTATION ANNOTATION_ID="n{id}" TIME_SLOT_REF1="s{id}" TIME_SLOT_REF2="s{next}">
+            <ANNOTATION_VALUE>{text}</ANNOTATION_VALUE></ALIGNABLE_ANNOTATION></ANNOTATION>"#
+        )
+    };
+    let hand = r#"<ANNOTATION><REF_ANNOTATION ANNOTATION_ID="h" ANNOTATION_REF="n1"><ANNOTATION_VALUE>left</ANNOTATION_VALUE></REF_ANNOTATION></ANNOTATION>"#;
+    let file = |units: &str, first: &str, last: &str| {
+        format!(
+            r#"<ANNOTATION_DOCUMENT><HEADER TIME_UNITS="{units}"/><TIME_ORDER>{}{}{}{}</TIME_ORDER>
+            <TIER TIER_ID="phase">{}{}{}</TIER><TIER TIER_ID="hand" PARENT_REF="phase">{hand}</TIER></ANNOTATION_DOCUMENT>"#,
+            slot(0, first),
+            slot(1, ""),
+            slot(2, ""),
+            slot(3, last),
+            note(0, "prep"),
+            note(1, "stroke"),
+            note(2, "retract"),
+        )
+    };
+    let millis = file(
+        "milliseconds",
+        r#" TIME_VALUE="1200""#,
+        r#" TIME_VALUE="2400""#,
+    );
+    let frames = file("PAL-frames", r#" TIME_VALUE="30""#, r#" TIME_VALUE="60""#);
+    for text in [&millis, &frames] {
+        let (labels, _) = opened("a.eaf", text, Some("take_1"));
+        assert_eq!(
+            labels,
+            [
+                "take_1 prep 1.200 1.600",
+                "take_1 stroke 1.600 2.000",
+                "take_1 retract 2.000 2.400"
+            ]
+        );
+    }
+    let tiers = ["hand".to_owned()];
+    let context = LabelContext {
+        clip: Some("take_1"),
+        tiers: &tiers,
+        ..LabelContext::default()
+    };
+    let chosen = read_with(LabelFormat::Eaf, millis.as_bytes(), &context).unwrap();
+    assert_eq!(chosen.annotations.len(), 1);
+    let (start, stop) = chosen.annotations[0].extent.unwrap();
+    assert!((start - 1.6).abs() < 1e-9 && (stop - 2.0).abs() < 1e-9);
+    let none = LabelContext {
+        tiers: &["arm".to_owned()],
+        ..context
+    };
+    let error = read_with(LabelFormat::Eaf, millis.as_bytes(), &none).unwrap_err();
+    assert!(error.expected.contains("phase, hand"), "{error}");
+}
+
+proptest! {
+    #[test]
+    fn any_text_of_one_clip_is_read_or_refused(text in "(ooTextFile|-->|IntervalTier|\"|[0-9.:,\n]| ){0,60}") {
+        let _ = read(LabelFormat::Audacity, text.as_bytes(), Some("take_1"), &lengths());
+        let _ = read(LabelFormat::Csv, text.as_bytes(), None, &lengths());
+    }
+}

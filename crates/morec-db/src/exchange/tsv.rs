@@ -1,12 +1,16 @@
 //! Tab-separated tables, as `morec train` reads them.
 
+use morec::TimeSpan;
 use morec::formats::ParseError;
 use morec::labels::{Extent, Labels};
 
-use super::annotation::{Annotation, ClipLengths, ReadLabels, frames, secs};
+use super::annotation::{Annotation, ClipLengths, LabelContext, ReadLabels, frames, secs};
 use crate::labels::SampleState;
 
-pub fn read(bytes: &[u8], lengths: &ClipLengths) -> Result<ReadLabels, ParseError> {
+pub fn read(bytes: &[u8], context: &LabelContext) -> Result<ReadLabels, ParseError> {
+    if is_of_boris(bytes) {
+        return super::csv::read(bytes, context);
+    }
     let (labels, states) = Labels::read_with(bytes, "state")?;
     // Rows with seconds need no clip to be understood; those with frames need its rate.
     let mut read = ReadLabels {
@@ -14,14 +18,11 @@ pub fn read(bytes: &[u8], lengths: &ClipLengths) -> Result<ReadLabels, ParseErro
         ..ReadLabels::default()
     };
     for (at, row) in labels.rows.into_iter().enumerate() {
-        let extent = match (
-            &row.extent,
-            super::annotation::length_of(&row.clip, lengths),
-        ) {
+        let extent = match (&row.extent, context.rate_of(&row.clip)) {
             (Extent::Secs(span), _) => Some((span.start_secs, span.stop_secs)),
             (Extent::WholeClip, _) => None,
-            (Extent::Frames(_), Some(length)) => {
-                let span = length.span(&row.extent);
+            (Extent::Frames(frames), Some(rate_hz)) => {
+                let span = TimeSpan::of_frames(frames.clone(), rate_hz);
                 Some((span.start_secs, span.stop_secs))
             }
             (Extent::Frames(_), None) => {
@@ -43,9 +44,21 @@ pub fn read(bytes: &[u8], lengths: &ClipLengths) -> Result<ReadLabels, ParseErro
     Ok(read)
 }
 
-/// True if a name is read again as it is written: cells are cut at tabs and line ends, and trimmed.
+/// True of events that BORIS exports: their columns are its own.
+fn is_of_boris(bytes: &[u8]) -> bool {
+    const LOOKED_AT: usize = 4096;
+    let head = String::from_utf8_lossy(&bytes[..bytes.len().min(LOOKED_AT)]);
+    head.contains("Observation id") && head.contains("Behavior")
+}
+
+/// True if a name is read again as it is written: cells are cut at tabs and line ends, and trimmed, quotes about them are left out, and a
+/// row may be a comment.
 fn fits_a_cell(name: &str) -> bool {
-    name.trim() == name && !name.contains(['\t', '\n', '\r'])
+    let is_quoted = name.len() > 1 && name.starts_with('"') && name[1..].contains('"');
+    name.trim() == name
+        && !name.contains(['\t', '\n', '\r'])
+        && !is_quoted
+        && !name.starts_with("# ")
 }
 
 pub fn write(annotations: &[Annotation], lengths: &ClipLengths) -> Result<String, String> {

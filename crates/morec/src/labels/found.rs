@@ -128,7 +128,10 @@ pub fn read_detections(bytes: &[u8]) -> Result<FoundTable, ParseError> {
             Ok(FoundRow {
                 clip: row.text(clip, "a clip's name")?,
                 class: row.text(class, "a class")?,
-                extent: extents.read(row)?,
+                extent: extents.read(row)?.ok_or_else(|| {
+                    let expected = "a stop after the start";
+                    ParseError::new(Place::Line(row.line), expected, "a moment")
+                })?,
                 score: score.map_or(Ok(None), |column| row.optional_number(column))?,
                 reported: read_reported(row, reported)?,
                 repetitions: repetitions

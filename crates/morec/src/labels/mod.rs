@@ -1,8 +1,8 @@
 //! Labels: which stretch of which clip is a sample of which class, and the tables that carry them.
 //!
 //! Every table is text in UTF-8, cells separated by tabs, names of the columns in the first line. Order of the
-//! columns is free, unknown columns are left out with a warning; blank lines, CRLF, a byte order mark and
-//! trailing tabs are taken as they come. Readers take bytes; a mistake names its line and column.
+//! columns is free, unknown columns are left out with a warning; blank lines, comments (`#`), CRLF, a byte order mark, trailing
+//! tabs, quotes, and semicolons or commas in place of tabs are taken as they come. Readers take bytes; a mistake names its line and column.
 //!
 //! - Labels ([`Labels::read`]): `clip`, `class`, then `start` and `stop` (frames, stop exclusive) or
 //!   `start_secs` and `stop_secs`, or neither: the whole clip is one sample. `person` if it is known.
@@ -43,7 +43,7 @@ pub use lengths::{ClassLengths, class_lengths};
 pub use mark::Mark;
 pub use names::{hint, some_of};
 pub use people::{People, read_people};
-pub use resolve::{ClipLength, Resolved, Sample};
+pub use resolve::{ClipLength, Resolved, Sample, names_of_clip};
 
 /// Extent of a label in its clip, as the table gives it.
 #[derive(Debug, Clone, PartialEq)]

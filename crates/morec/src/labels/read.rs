@@ -3,7 +3,7 @@
 use super::table::{Row, Table};
 use super::{Extent, Label, Labels};
 use crate::TimeSpan;
-use crate::formats::ParseError;
+use crate::formats::{ParseError, Place, Warning};
 
 /// The columns that may say where a label lies.
 pub(super) struct ExtentColumns {
@@ -56,30 +56,37 @@ impl Labels {
         let mut warnings = table.unknown_columns(&[&known, more].concat());
         let (rows, too_long) = table.rows();
         warnings.extend(too_long);
-        let labels = rows
-            .iter()
-            .map(|row| {
-                Ok(Label {
-                    clip: row.text(clip, "a clip's name")?,
-                    class: row.text(class, "a class")?,
-                    extent: match whole.map(|column| row.cell(column)) {
-                        Some("1") => Extent::WholeClip,
-                        _ => extents.read(row)?,
-                    },
-                    person: person
-                        .map(|p| row.cell(p))
-                        .filter(|p| !p.is_empty())
-                        .map(str::to_owned),
-                    line: row.line,
-                })
-            })
-            .collect::<Result<_, _>>()?;
+        let mut labels = Vec::with_capacity(rows.len());
+        let mut kept = Vec::with_capacity(rows.len());
+        for row in rows {
+            let class = row.text(class, "a class")?;
+            let extent = match whole.map(|column| row.cell(column)) {
+                Some("1") => Some(Extent::WholeClip),
+                _ => extents.read(&row)?,
+            };
+            let Some(extent) = extent else {
+                let text = format!("`{class}` is a moment, without a length; left out");
+                warnings.push(Warning::new(Place::Line(row.line), text));
+                continue;
+            };
+            labels.push(Label {
+                clip: row.text(clip, "a clip's name")?,
+                class,
+                extent,
+                person: person
+                    .map(|p| row.cell(p))
+                    .filter(|p| !p.is_empty())
+                    .map(str::to_owned),
+                line: row.line,
+            });
+            kept.push(row);
+        }
         Ok((
             Self {
                 rows: labels,
                 warnings,
             },
-            rows,
+            kept,
         ))
     }
 }
@@ -97,12 +104,13 @@ impl ExtentColumns {
         self.frames.is_some() || self.secs.is_some()
     }
 
-    pub fn read(&self, row: &Row<'_>) -> Result<Extent, ParseError> {
+    /// The extent of a row; `None` for a moment.
+    pub fn read(&self, row: &Row<'_>) -> Result<Option<Extent>, ParseError> {
         let filled = |(start, stop): (usize, usize)| {
             !(row.cell(start).is_empty() && row.cell(stop).is_empty())
         };
         match (self.frames, self.secs) {
-            (None, None) => Ok(Extent::WholeClip),
+            (None, None) => Ok(Some(Extent::WholeClip)),
             (Some(columns), None) => frames(row, columns),
             (Some(columns), Some(secs)) if filled(columns) || !filled(secs) => frames(row, columns),
             (_, Some(columns)) => secs(row, columns),
@@ -110,29 +118,28 @@ impl ExtentColumns {
     }
 }
 
-fn frames(row: &Row<'_>, (start, stop): (usize, usize)) -> Result<Extent, ParseError> {
+fn frames(row: &Row<'_>, (start, stop): (usize, usize)) -> Result<Option<Extent>, ParseError> {
     let (from, to) = (row.frame(start)?, row.frame(stop)?);
-    if to <= from {
+    if to < from {
         return Err(row.error(
             stop,
             &format!("a stop after the start, {from} (stop is exclusive)"),
         ));
     }
-    Ok(Extent::Frames(from..to))
+    Ok((to > from).then_some(Extent::Frames(from..to)))
 }
 
-fn secs(row: &Row<'_>, (start, stop): (usize, usize)) -> Result<Extent, ParseError> {
+fn secs(row: &Row<'_>, (start, stop): (usize, usize)) -> Result<Option<Extent>, ParseError> {
     let (from, to) = (row.secs(start)?, row.secs(stop)?);
-    if to <= from {
+    if to < from {
         return Err(row.error(stop, &format!("a stop after the start, {from} s")));
     }
-    Ok(Extent::Secs(TimeSpan::new(from, to)))
+    Ok((to > from).then_some(Extent::Secs(TimeSpan::new(from, to))))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::formats::Place;
 
     fn read(text: &str) -> Labels {
         Labels::read(text.as_bytes()).unwrap()
@@ -182,6 +189,10 @@ mod tests {
             "\u{feff}clip\tstart\tstop\tclass\r\na\t3\t9\twalk\r\n\r\nb\t1\t2\trun",
             "\nClip\tStart\tStop\tClass\t\t\na\t3.0\t9.00\twalk\t\t\n\t\t\nb \t 1\t2\t run\n\n",
             "clip\tstart\tstop\tclass\ra\t3\t9\twalk\rb\t1\t2\trun\r",
+            "\"clip\",\"start\",\"stop\",\"class\"\n\"a\",3,9,\"walk\"\n\"b\",1,2,\"run\"\n",
+            "\"clip\" \"start\" \"stop\" \"class\"\n\"1\" \"a\" 3 9 \"walk\"\n\"2\" \"b\" 1 2 \"run\"\n",
+            "# by hand\nclip;start;stop;class\na;3;9;walk\n# b;3;4;jump\nb;1;2;run\n",
+            "#clip\tstart\tstop\tclass\na\t3\t9\twalk\nb\t1\t2\trun\n",
         ] {
             let other = read(text);
             assert!(other.warnings.is_empty(), "{text:?}: {:?}", other.warnings);
@@ -197,16 +208,24 @@ mod tests {
     }
 
     #[test]
+    fn moments_are_left_out_and_commas_are_points() {
+        let labels = read("clip;class;start_secs;stop_secs\na;wave;1,2;2,4\na;tap;3;3\n");
+        assert_eq!(labels.rows.len(), 1);
+        assert_eq!(labels.rows[0].extent, Extent::Secs(TimeSpan::new(1.2, 2.4)));
+        assert_eq!(labels.warnings[0].at, Place::Line(3));
+        assert!(labels.warnings[0].text.contains("`tap` is a moment"));
+    }
+
+    #[test]
     fn mistakes_are_located() {
         let head = "clip\tstart\tstop\tclass\n";
         let cases = [
             ("", "file: expected a header line"),
-            ("clip,start,stop,class\n", "(separated by tabs?)"),
             ("clip\tstart\tclass\n", "line 1: expected a column `stop`"),
             ("clip\tstart\tstop\n", "line 1: expected a column `class`"),
             ("clip\tclass\tclip\n", "a second column `clip`"),
             (
-                &format!("{head}a\t9\t9\twalk"),
+                &format!("{head}a\t9\t8\twalk"),
                 "line 2, column 5: expected a stop after the start, 9",
             ),
             (
@@ -236,8 +255,8 @@ mod tests {
                 "line 2, column 7: expected seconds",
             ),
             (
-                "clip\tclass\tstart_secs\tstop_secs\na\tb\t1,5\t2",
-                "with a decimal point, found `1,5`",
+                "clip,class,start_secs,stop_secs\na,b,\"1,5\",2",
+                "seconds: a number, 0 or more, found `1,5`",
             ),
         ];
         for (text, message) in cases {

@@ -80,16 +80,22 @@ impl ClipLength {
     }
 }
 
-/// The name under which `clips` knows a clip that a table calls `name`: itself, or without its file ending.
+/// What a clip may be called that labels call `name`: itself, without its file ending, without the folders before it, without both.
+pub fn names_of_clip(name: &str) -> impl Iterator<Item = &str> {
+    let stem = |name: &str| {
+        name.rsplit_once('.')
+            .map_or(name.len(), |(stem, _)| stem.len())
+    };
+    let base = name.rsplit(['/', '\\']).next().unwrap_or(name);
+    [name, &name[..stem(name)], base, &base[..stem(base)]].into_iter()
+}
+
+/// The name under which `clips` knows a clip that a table calls `name`.
 pub(super) fn known_name<'a>(
     name: &'a str,
     clips: &BTreeMap<String, ClipLength>,
 ) -> Option<&'a str> {
-    if clips.contains_key(name) {
-        return Some(name);
-    }
-    let (stem, _) = name.rsplit_once('.')?;
-    clips.contains_key(stem).then_some(stem)
+    names_of_clip(name).find(|name| clips.contains_key(*name))
 }
 
 impl Labels {

@@ -1,4 +1,4 @@
-//! Tables of tab-separated text: the part that all of them share.
+//! Tables of text separated by tabs, or as R and spreadsheets write them: the part that all of them share.
 
 use crate::formats::{ParseError, Place, Warning};
 use mocap::shortened;
@@ -9,6 +9,8 @@ pub(super) struct Table<'a> {
     /// Column names as written, trimmed.
     header: Vec<&'a str>,
     header_line: u64,
+    /// What separates cells; `None` for blanks.
+    separator: Option<char>,
 }
 
 /// One row: its cells, trimmed, each with the byte column at which it starts.
@@ -16,6 +18,8 @@ pub(super) struct Row<'a> {
     pub line: u64,
     cells: Vec<(u64, &'a str)>,
     end: u64,
+    /// True if numbers may have a comma for a point.
+    has_comma: bool,
 }
 
 impl<'a> Table<'a> {
@@ -23,7 +27,7 @@ impl<'a> Table<'a> {
     pub fn new(bytes: &'a [u8]) -> Result<Self, ParseError> {
         let text = decode(bytes)?;
         let (line, raw) = numbered_lines(text)
-            .find(|(_, raw)| !raw.trim().is_empty())
+            .find_map(|(line, raw)| Some((line, header_in(raw)?)))
             .ok_or_else(|| {
                 ParseError::new(
                     Place::File,
@@ -31,7 +35,11 @@ impl<'a> Table<'a> {
                     "an empty file",
                 )
             })?;
-        let mut header: Vec<&str> = raw.split('\t').map(str::trim).collect();
+        let separator = separator(raw);
+        let mut header: Vec<&str> = cells(raw, separator)
+            .into_iter()
+            .map(|(_, name)| name)
+            .collect();
         while header.last().is_some_and(|name| name.is_empty()) {
             header.pop();
         }
@@ -53,6 +61,7 @@ impl<'a> Table<'a> {
             text,
             header,
             header_line: line,
+            separator,
         })
     }
 
@@ -109,7 +118,16 @@ impl<'a> Table<'a> {
             if line <= self.header_line || raw.trim().is_empty() {
                 continue;
             }
-            let row = Row::new(line, raw);
+            let row = Row::new(line, raw, self.separator);
+            // A name may begin with the sign of a comment.
+            let is_comment = raw.starts_with("# ")
+                || raw.starts_with('#') && row.cells.len() < self.header.len();
+            if !is_comment {
+                rows.push(row);
+            }
+        }
+        self.drop_row_names(&mut rows);
+        for row in &rows {
             if let Some((column, cell)) = row
                 .cells
                 .iter()
@@ -120,34 +138,37 @@ impl<'a> Table<'a> {
                     "`{}` stands beyond the last column; left out",
                     shortened(cell)
                 );
-                warnings.push(Warning::new(Place::Column(line, *column), text));
+                warnings.push(Warning::new(Place::Column(row.line, *column), text));
             }
-            rows.push(row);
         }
         (rows, warnings)
     }
 
+    /// R numbers rows in a column that its header does not name.
+    fn drop_row_names(&self, rows: &mut [Row<'a>]) {
+        let is_numbered = |(row, number): (&Row, usize)| {
+            row.cells.len() == self.header.len() + 1 && row.cell(0) == number.to_string()
+        };
+        if !rows.is_empty() && rows.iter().zip(1..).all(is_numbered) {
+            for row in rows {
+                row.cells.remove(0);
+            }
+        }
+    }
+
     fn describe_header(&self) -> String {
         let header = self.header.join(", ");
-        let commas = self.header.len() == 1 && (header.contains(',') || header.contains(';'));
-        let hint = if commas { " (separated by tabs?)" } else { "" };
-        format!("the columns `{}`{hint}", shortened(&header))
+        format!("the columns `{}`", shortened(&header))
     }
 }
 
 impl<'a> Row<'a> {
-    fn new(line: u64, raw: &'a str) -> Self {
-        let mut column = 1;
-        let mut cells = Vec::new();
-        for cell in raw.split('\t') {
-            let indent = cell.len() - cell.trim_start().len();
-            cells.push((column + indent as u64, cell.trim()));
-            column += cell.len() as u64 + 1;
-        }
+    fn new(line: u64, raw: &'a str, separator: Option<char>) -> Self {
         Self {
             line,
-            cells,
-            end: column - 1,
+            cells: cells(raw, separator),
+            end: raw.len() as u64 + 1,
+            has_comma: separator != Some(','),
         }
     }
 
@@ -197,9 +218,9 @@ impl<'a> Row<'a> {
 
     /// A cell that must hold a time.
     pub fn secs(&self, column: usize) -> Result<f64, ParseError> {
-        match self.cell(column).parse::<f64>() {
-            Ok(secs) if secs.is_finite() && secs >= 0.0 => Ok(secs),
-            _ => Err(self.error(column, "seconds: a number, 0 or more, with a decimal point")),
+        match self.number(column) {
+            Some(secs) if secs >= 0.0 => Ok(secs),
+            _ => Err(self.error(column, "seconds: a number, 0 or more")),
         }
     }
 
@@ -208,10 +229,79 @@ impl<'a> Row<'a> {
         if self.cell(column).is_empty() {
             return Ok(None);
         }
-        match self.cell(column).parse::<f64>() {
-            Ok(value) if value.is_finite() => Ok(Some(value)),
+        match self.number(column) {
+            Some(value) => Ok(Some(value)),
             _ => Err(self.error(column, "a number or nothing")),
         }
+    }
+
+    /// The finite number in a cell; spreadsheets may write it with a comma.
+    fn number(&self, column: usize) -> Option<f64> {
+        let cell = self.cell(column);
+        let value = match self.has_comma && cell.contains(',') {
+            true => cell.replacen(',', ".", 1).parse::<f64>(),
+            false => cell.parse(),
+        };
+        value.ok().filter(|value| value.is_finite())
+    }
+}
+
+/// The header in a line; `None` if it is blank or a comment. A header may be marked as one, too.
+fn header_in(raw: &str) -> Option<&str> {
+    let Some(comment) = raw.trim_start().strip_prefix('#') else {
+        return (!raw.trim().is_empty()).then_some(raw);
+    };
+    let has = |name: &str| {
+        let mut cells = comment.split(['\t', ',', ';']);
+        cells.any(|cell| cell.trim().eq_ignore_ascii_case(name))
+    };
+    (has("clip") && has("class")).then_some(comment)
+}
+
+/// What separates the cells of a header.
+fn separator(header: &str) -> Option<char> {
+    let found = ['\t', ';', ','].into_iter().find(|c| header.contains(*c));
+    // R writes names in quotes with blanks between them.
+    let is_quoted = header.trim().starts_with('"') && header.contains("\" \"");
+    found.or((!is_quoted).then_some('\t'))
+}
+
+/// The cells of a line, trimmed, each with the byte column at which it starts; a separator within quotes separates nothing.
+fn cells(raw: &str, separator: Option<char>) -> Vec<(u64, &str)> {
+    let ends = |c: char| separator.map_or(c.is_whitespace(), |separator| c == separator);
+    let mut cells = Vec::new();
+    let mut start = 0;
+    loop {
+        let rest = &raw[start..];
+        let indent = rest.len()
+            - rest
+                .trim_start_matches(|c: char| c.is_whitespace() && !ends(c))
+                .len();
+        let quoted = rest[indent..].strip_prefix('"').and_then(|inner| {
+            let close = inner.find('"')?;
+            let behind = &inner[close + 1..];
+            let end = behind.find(ends).unwrap_or(behind.len());
+            behind[..end]
+                .trim()
+                .is_empty()
+                .then_some((close, indent + close + 2 + end))
+        });
+        let (cell, at, length) = match quoted {
+            Some((close, length)) => (&rest[indent + 1..indent + 1 + close], indent + 1, length),
+            None => {
+                let length = rest.find(ends).unwrap_or(rest.len());
+                let cell = &rest[..length];
+                (cell, cell.len() - cell.trim_start().len(), length)
+            }
+        };
+        // Several blanks are one separator.
+        if separator.is_some() || length > 0 {
+            cells.push(((start + at) as u64 + 1, cell.trim()));
+        }
+        let Some(next) = rest[length..].chars().next() else {
+            return cells;
+        };
+        start += length + next.len_utf8();
     }
 }
 

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail};
 use morec::labels::some_of;
-use morec_db::exchange::{self, Annotation, ClipLengths, LabelFormat};
+use morec_db::exchange::{self, Annotation, ClipLengths, LabelContext, LabelFormat};
 use morec_db::labels::{
     Added, ChangedLabel, LabelChange, LabelOptions, Labelled, NewSample, SampleState,
 };
@@ -41,7 +41,8 @@ pub struct Args {
     /// The database
     #[arg(value_name = "DB")]
     db: PathBuf,
-    /// Files of labels, or folders of them: TSV, CSV, JSON (morec's, BABEL's, Label Studio's), ELAN (.eaf), Audacity (.txt)
+    /// Files of labels, or folders of them: TSV, CSV, JSON (morec's, BABEL's, Label Studio's), ELAN (.eaf), Audacity (.txt), BORIS
+    /// (TSV, CSV), Praat (.TextGrid), subtitles (.srt, .vtt)
     #[arg(value_name = "FILE|DIR")]
     labels: Vec<PathBuf>,
     /// Form of the files [default: by their endings and content]
@@ -50,6 +51,20 @@ pub struct Args {
     /// The clip that a file of one clip, or --class, refers to
     #[arg(long, value_name = "CLIP")]
     clip: Option<String>,
+    /// Only these tiers of a file that has some (ELAN, Praat), separated by commas
+    #[arg(long, value_name = "TIERS", value_delimiter = ',')]
+    tier: Vec<String>,
+    /// Seconds that are added to the times of the files: what was labelled began so much after the clip
+    #[arg(
+        long,
+        value_name = "SECS",
+        default_value_t = 0.0,
+        allow_negative_numbers = true
+    )]
+    offset: f64,
+    /// Frames a second of what was labelled, where frames are not the clip's: a video's
+    #[arg(long, value_name = "HZ", value_parser = files::rate)]
+    label_rate: Option<f64>,
     /// Set one sample of this class
     #[arg(
         long,
@@ -103,6 +118,10 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         }
         None => read(args, &lengths, &mut absent)?,
     };
+    let classes = annotations.iter().map(|a| a.class.as_str());
+    if let Some(doubt) = labels::doubt_of_none(classes) {
+        eprintln!("morec: {doubt}");
+    }
     let mut resolved = exchange::resolve(annotations, &db.clips(&ClipFilter::default())?);
     for note in &resolved.notes {
         eprintln!("morec: {note}");
@@ -308,8 +327,35 @@ fn read(args: &Args, lengths: &ClipLengths, absent: &mut Absent) -> Result<Vec<A
             (None, LabelFormat::Audacity) => exchange::clip_of_file(path, lengths),
             (None, _) => None,
         };
-        let read = exchange::read(form, &bytes, named.as_deref(), lengths)
-            .with_context(|| shown.clone())?;
+        let context = LabelContext {
+            clip: named.as_deref(),
+            lengths: Some(lengths),
+            label_rate_hz: args.label_rate,
+            tiers: &args.tier,
+        };
+        let mut read =
+            exchange::read_with(form, &bytes, &context).with_context(|| shown.clone())?;
+        for extent in read
+            .annotations
+            .iter_mut()
+            .filter_map(|a| a.extent.as_mut())
+        {
+            *extent = (extent.0 + args.offset, extent.1 + args.offset);
+        }
+        read.annotations.retain(|a| {
+            let before = a.extent.is_some_and(|(_, stop)| stop <= 0.0);
+            if before {
+                eprintln!("morec: {shown}: {} lies before the clip; left out", a.class);
+            }
+            !before
+        });
+        for (start, _) in read
+            .annotations
+            .iter_mut()
+            .filter_map(|a| a.extent.as_mut())
+        {
+            *start = start.max(0.0);
+        }
         for warning in &read.warnings {
             eprintln!("morec: {shown}: {warning}");
         }

@@ -129,7 +129,7 @@ proptest! {
     fn documents_keep_the_rules_and_come_back(all in annotations()) {
         let text = write(&all, &lengths()).unwrap();
         keeps_the_rules(&text);
-        let again = read(&text, None).unwrap();
+        let again = read(&text, &LabelContext::default()).unwrap();
         prop_assert_eq!(sorted(&again.annotations), sorted(&all));
     }
 }
