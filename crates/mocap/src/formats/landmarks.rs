@@ -4,7 +4,9 @@
 //! There is no common form, so the first list is taken that looks so; fields called `world` come first, as the others hold
 //! places in the picture.
 
+mod clock;
 mod hands;
+mod head;
 mod leap;
 mod matrix;
 mod rows;
@@ -13,7 +15,8 @@ use std::collections::HashMap;
 
 use serde_json::{Map, Value};
 
-use super::cells::clock;
+use self::clock::{number_of, rate_in, time_of};
+use self::head::looks_so;
 use super::descriptor::FormatDescriptor;
 use super::points::{Point, UNSEEN, check_size};
 use super::table::axis_of;
@@ -43,85 +46,6 @@ const LEAST_POINTS: usize = 5;
 const LOOKED_AT: usize = 40;
 /// Lists and objects within each other, down to the points.
 const DEEPEST: usize = 6;
-
-/// True if text begins as such a document does.
-pub(super) fn looks_so(head: &[u8]) -> bool {
-    let contains = |word: &[u8]| {
-        head.windows(word.len())
-            .any(|at| at.eq_ignore_ascii_case(word))
-    };
-    let words: [&[u8]; 17] = [
-        b"pointables",
-        b"palmPosition",
-        b"palm_position",
-        b"\"hips\"",
-        b"\"pelvis\"",
-        b"left_hip",
-        b"lefthip",
-        b"left_wrist",
-        b"left_hand\"",
-        b"\"frames\":[[",
-        b"landmark",
-        b"keypoint",
-        b"joints",
-        b"joint_",
-        b"left_shoulder",
-        b"leftShoulder",
-        b"nose_x",
-    ];
-    // Scenes of suits and glTF have words in common with these.
-    let others: [&[u8]; 2] = [b"\"asset\"", b"\"actors\""];
-    let numbers = contains(b"z\"")
-        || contains(b"y\"")
-        || head
-            .windows(2)
-            .any(|at| at[0] == b'[' && matches!(at[1], b'[' | b'-' | b'0'..=b'9'));
-    let text = head.trim_ascii_start();
-    matches!(text, [b'{' | b'[', ..])
-        && (numbers || is_list_of_lists(text))
-        && (words.iter().any(|word| contains(word))
-            || is_list_of_lists(text)
-            || has_many_places(head))
-        && !others.iter().any(|word| contains(word))
-}
-
-/// True if there are more places `{"x": …, "y": …, "z": …}` than those of a camera or a scene.
-fn has_many_places(head: &[u8]) -> bool {
-    const LEAST: usize = 15;
-    let count = |axis: &[u8; 4]| {
-        let found = head
-            .windows(axis.len())
-            .filter(|at| at.eq_ignore_ascii_case(axis));
-        found.count()
-    };
-    [b"\"x\":", b"\"y\":", b"\"z\":"]
-        .into_iter()
-        .all(|axis| count(axis) >= LEAST)
-}
-
-/// Frames without a word: `[[[0.1, 0.9, 0.0], …`, `[[{"x": 0.1, …`, perhaps behind frames in which nobody is.
-fn is_list_of_lists(text: &[u8]) -> bool {
-    let marks = text.iter().filter(|b| !b.is_ascii_whitespace());
-    let marks: Vec<u8> = marks.take(4000).copied().collect();
-    let Some(mut rest) = marks.strip_prefix(b"[") else {
-        return false;
-    };
-    let nobody: [&[u8]; 4] = [b"[],", b"{},", b"null,", b"[[]],"];
-    while let Some(behind) = nobody.iter().find_map(|frame| rest.strip_prefix(*frame)) {
-        rest = behind;
-    }
-    // One list is a frame; one within it is a body or a point.
-    let lists = rest.iter().take_while(|b| **b == b'[').count();
-    let point = &rest[lists..];
-    let is_number = matches!(point, [b'-' | b'0'..=b'9', ..] | [b'N', b'a', ..]);
-    let axes: [&[u8]; 2] = [b"\"x\":", b"\"y\":"];
-    let is_place = point.starts_with(b"{")
-        && axes.iter().all(|axis| {
-            let mut found = point.windows(axis.len());
-            found.any(|at| at.eq_ignore_ascii_case(axis))
-        });
-    lists >= 2 && is_number || lists >= 1 && is_place
-}
 
 /// Lists of more are frames, not bodies.
 #[cfg(feature = "files")]
@@ -573,91 +497,6 @@ fn place_of(point: &Value) -> Option<Vec3> {
         Value::Array(list) if list.len() == 16 => matrix::place(point),
         _ => None,
     }
-}
-
-/// The time of a frame in seconds, as far as the name of its field says the unit.
-fn time_of(frame: &Value) -> Option<f64> {
-    const KEYS: [&str; 6] = ["t", "ts", "secs", "seconds", "zeit", "stamp"];
-    let fields = frame.as_object()?;
-    let time = |(key, value): (&String, &Value)| {
-        let lower = key.to_lowercase();
-        let known = KEYS.contains(&lower.as_str()) || lower.contains("time");
-        let other = ["zone", "step", "delta", "total", "frame"]
-            .iter()
-            .any(|o| lower.contains(o));
-        let number = value
-            .as_f64()
-            .or_else(|| clock(value.as_str()?))
-            .filter(|_| known && !other)?;
-        let unit = match () {
-            // Kinect's ticks of 100 ns.
-            () if lower == "relativetime" => 1e-7,
-            () if lower == "univtime" || lower.ends_with("ms") || lower.ends_with("millis") => 1e-3,
-            () if lower.ends_with("us") || lower.ends_with("usec") || lower.ends_with("micros") => {
-                1e-6
-            }
-            () if lower.ends_with("ns") || lower.ends_with("nanos") => 1e-9,
-            () => 1.0,
-        };
-        Some(number * unit).filter(|time| time.is_finite())
-    };
-    fields.iter().find_map(time)
-}
-
-/// The number of a frame.
-fn number_of(frame: &Value) -> Option<f64> {
-    const KEYS: [&str; 12] = [
-        "frame",
-        "frame_id",
-        "frameid",
-        "frame_number",
-        "framenumber",
-        "frame_num",
-        "frame_index",
-        "frameindex",
-        "frame_idx",
-        "frameidx",
-        "frame_no",
-        "index",
-    ];
-    let fields = frame.as_object()?;
-    let number = |(key, value): (&String, &Value)| {
-        let known = KEYS.contains(&key.to_lowercase().as_str());
-        value.as_f64().filter(|_| known)
-    };
-    fields.iter().find_map(number)
-}
-
-/// The rate in a field of the document, or of one within it, whatever it is called.
-fn rate_in(document: &Value) -> Option<f64> {
-    const KEYS: [&str; 16] = [
-        "fps",
-        "framerate",
-        "rate",
-        "currentframerate",
-        "samplingrate",
-        "samplerate",
-        "frequency",
-        "hz",
-        "framespersecond",
-        "ratehz",
-        "frameratehz",
-        "videofps",
-        "capturerate",
-        "samplingfrequency",
-        "avgframerate",
-        "recordingrate",
-    ];
-    let found = |value: &Value| {
-        let rate = |(key, value): (&String, &Value)| {
-            let letters: String = key.chars().filter(|c| c.is_alphabetic()).collect();
-            let known = KEYS.contains(&letters.to_lowercase().as_str());
-            let text = || value.as_str()?.trim().parse().ok();
-            value.as_f64().or_else(text).filter(|_| known)
-        };
-        value.as_object()?.iter().find_map(rate)
-    };
-    found(document).or_else(|| children(document).find_map(found))
 }
 
 #[cfg(test)]

@@ -103,3 +103,17 @@ fn what_is_no_motion_is_refused_by_what_it_is() {
         }
     }
 }
+
+#[test]
+fn hands_of_gesture_sets_are_right_ones() {
+    for name in [
+        "hand21-frame-first.txt",
+        "hand22-shrec17.txt",
+        "leap-frames.json",
+    ] {
+        let takes = open(name).unwrap();
+        let roles = &takes.takes[0].roles;
+        assert!(roles.joint(Role::RightIndexTip).is_some(), "{name}");
+        assert!(roles.joint(Role::LeftIndexTip).is_none(), "{name}");
+    }
+}

@@ -1,8 +1,10 @@
 //! Which columns are a point's x, y and z, by the rows above them.
 
+use super::glued::{axis_glued, prefix_glued, suffix_glued, unit_of, without_unit};
 use super::layout::{ColumnLayout, TableLine};
 use super::quantities::{self, is_other, is_other_unit, is_plate, is_position, unit_in};
-use crate::formats::cells::{Decimal, clock, number};
+use super::rates::{counts, rate_above, rises_evenly};
+use crate::formats::cells::{Decimal, number};
 use crate::formats::points::metres_of;
 use crate::math::Axis;
 
@@ -108,34 +110,6 @@ fn named_points(
     open
 }
 
-/// True if the values of a column rise, most by the same step: times or numbers of frames, whatever they are called.
-fn rises_evenly(rows: &[TableLine], column: usize) -> bool {
-    const LEAST: usize = 3;
-    let value = |(_, cells): &TableLine| {
-        let cell = cells.get(column)?;
-        number(cell, Decimal::Either).or_else(|| clock(cell))
-    };
-    let values: Option<Vec<f64>> = rows.iter().map(value).collect();
-    let Some(values) = values.filter(|values| values.len() >= LEAST) else {
-        return false;
-    };
-    let steps: Vec<f64> = values.windows(2).map(|w| w[1] - w[0]).collect();
-    let mut sorted = steps.clone();
-    sorted.sort_unstable_by(f64::total_cmp);
-    let usual = sorted[sorted.len() / 2];
-    let near = |step: &&f64| (*step - usual).abs() <= 0.25 * usual;
-    let rising = steps.iter().filter(|step| **step >= 0.0).count();
-    let even = steps.iter().filter(near).count();
-    usual > 0.0 && 10 * rising >= 9 * steps.len() && 4 * even >= 3 * steps.len()
-}
-
-/// True if a column counts rows one by one.
-pub(super) fn counts(rows: &[TableLine], column: usize) -> bool {
-    let value = |(_, cells): &TableLine| number(cells.get(column)?, Decimal::Either);
-    let values: Vec<f64> = rows.iter().filter_map(value).collect();
-    values.windows(2).all(|w| w[1] - w[0] == 1.0)
-}
-
 /// The words above each column, if there is a header.
 pub(super) fn header_labels(rows: &[TableLine]) -> Option<Vec<String>> {
     Some(labels(header_above(rows)?))
@@ -175,65 +149,6 @@ fn without_units<'a, 'b>(
         true => (above, Some(last)),
         false => (header, None),
     }
-}
-
-/// The rate that a row above the names states, in whatever words: `# fps: 60`, `Frame Rate,120`, `100,Hz`, `Frame time: 0.01`.
-fn rate_above(header: &[TableLine]) -> Option<f64> {
-    const RATE: [&str; 14] = [
-        "fps",
-        "framerate",
-        "samplingrate",
-        "samplerate",
-        "capturerate",
-        "frequency",
-        "datarate",
-        "camerarate",
-        "updaterate",
-        "framespersecond",
-        "hz",
-        "frequenz",
-        "bildrate",
-        "abtastrate",
-    ];
-    const STEP: [&str; 5] = [
-        "frametime",
-        "timestep",
-        "dt",
-        "sampletime",
-        "samplinginterval",
-    ];
-    let (_, above) = header.split_last()?;
-    let stated = |cells: &[&str]| {
-        let text = cells.join(",").to_lowercase();
-        let letters: String = text.chars().filter(|c| c.is_alphabetic()).collect();
-        // Without what is a list of words: a value stands beside its key.
-        let numbers: Vec<f64> = text
-            .split(|c: char| {
-                c.is_whitespace() || matches!(c, ',' | ':' | '=' | ';' | '(' | ')' | '[' | ']')
-            })
-            .filter_map(|word| number(word.trim_end_matches(char::is_alphabetic), Decimal::Point))
-            .collect();
-        let [value] = numbers[..] else { return None };
-        let is_key = |key: &&str| match key.len() {
-            // Short words stand for themselves.
-            ..=3 => text
-                .split(|c: char| !c.is_alphabetic())
-                .any(|word| word == *key),
-            _ => letters.contains(*key),
-        };
-        let rate = match () {
-            () if RATE.iter().any(|key| is_key(&key)) => value,
-            () if STEP.iter().any(|key| is_key(&key)) && letters.contains("ms") => 1e3 / value,
-            () if STEP.iter().any(|key| is_key(&key)) => 1.0 / value,
-            () => return None,
-        };
-        (rate > 0.0 && rate < 1e5).then_some(rate)
-    };
-    // A row of keys and values has a pair of them for each.
-    let paired = |cells: &[&str]| cells.windows(2).find_map(stated);
-    above
-        .iter()
-        .find_map(|(_, cells)| stated(cells).or_else(|| paired(cells)))
 }
 
 /// Rows before the first of numbers; `None` if there is none, or no row of numbers.
@@ -417,16 +332,16 @@ fn in_brackets(label: &str) -> Option<(String, usize)> {
     (!name.is_empty() && !is_time(name) && !is_frame(name, 1)).then(|| (name.to_owned(), axis))
 }
 
-fn is_mark(c: char) -> bool {
+pub(super) fn is_mark(c: char) -> bool {
     matches!(c, '_' | '.' | ' ' | '-' | ':' | '/' | '|')
 }
 
-fn axis_number(letter: char) -> Option<usize> {
+pub(super) fn axis_number(letter: char) -> Option<usize> {
     Axis::from_letter(letter).map(Axis::index)
 }
 
 /// `hips_x`, `Hips.X`, `Hips Tx`, `HipsX`, `12x`.
-fn suffix(label: &str) -> Option<(&str, usize)> {
+pub(super) fn suffix(label: &str) -> Option<(&str, usize)> {
     let last = label.chars().next_back()?;
     let axis = axis_number(last)?;
     let rest = &label[..label.len() - 1];
@@ -444,73 +359,11 @@ fn suffix(label: &str) -> Option<(&str, usize)> {
 }
 
 /// `x_hips`, `X hips`, `x12`.
-fn prefix(label: &str) -> Option<(&str, usize)> {
+pub(super) fn prefix(label: &str) -> Option<(&str, usize)> {
     let axis = axis_number(label.chars().next()?)?;
     let rest = &label[1..];
     let next = rest.chars().next()?;
     (is_mark(next) || next.is_ascii_digit()).then(|| (rest.trim_start_matches(is_mark), axis))
-}
-
-/// A label without a unit behind it, in brackets or behind its axis, `hips_x_mm`.
-fn without_unit(label: &str) -> &str {
-    match label.find(['(', '[']) {
-        Some(at) if label.ends_with([')', ']']) => label[..at].trim_end(),
-        _ => unit_behind(label).map_or(label, |(rest, _)| rest),
-    }
-}
-
-/// What stands before a unit of length that follows an axis, and the unit.
-fn unit_behind(label: &str) -> Option<(&str, &str)> {
-    let at = label.rfind(is_mark)?;
-    let (rest, unit) = (&label[..at], &label[at + 1..]);
-    // `knee_m` is a medial one.
-    let is_behind = unit.len() > 1 && prefix(rest).is_some();
-    let is_axis = suffix(rest).is_some() || axis_alone(rest) || is_behind;
-    (is_axis && metres_of(unit).is_some()).then_some((rest, unit))
-}
-
-fn axis_alone(label: &str) -> bool {
-    label.len() == 1 && label.chars().all(|c| axis_number(c).is_some())
-}
-
-fn unit_of(label: &str) -> Option<f64> {
-    metres_of(unit_in(label).or_else(|| Some(unit_behind(label)?.1))?)
-}
-
-/// `hipsx`.
-fn suffix_glued(label: &str) -> Option<(&str, usize)> {
-    let last = label.chars().next_back()?;
-    Some((&label[..label.len() - last.len_utf8()], axis_number(last)?))
-}
-
-/// `Xhips`.
-fn prefix_glued(label: &str) -> Option<(&str, usize)> {
-    let first = label.chars().next()?;
-    Some((&label[first.len_utf8()..], axis_number(first)?))
-}
-
-/// An axis glued to a name, where there are labels of the same name with the other two.
-fn axis_glued(
-    label: &str,
-    split: fn(&str) -> Option<(&str, usize)>,
-    labels: &[String],
-) -> Option<(String, usize)> {
-    if unit_in(label).is_some_and(is_other_unit) {
-        return None;
-    }
-    let (name, axis) = split(without_unit(label))?;
-    let has = |wanted: usize| {
-        let same = |other: &String| split(without_unit(other)) == Some((name, wanted));
-        labels.iter().any(same)
-    };
-    let last = name.rsplit(is_mark).next().unwrap_or(name);
-    let is_place = name.len() > 1
-        && !name.starts_with(is_mark)
-        && !name.ends_with(is_mark)
-        && !is_other(&last.to_lowercase())
-        && !quantities::names_other(name)
-        && !quantities::is_glued_other(name);
-    (is_place && (0..3).all(has)).then(|| (name.to_owned(), axis))
 }
 
 /// The label of x in whose place this one has w: `hips_w`, `W Element`.

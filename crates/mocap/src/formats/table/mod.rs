@@ -8,6 +8,7 @@
 
 mod brackets;
 mod columns;
+mod glued;
 mod layout;
 mod long;
 mod motive;
@@ -15,6 +16,7 @@ mod nexus;
 mod plain;
 mod qualisys;
 mod quantities;
+mod rates;
 
 pub(super) use self::columns::axis_of;
 use self::columns::is_value;

@@ -1,7 +1,7 @@
 //! Tables of numbers without names.
 
-use super::columns;
 use super::layout::{ColumnLayout, TableLine};
+use super::rates::counts;
 use crate::formats::cells::{Decimal, number};
 use crate::roles::points::{NUMBERED_HANDS, numbered_counts};
 
@@ -94,7 +94,7 @@ pub(super) fn layout(rows: &[TableLine]) -> Option<ColumnLayout> {
         known.then_some((before, width, values / width))
     };
     // A count that fits says nothing against a first column that counts frames: then a hand's points may be behind it.
-    let counted = rows.len() > header_rows + 2 && columns::counts(&rows[header_rows..], 0);
+    let counted = rows.len() > header_rows + 2 && counts(&rows[header_rows..], 0);
     let behind_count = || {
         fits(1, 3)
             .or_else(|| fits(1, 4))

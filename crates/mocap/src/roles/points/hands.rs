@@ -161,7 +161,9 @@ pub fn recognise_numbered_hand(
             let points: Vec<(HandPoint, usize)> = known
                 .filter_map(|(number, at)| Some((model(*number)?, *at)))
                 .collect();
-            let told = side_of(before).unwrap_or_else(|| side(&points, poses));
+            let of_set = RIGHT_HANDS.contains(set).then_some(Hand::Right);
+            let told = side_of(before).or(of_set);
+            let told = told.unwrap_or_else(|| side(&points, poses));
             // Whose other hand is known, this is not it.
             let taken = all.iter().any(|(role, _)| Hand::of(*role) == Some(told));
             let hand = if taken { told.other() } else { told };
@@ -187,6 +189,9 @@ fn side_of(name: &str) -> Option<Hand> {
 
 /// The set of this many numbered points, and what each number is.
 type NumberedHand = fn(usize) -> Option<HandPoint>;
+
+/// Sets in which all hands are right ones, some of them in left-handed axes, where bones say the other side.
+const RIGHT_HANDS: [&str; 2] = ["DHG hand (22)", "BigHand (21)"];
 
 /// The models of this many points, the commonest first; lengths of bones tell them apart.
 fn models(count: usize) -> &'static [(&'static str, NumberedHand)] {
@@ -313,6 +318,9 @@ fn split(name: &str) -> Vec<String> {
     parts
 }
 
+/// Fingers bend backwards, too, by some 20°: so little, as a sine, says no side.
+const MOST_BACKWARD: f64 = 0.36;
+
 /// Tells a left hand from a right one: fingers curl towards the palm, which lies on one side of index-to-little × forward in a right hand
 /// and on the other in a left one.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -333,8 +341,9 @@ impl SideVotes {
             };
             // A right palm faces against its normal.
             let out = palm.normal.dot(&(tip - base));
-            self.to_right += (-out).max(0.0);
-            self.to_left += out.max(0.0);
+            let backward = MOST_BACKWARD * (tip - base).norm();
+            self.to_right += (-out - backward).max(0.0);
+            self.to_left += (out - backward).max(0.0);
         }
     }
 
