@@ -422,6 +422,16 @@ mod tests {
     }
 
     #[test]
+    fn a_place_that_is_no_number_is_unknown() {
+        let line = r#"{"t": NaN, "positions": {"head": [0, 1.6, 0], "hips": [NaN, NaN, NaN], "neck": [0, Infinity, 0]}}"#;
+        let pose = PoseLine::of_line(line).unwrap();
+        assert_eq!(
+            (pose.time_secs, pose.known()),
+            (None, 1 << Role::Head.index())
+        );
+    }
+
+    #[test]
     fn rubbish_is_no_pose() {
         for (line, said) in [
             ("", "no JSON"),
