@@ -1,6 +1,6 @@
 //! BABEL-like JSON (Punnakkal et al. 2021): by sequence, `seq_ann` for the whole and `frame_ann` for stretches of it.
 
-use morec::formats::{ParseError, Place};
+use morec::formats::{ParseError, Place, Warning};
 use serde_json::{Map, Value, json};
 
 use super::annotation::{Annotation, ClipLengths, ReadLabels, json_error, secs};
@@ -11,6 +11,7 @@ pub fn read(bytes: &[u8]) -> Result<ReadLabels, ParseError> {
     let file: Map<String, Value> =
         serde_json::from_slice(bytes).map_err(|error| json_error(&error, expected))?;
     let mut read = ReadLabels::default();
+    let mut summed_up = 0;
     for (key, sequence) in &file {
         // Files of ours name the clip in both places, whatever it is called.
         let path = sequence["feat_p"]
@@ -31,6 +32,8 @@ pub fn read(bytes: &[u8]) -> Result<ReadLabels, ParseError> {
             ("frame_ann", "frame_anns", true),
         ] {
             if !timed && has_stretches && path.is_some() {
+                let labelled = |set: &str| !sequence[set].is_null();
+                summed_up += usize::from(labelled(one) || labelled(several));
                 continue;
             }
             let sets = sequence[several]
@@ -44,6 +47,12 @@ pub fn read(bytes: &[u8]) -> Result<ReadLabels, ParseError> {
                 })?;
             }
         }
+    }
+    if summed_up > 0 {
+        let text = format!(
+            "labels of {summed_up} whole sequences sum up those of their stretches; left out"
+        );
+        read.warnings.push(Warning::new(Place::File, text));
     }
     Ok(read)
 }
