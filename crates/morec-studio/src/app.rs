@@ -64,7 +64,7 @@ impl Studio {
         self.state.tick_keys(dt);
         self.state.tick(dt);
         let mut commands: Vec<Command> = Vec::new();
-        keys::read(ctx, &self.state, &mut commands);
+        keys::read(ctx, &self.state, self.dialogs.is_open(), &mut commands);
         dialogs::dropped(ctx, &mut commands);
         panels::show(ctx, &self.state, &mut commands);
         for command in commands {

@@ -119,7 +119,6 @@ impl Dialogs {
     }
 
     /// True while a dialog waits for an answer.
-    #[cfg(test)]
     pub fn is_open(&self) -> bool {
         !self.open.is_empty()
     }

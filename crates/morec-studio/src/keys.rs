@@ -43,7 +43,7 @@ pub const HELP: &[(&str, &str, &str)] = &[
     (
         "Library",
         "1 … 9",
-        "the selected clips, as a whole, show this class",
+        "the clips that you have selected, as a whole, show this class",
     ),
     (
         "Library",
@@ -126,8 +126,9 @@ pub const HELP: &[(&str, &str, &str)] = &[
     ),
 ];
 
-/// Reads the keyboard into commands.
-pub fn read(ctx: &egui::Context, state: &State, out: &mut Vec<Command>) {
+/// Reads the keyboard into commands. Keys without Ctrl act on what is seen alone: none does while something lies over the panel or a
+/// text has the keyboard, and each only on the panels that show what it changes.
+pub fn read(ctx: &egui::Context, state: &State, asks_a_file: bool, out: &mut Vec<Command>) {
     // A question is answered first.
     if state.leaving.is_some() || state.undo_asks {
         return;
@@ -135,37 +136,85 @@ pub fn read(ctx: &egui::Context, state: &State, out: &mut Vec<Command>) {
     let focused = ctx.memory(|memory| memory.focused());
     // A field that appears has the keyboard from its first frame on, whether or not it was drawn yet.
     let asked = state.classes.renaming.is_some() || state.classes.choosing.is_some();
-    let in_text = asked || focused.is_some_and(|id| egui::TextEdit::load_state(ctx, id).is_some());
+    let in_field = focused.is_some_and(|id| egui::TextEdit::load_state(ctx, id).is_some());
+    let in_text = asked || (in_field && is_changed(ctx));
+    if !in_field {
+        remember_change(ctx, false);
+    }
+    let covered = state.is_covered() || asks_a_file || egui::Popup::is_any_open(ctx);
     let typing = asked || ctx.wants_keyboard_input();
     ctx.input_mut(|i| {
-        // In a text the keys with Ctrl are the text's own.
-        commands(i, in_text, out);
-        if typing {
+        commands(i, in_text || covered, out);
+        if typing || covered {
             // Keys that were held when typing began are let go.
             if let Some(held) = &state.classes.held {
                 out.push(class_key(held.slot, false));
             }
             return;
         }
+        choosing(i, state, out);
         match state.panel {
-            Panel::Live => live(i, state, out),
-            _ => {
-                if state.panel == Panel::Library {
-                    library(i, state, out);
-                }
-                playing(i, state, out);
+            Panel::Live => return live(i, state, out),
+            Panel::Library => library(i, state, out),
+            Panel::Label => {
                 labels(i, state, out);
+                timeline(i, state, out);
             }
+            Panel::Classes => labels(i, state, out),
+            Panel::Train => {}
         }
+        playing(i, state, out);
+        searching(i, state, out);
     });
+    if in_field {
+        follow_typing(ctx);
+    }
+}
+
+/// Where it is remembered whether the text in the field was changed since Enter.
+fn changed_id() -> egui::Id {
+    egui::Id::new("text was changed")
+}
+
+/// True if keys with Ctrl are the text's own: it was changed, and Enter has not been pressed since.
+fn is_changed(ctx: &egui::Context) -> bool {
+    ctx.data(|data| data.get_temp(changed_id()))
+        .unwrap_or(false)
+}
+
+fn remember_change(ctx: &egui::Context, changed: bool) {
+    ctx.data_mut(|data| data.insert_temp(changed_id(), changed));
+}
+
+/// Notices that the text that has the keyboard is changed, or accepted by Enter.
+fn follow_typing(ctx: &egui::Context) {
+    use egui::Event;
+    let last = ctx.input(|i| {
+        let events = i.events.iter().rev();
+        let mut said = events.filter_map(|event| match event {
+            Event::Text(_) | Event::Paste(_) | Event::Cut | Event::Ime(_) => Some(true),
+            Event::Key {
+                key, pressed: true, ..
+            } => match key {
+                Key::Enter => Some(false),
+                Key::Backspace | Key::Delete => Some(true),
+                _ => None,
+            },
+            _ => None,
+        });
+        said.next()
+    });
+    if let Some(changed) = last {
+        remember_change(ctx, changed);
+    }
 }
 
 fn class_key(slot: usize, down: bool) -> Command {
     Command::Classes(ClassCommand::Key { slot, down })
 }
 
-fn commands(i: &mut egui::InputState, in_text: bool, out: &mut Vec<Command>) {
-    if !in_text {
+fn commands(i: &mut egui::InputState, elsewhere: bool, out: &mut Vec<Command>) {
+    if !elsewhere {
         with_ctrl(i, out);
     }
     if i.consume_key(Modifiers::NONE, Key::F1) {
@@ -210,16 +259,9 @@ fn library(i: &mut egui::InputState, state: &State, out: &mut Vec<Command>) {
     if i.consume_key(Modifiers::COMMAND, Key::A) {
         out.push(Command::Library(LibraryCommand::SelectAll));
     }
-    if !i.consume_key(Modifiers::NONE, Key::B) {
-        return;
-    }
-    let Some(store) = &state.store else { return };
-    let selected = state.library.selected.iter();
-    let clips: Vec<_> = selected.filter_map(|id| store.snapshot.clip(*id)).collect();
-    if !clips.is_empty() {
-        let on = !clips.iter().all(|clip| clip.is_background());
-        let clips = clips.iter().map(|clip| clip.id).collect();
-        out.push(Command::Edit(Edit::Background { clips, on }));
+    class_keys(i, state, out);
+    if i.consume_key(Modifiers::NONE, Key::B) {
+        out.push(Command::Library(LibraryCommand::Background));
     }
 }
 
@@ -259,15 +301,8 @@ fn playing(i: &mut egui::InputState, state: &State, out: &mut Vec<Command>) {
             None => Some(state.segment()),
         }));
     }
-    let nudge = |grip, by| Command::Timeline(TimelineCommand::Nudge(grip, by));
     for (key, way) in [(Key::ArrowLeft, -1), (Key::ArrowRight, 1)] {
-        if i.consume_key(Modifiers::ALT | Modifiers::SHIFT, key) {
-            out.push(nudge(Grip::Stop, way));
-        } else if i.consume_key(Modifiers::ALT, key) {
-            out.push(nudge(Grip::Start, way));
-        } else if i.consume_key(Modifiers::COMMAND, key) {
-            out.push(nudge(Grip::Whole, way));
-        } else if i.consume_key(Modifiers::SHIFT, key) {
+        if i.consume_key(Modifiers::SHIFT, key) {
             out.push(Command::Play(PlayCommand::Step(way * second)));
         } else if i.consume_key(Modifiers::NONE, key) {
             out.push(Command::Play(PlayCommand::Step(way)));
@@ -297,12 +332,8 @@ fn choosing(i: &mut egui::InputState, state: &State, out: &mut Vec<Command>) {
     }
 }
 
-fn labels(i: &mut egui::InputState, state: &State, out: &mut Vec<Command>) {
-    let covered = state.show_keys || state.show_history || state.classes.choosing.is_some();
-    if i.key_pressed(Key::Escape) && !covered {
-        out.push(Command::Timeline(TimelineCommand::SelectNothing));
-    }
-    choosing(i, state, out);
+/// The keys of classes, which are held or tapped.
+fn class_keys(i: &mut egui::InputState, state: &State, out: &mut Vec<Command>) {
     for (slot, keys) in slots(state) {
         // Keys repeat while they are held; going down is what counts.
         let went_down = i.events.iter().any(|event| {
@@ -317,34 +348,18 @@ fn labels(i: &mut egui::InputState, state: &State, out: &mut Vec<Command>) {
             out.push(class_key(slot, false));
         }
     }
-    for (key, command) in [
-        (Key::S, TimelineCommand::Split),
-        (Key::M, TimelineCommand::Merge),
-        (Key::Delete, TimelineCommand::Remove),
-        (Key::Backspace, TimelineCommand::Remove),
-        (Key::OpenBracket, TimelineCommand::ToPlayhead(Grip::Start)),
-        (Key::CloseBracket, TimelineCommand::ToPlayhead(Grip::Stop)),
-        (Key::Num0, TimelineCommand::Whole),
-        (Key::Plus, zoom(state, 1.5)),
-        (Key::Equals, zoom(state, 1.5)),
-        (Key::Minus, zoom(state, 1.0 / 1.5)),
-    ] {
+}
+
+/// Keys of what is selected, where a panel names it.
+fn labels(i: &mut egui::InputState, state: &State, out: &mut Vec<Command>) {
+    if i.key_pressed(Key::Escape) && !state.show_history {
+        out.push(Command::Timeline(TimelineCommand::SelectNothing));
+    }
+    class_keys(i, state, out);
+    for key in [Key::Delete, Key::Backspace] {
         if i.consume_key(Modifiers::NONE, key) {
-            out.push(Command::Timeline(command));
+            out.push(Command::Timeline(TimelineCommand::Remove));
         }
-    }
-    if i.consume_key(Modifiers::NONE, Key::F) {
-        out.push(Command::Similar(SimilarCommand::OfSelection));
-    }
-    if i.consume_key(Modifiers::NONE, Key::C) {
-        let judged = state.panel == Panel::Train && state.chosen_moment().is_some();
-        out.push(Command::Compare(match judged {
-            true => CompareCommand::Moment(None),
-            false => CompareCommand::Nearest,
-        }));
-    }
-    if i.consume_key(Modifiers::NONE, Key::X) {
-        out.push(Command::Cuts(CutCommand::Add(state.player.at_secs)));
     }
     let selected = state.selected();
     let proposed = selected
@@ -357,6 +372,54 @@ fn labels(i: &mut egui::InputState, state: &State, out: &mut Vec<Command>) {
         if i.consume_key(Modifiers::NONE, Key::R) {
             out.push(Command::Classes(ClassCommand::Reject(sample.id)));
         }
+    }
+}
+
+/// Keys of what only the timeline shows: ends of labels, cuts, the playhead among them.
+fn timeline(i: &mut egui::InputState, state: &State, out: &mut Vec<Command>) {
+    for (key, command) in [
+        (Key::S, TimelineCommand::Split),
+        (Key::M, TimelineCommand::Merge),
+        (Key::OpenBracket, TimelineCommand::ToPlayhead(Grip::Start)),
+        (Key::CloseBracket, TimelineCommand::ToPlayhead(Grip::Stop)),
+        (Key::Num0, TimelineCommand::Whole),
+        (Key::Plus, zoom(state, 1.5)),
+        (Key::Equals, zoom(state, 1.5)),
+        (Key::Minus, zoom(state, 1.0 / 1.5)),
+    ] {
+        if i.consume_key(Modifiers::NONE, key) {
+            out.push(Command::Timeline(command));
+        }
+    }
+    let nudge = |grip, by| Command::Timeline(TimelineCommand::Nudge(grip, by));
+    // The longer combination first: a shortcut is also met with more modifiers.
+    for (key, way) in [(Key::ArrowLeft, -1), (Key::ArrowRight, 1)] {
+        for (held, grip) in [
+            (Modifiers::ALT | Modifiers::SHIFT, Grip::Stop),
+            (Modifiers::ALT, Grip::Start),
+            (Modifiers::COMMAND, Grip::Whole),
+        ] {
+            if i.consume_key(held, key) {
+                out.push(nudge(grip, way));
+            }
+        }
+    }
+    if i.consume_key(Modifiers::NONE, Key::X) {
+        out.push(Command::Cuts(CutCommand::Add(state.player.at_secs)));
+    }
+}
+
+/// Keys that look for something and change nothing.
+fn searching(i: &mut egui::InputState, state: &State, out: &mut Vec<Command>) {
+    if i.consume_key(Modifiers::NONE, Key::F) {
+        out.push(Command::Similar(SimilarCommand::OfSelection));
+    }
+    if i.consume_key(Modifiers::NONE, Key::C) {
+        let judged = state.panel == Panel::Train && state.chosen_moment().is_some();
+        out.push(Command::Compare(match judged {
+            true => CompareCommand::Moment(None),
+            false => CompareCommand::Nearest,
+        }));
     }
     if i.consume_key(Modifiers::NONE, Key::N) {
         out.push(Command::Classes(ClassCommand::NextDoubtful));
@@ -381,7 +444,6 @@ fn live(i: &mut egui::InputState, state: &State, out: &mut Vec<Command>) {
             out.push(Command::Live(LiveCommand::Back(secs)));
         }
     }
-    choosing(i, state, out);
     for (slot, keys) in slots(state) {
         for key in keys {
             if i.consume_key(Modifiers::NONE, key) {

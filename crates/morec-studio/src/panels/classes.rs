@@ -231,6 +231,13 @@ fn chosen(ui: &mut Ui, state: &State, out: Out) {
     let Some(sample) = selected.first() else {
         return;
     };
+    if selected.len() > 1 {
+        let text = format!(
+            "{} are selected, from",
+            format::count(selected.len(), "label")
+        );
+        ui.colored_label(Colours::now(ui).warn, text);
+    }
     ui.label(RichText::new(&sample.class).size(15.0).strong());
     let extent = format!(
         "{}, {} to {}",

@@ -36,7 +36,7 @@ fn several(ui: &mut Ui, state: &State, out: Out) {
     ui.label(format!("{} clips are selected", selected.len()));
     ui.horizontal(|ui| {
         ui.label("Person");
-        if let Some(name) = widgets::committed(ui, "Person of all", "") {
+        if let Some(name) = widgets::committed(ui, "Person of all", selected, "") {
             let update = ClipUpdate {
                 subject: Some(name),
                 ..ClipUpdate::default()
@@ -60,7 +60,7 @@ fn several(ui: &mut Ui, state: &State, out: Out) {
     });
     ui.horizontal(|ui| {
         ui.label("Add tags");
-        if let Some(text) = widgets::committed(ui, "Tags of all", "") {
+        if let Some(text) = widgets::committed(ui, "Tags of all", selected, "") {
             let update = ClipUpdate {
                 add_tags: tags_of(&text),
                 ..ClipUpdate::default()
@@ -100,7 +100,7 @@ fn known(ui: &mut Ui, clip: &ClipInfo, out: Out) {
             ui.spacing_mut().interact_size.y = 19.0;
             let name = |ui: &mut Ui, text: &str| ui.colored_label(c.muted, text);
             name(ui, "Name");
-            if let Some(to) = widgets::committed(ui, "Clip name", &clip.name) {
+            if let Some(to) = widgets::committed(ui, "Clip name", clip.id, &clip.name) {
                 let from = clip.name.clone();
                 out.push(Command::Edit(Edit::RenameClip { from, to }));
             }
@@ -113,7 +113,7 @@ fn known(ui: &mut Ui, clip: &ClipInfo, out: Out) {
             };
             name(ui, "Person");
             if let Some(subject) =
-                widgets::committed(ui, "Person", clip.subject.as_deref().unwrap_or(""))
+                widgets::committed(ui, "Person", clip.id, clip.subject.as_deref().unwrap_or(""))
             {
                 describe(ClipUpdate {
                     subject: Some(subject),
@@ -123,7 +123,7 @@ fn known(ui: &mut Ui, clip: &ClipInfo, out: Out) {
             ui.end_row();
             name(ui, "Tags");
             let tags = clip.tags.join(", ");
-            if let Some(text) = widgets::committed(ui, "Tags", &tags) {
+            if let Some(text) = widgets::committed(ui, "Tags", clip.id, &tags) {
                 let wanted = tags_of(&text);
                 let gone = clip.tags.iter().filter(|t| !wanted.contains(t)).cloned();
                 describe(ClipUpdate {

@@ -1,6 +1,6 @@
 //! Groups of what is alike, at the depth that the slider says.
 
-use egui::{Button, Rect, RichText, ScrollArea, Sense, TextEdit, Ui, Vec2, WidgetType};
+use egui::{Button, Rect, RichText, ScrollArea, Sense, Ui, Vec2, WidgetType};
 
 use super::strips::{STRIP, go};
 use morec_db::labels::SampleState;
@@ -34,7 +34,7 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
                 let id = ui.id().with(("name", number));
                 let mut name = ui.data(|d| d.get_temp::<String>(id)).unwrap_or_default();
                 let edit = ui.add(
-                    TextEdit::singleline(&mut name)
+                    widgets::line(&mut name)
                         .hint_text("name …")
                         .desired_width(110.0),
                 );

@@ -132,7 +132,9 @@ fn class(ui: &mut Ui, state: &State, place: usize, name: &str, out: Out) {
             true => response.surrender_focus(),
             false => response.request_focus(),
         }
-        if ended {
+        if ended && ui.input(|i| i.key_pressed(egui::Key::Escape)) {
+            out.push(Command::Classes(ClassCommand::Renaming(None)));
+        } else if ended {
             let (from, to) = (from.clone(), text);
             out.push(Command::Classes(ClassCommand::Rename { from, to }));
         } else if text != *now {
@@ -230,7 +232,7 @@ fn add_class(ui: &mut Ui, state: &State, out: Out) {
         let mut text = state.classes.adding.clone();
         let width = ui.available_width() - 62.0;
         let response = ui.add(
-            TextEdit::singleline(&mut text)
+            widgets::line(&mut text)
                 .hint_text("New class …")
                 .desired_width(width),
         );
@@ -239,7 +241,7 @@ fn add_class(ui: &mut Ui, state: &State, out: Out) {
             info.current_text_value = Some(state.classes.adding.clone());
             info
         });
-        let entered = response.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
+        let entered = widgets::entered(ui, &response);
         let add = ui
             .add_enabled(!text.trim().is_empty(), Button::new("Add"))
             .clicked();

@@ -2,8 +2,8 @@
 
 use crate::stretch::Stretch;
 use egui::{
-    CentralPanel, Context, Key, Rect, Response, RichText, ScrollArea, Sense, SidePanel, TextEdit,
-    Ui, Vec2, WidgetType,
+    CentralPanel, Context, Key, Rect, Response, RichText, ScrollArea, Sense, SidePanel, Ui, Vec2,
+    WidgetType,
 };
 use morec_db::{BACKGROUND, ClipInfo};
 
@@ -52,7 +52,7 @@ fn tools(ui: &mut Ui, state: &State, out: Out) {
     let c = Colours::now(ui);
     ui.horizontal(|ui| {
         let mut text = state.library.filter.clone();
-        let edit = TextEdit::singleline(&mut text)
+        let edit = widgets::line(&mut text)
             .hint_text("Search names, people, tags …")
             .desired_width((ui.available_width() - 390.0).clamp(110.0, 280.0));
         let response = ui.add(edit);
@@ -156,9 +156,13 @@ fn table(ui: &mut Ui, state: &State, out: Out) {
 }
 
 /// The ground of a row: of the selected ones, and of the one under the pointer.
-fn ground(ui: &Ui, rect: Rect, response: &Response, selected: bool) {
+/// One that is shown, and that nobody has selected, is framed: keys do nothing to it.
+fn ground(ui: &Ui, rect: Rect, response: &Response, selected: bool, chosen: bool) {
     let c = Colours::now(ui);
-    let fill = match (selected, response.hovered()) {
+    if selected && !chosen {
+        widgets::selected_frame(ui, rect);
+    }
+    let fill = match (selected && chosen, response.hovered()) {
         (true, _) => ui.visuals().selection.bg_fill,
         (false, true) => c.tint(c.accent, 0.10),
         (false, false) => return,
@@ -204,7 +208,7 @@ fn strip(ui: &mut Ui, state: &State, clip: &ClipInfo, out: Out) {
     let on = state.library.selected.contains(&clip.id);
     widgets::named(&response, WidgetType::SelectableLabel, called(clip), on);
     response.context_menu(|ui| clip_menu(ui, state, clip, out));
-    ground(ui, rect, &response, on);
+    ground(ui, rect, &response, on, state.library.chosen);
     let names = (0.26 * rect.width()).clamp(90.0, 190.0);
     let text = rect
         .with_max_x(rect.left() + names)
@@ -275,7 +279,7 @@ fn row(ui: &mut Ui, state: &State, clip: &ClipInfo, out: Out) {
     let on = state.library.selected.contains(&clip.id);
     widgets::named(&response, WidgetType::SelectableLabel, called(clip), on);
     response.context_menu(|ui| clip_menu(ui, state, clip, out));
-    ground(ui, rect, &response, on);
+    ground(ui, rect, &response, on, state.library.chosen);
     let labels = match clip.samples {
         0 if clip.is_background() => BACKGROUND.to_owned(),
         0 => String::new(),

@@ -1,8 +1,8 @@
 //! Live: a source, the performer, what is recognised as it comes, and teaching from what just happened.
 
 use egui::{
-    CentralPanel, ComboBox, Context, Rect, RichText, ScrollArea, SidePanel, TextEdit,
-    TopBottomPanel, Ui, Vec2, WidgetType,
+    CentralPanel, ComboBox, Context, Rect, RichText, ScrollArea, SidePanel, TopBottomPanel, Ui,
+    Vec2, WidgetType,
 };
 use morec::kinematics::WorldPose;
 use morec::templates::PerformerKind;
@@ -77,7 +77,7 @@ fn source(ui: &mut Ui, state: &State, out: Out) {
         Choice::Clip(chosen) => clip_choice(ui, state, *chosen, &mut live),
         Choice::Network(address) => {
             let mut text = address.clone();
-            let response = ui.add(TextEdit::singleline(&mut text).desired_width(f32::INFINITY));
+            let response = ui.add(widgets::line(&mut text).desired_width(f32::INFINITY));
             response.widget_info(|| {
                 let mut info = egui::WidgetInfo::labeled(WidgetType::TextEdit, true, "Address");
                 info.current_text_value = Some(address.clone());

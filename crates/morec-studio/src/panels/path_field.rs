@@ -1,6 +1,6 @@
 //! A field for a path, where no file dialog can be opened.
 
-use egui::{Align2, Context, Key, RichText, TextEdit, WidgetInfo, WidgetType, Window};
+use egui::{Align2, Context, Key, RichText, WidgetInfo, WidgetType, Window};
 
 use super::{Out, widgets};
 use crate::dialogs::{self, DialogKind};
@@ -35,7 +35,7 @@ fn contents(ui: &mut egui::Ui, state: &State, typed: &TypedPath, kind: DialogKin
         DialogKind::File | DialogKind::Files => "Path of the file:",
     });
     let mut text = typed.text.clone();
-    let response = ui.add(TextEdit::singleline(&mut text).desired_width(f32::INFINITY));
+    let response = ui.add(widgets::line(&mut text).desired_width(f32::INFINITY));
     response.widget_info(|| {
         let mut info = WidgetInfo::labeled(WidgetType::TextEdit, true, "Path");
         info.current_text_value = Some(typed.text.clone());
@@ -44,7 +44,7 @@ fn contents(ui: &mut egui::Ui, state: &State, typed: &TypedPath, kind: DialogKin
     if !typed.begun {
         response.request_focus();
     }
-    let entered = response.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter));
+    let entered = widgets::entered(ui, &response);
     let path = dialogs::typed_path(&text);
     let (why, action) = match &path {
         None => (None, "OK"),

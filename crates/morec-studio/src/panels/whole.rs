@@ -1,6 +1,6 @@
 //! Whole clips of the library: which class they show, by a menu or by their names.
 
-use egui::{RichText, TextEdit, Ui, WidgetInfo, WidgetType};
+use egui::{RichText, Ui, WidgetInfo, WidgetType};
 use morec_db::labels::WholeClip;
 use morec_db::{ClipId, ClipInfo};
 
@@ -52,7 +52,7 @@ pub fn menu(ui: &mut Ui, state: &State, clips: &[ClipId], out: Out) {
 /// A field for a class that is new.
 pub fn new_class(ui: &mut Ui, clips: &[ClipId], out: Out) {
     ui.label("or a new class");
-    let name = widgets::committed(ui, "New class of whole clips", "");
+    let name = widgets::committed(ui, "New class of whole clips", clips, "");
     if let Some(name) = name.filter(|name| !name.trim().is_empty()) {
         out.push(of_class(clips, name.trim()));
     }
@@ -67,7 +67,7 @@ pub fn from_names(ui: &mut Ui, state: &State, clips: &[&ClipInfo], out: Out) {
         None => guess(clips.iter().map(|clip| clip.name.as_str())),
     };
     let mut now = text.clone();
-    let response = ui.add(TextEdit::singleline(&mut now).desired_width(260.0));
+    let response = ui.add(widgets::line(&mut now).desired_width(260.0));
     response.widget_info(|| {
         let mut info = WidgetInfo::labeled(WidgetType::TextEdit, true, "Pattern of names");
         info.current_text_value = Some(text.clone());

@@ -1,8 +1,8 @@
 //! Small parts that several panels draw.
 
 use egui::{
-    Align2, Button, Color32, FontId, Frame, Margin, Rect, Response, RichText, Sense, Stroke,
-    StrokeKind, Ui, Vec2, WidgetInfo, WidgetType,
+    Align2, Button, Color32, FontId, Frame, Key, Margin, Rect, Response, RichText, Sense, Stroke,
+    StrokeKind, TextEdit, Ui, Vec2, WidgetInfo, WidgetType,
 };
 
 use crate::state::{Command, FileCommand, TrainCommand};
@@ -142,27 +142,41 @@ pub fn train_again(ui: &mut Ui, out: Out) {
     });
 }
 
-/// A field whose text counts once Enter is pressed or it is left.
-pub fn committed(ui: &mut Ui, name: &str, text: &str) -> Option<String> {
-    let id = ui.make_persistent_id((name, text));
+/// A field of one line, which keeps the keyboard when Enter is pressed: what is typed next is text, and no key of the window.
+pub fn line(text: &mut String) -> TextEdit<'_> {
+    TextEdit::singleline(text).return_key(None)
+}
+
+/// True if Enter was pressed in a field.
+pub fn entered(ui: &Ui, field: &Response) -> bool {
+    field.has_focus() && ui.input(|i| i.key_pressed(Key::Enter))
+}
+
+/// A field whose text counts once Enter is pressed or it is left; Escape gives it up.
+/// `of` is what the text belongs to: typed for one thing it never becomes another's.
+pub fn committed(ui: &mut Ui, name: &str, of: impl std::hash::Hash, text: &str) -> Option<String> {
+    let id = ui.make_persistent_id((name, of));
     let mut now = ui
         .data(|d| d.get_temp::<String>(id))
         .unwrap_or_else(|| text.to_owned());
-    let edit = egui::TextEdit::singleline(&mut now)
-        .id(id.with("edit"))
-        .desired_width(220.0);
+    let edit = line(&mut now).id(id.with("edit")).desired_width(220.0);
     let response = ui.add(edit);
     response.widget_info(|| {
         let mut info = WidgetInfo::labeled(WidgetType::TextEdit, true, name);
         info.current_text_value = Some(now.clone());
         info
     });
-    if response.lost_focus() {
-        ui.data_mut(|d| d.remove::<String>(id));
-        return (now != text).then_some(now);
+    if response.changed() {
+        ui.data_mut(|d| d.insert_temp(id, now.clone()));
     }
-    if response.has_focus() {
-        ui.data_mut(|d| d.insert_temp(id, now));
+    if response.lost_focus() || entered(ui, &response) {
+        ui.data_mut(|d| d.remove::<String>(id));
+        let given_up = ui.input(|i| i.key_pressed(Key::Escape));
+        return (now != text && !given_up).then_some(now);
+    }
+    if !response.has_focus() {
+        // It was not drawn when it was left.
+        ui.data_mut(|d| d.remove::<String>(id));
     }
     None
 }

@@ -164,6 +164,8 @@ pub enum LibraryCommand {
     DismissReport,
     /// Selects all clips of the list.
     SelectAll,
+    /// Uses the clips that somebody has selected as background, or no longer.
+    Background,
     /// The pattern of names by which class and person are read.
     Pattern(String),
     /// Clips as strips of poses instead of a table.

@@ -1,5 +1,7 @@
 //! The table of clips: what is searched, sorted, selected.
 
+use std::collections::BTreeSet;
+
 use morec::roles::Role;
 use morec_db::{ClipId, ClipInfo};
 
@@ -13,7 +15,10 @@ type Order = (u64, String, Option<(Column, bool)>);
 pub struct Library {
     pub filter: String,
     pub sort: Option<(Column, bool)>,
+    /// The clips that are selected, all of them in the list.
     pub selected: Vec<ClipId>,
+    /// True if somebody selected them in the list: keys act on no others. The clip that is shown is selected without that.
+    pub chosen: bool,
     /// The pattern of names, once it was typed.
     pub pattern: Option<String>,
     /// Clips as strips of poses instead of a table.
@@ -28,6 +33,14 @@ pub struct Library {
 }
 
 impl Library {
+    /// The clips that somebody has selected: those that keys act on.
+    pub fn chosen(&self) -> &[ClipId] {
+        match self.chosen {
+            true => &self.selected,
+            false => &[],
+        }
+    }
+
     pub fn shown(&self) -> &[usize] {
         &self.shown
     }
@@ -65,6 +78,10 @@ impl Library {
                 self.shown.reverse();
             }
         }
+        // What is done to the selection is done to what is seen: clips that leave the list leave it, too.
+        let shown: BTreeSet<ClipId> = self.shown.iter().map(|&at| clips[at].id).collect();
+        self.selected.retain(|id| shown.contains(id));
+        self.chosen &= !self.selected.is_empty();
         self.computed_for = Some(wanted);
     }
 }

@@ -314,6 +314,16 @@ impl State {
         Some(next.clamp(0.0, 0.8 * LONGEST_FRAME))
     }
 
+    /// True while something lies over the panel.
+    pub fn is_covered(&self) -> bool {
+        self.show_keys
+            || self.undo_asks
+            || self.leaving.is_some()
+            || self.typed.is_some()
+            || self.label_import.is_some()
+            || self.classes.choosing.is_some()
+    }
+
     /// True while threads are at work.
     pub fn is_busy(&self) -> bool {
         !self.jobs.running.is_empty()

@@ -11,6 +11,7 @@ mod dialogs;
 mod dropped;
 mod edits;
 mod faults;
+mod keys;
 mod label_files;
 mod library;
 mod lines;
@@ -25,6 +26,7 @@ mod selection;
 mod train;
 mod undo;
 mod unsaved;
+mod unseen;
 mod view;
 mod whole;
 

@@ -24,6 +24,7 @@ fn with_both() -> (tempfile::TempDir, Person) {
     let folder = tempfile::tempdir().unwrap();
     let path = made(folder.path(), 0);
     let mut person = Person::before(std::slice::from_ref(&path));
+    person.click("ada_1");
     person.key(Key::Num1);
     person.settle();
     elsewhere(&path);
@@ -102,6 +103,8 @@ fn the_last_index_comes_back_with_the_database() {
             .faults
             .is_empty()
     );
+    person.click("ada_1");
+    person.settle();
     person.key(Key::Num1);
     person.settle();
     assert!(person.state().train.is_stale());

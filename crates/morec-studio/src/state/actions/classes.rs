@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use morec_db::ClipId;
 use morec_db::labels::{SampleId, SampleState as Judged, WholeClip};
 
 use crate::state::classes::Held;
@@ -132,30 +131,33 @@ impl State {
     }
 
     fn key_down(&mut self, slot: usize) {
-        if self.panel == Panel::Library && !self.library.selected.is_empty() {
-            let many = self.library.selected.len() > 1;
-            if many || !self.player.playing {
-                return self.label_whole(slot);
-            }
+        if self.panel == Panel::Library {
+            return self.label_whole(slot);
         }
         if self.player.motion.is_none() || self.classes.held.is_some() {
             return;
         }
-        let held = self.class_of_key(slot);
         // With a selection a key says what the selection is, playing or not.
         if self.timeline.range.is_some() {
-            self.apply_timeline(TimelineCommand::LabelRange(held));
+            let class = self.class_of_key(slot);
+            self.apply_timeline(TimelineCommand::LabelRange(class));
             return;
         }
         let ids: Vec<SampleId> = self.selected().iter().map(|s| s.id).collect();
         if !ids.is_empty() {
-            self.edit(Edit::Reclass { ids, class: held });
+            let class = self.class_of_key(slot);
+            self.edit(Edit::Reclass { ids, class });
             return;
+        }
+        // What passes is labelled where the timeline shows it.
+        if self.panel != Panel::Label {
+            return self.say("select a label or a stretch: the key of a class is for that here");
         }
         if !self.player.playing {
             self.say("play (Space) and hold the key while the motion passes, or select a stretch");
             return;
         }
+        self.class_of_key(slot);
         self.classes.held = Some(Held {
             slot,
             since_secs: self.player.at_secs,
@@ -165,14 +167,17 @@ impl State {
 
     /// The selected clips of the library, as a whole, show the class of a key.
     fn label_whole(&mut self, slot: usize) {
+        let clips = self.library.chosen().to_vec();
+        if clips.is_empty() {
+            return self.say("select clips in the list first: the key of a class labels those");
+        }
         let class = self.class_of_key(slot);
-        let whole = |clip: &ClipId| WholeClip {
-            clip: *clip,
+        let whole = |clip| WholeClip {
+            clip,
             class: Some(class.clone()),
             subject: None,
         };
-        let clips = self.library.selected.iter().map(whole).collect();
-        self.edit(Edit::WholeClips(clips));
+        self.edit(Edit::WholeClips(clips.into_iter().map(whole).collect()));
     }
 
     fn key_up(&mut self, slot: usize) {

@@ -8,7 +8,7 @@ use morec_ops::{CutMethod, CutSettings};
 use super::lines::ShownCommand;
 use crate::jobs::JobOutcome;
 use crate::jobs::cut;
-use crate::state::{CutCommand, Drag, Grip, PlayCommand, State, TimelineCommand};
+use crate::state::{CutCommand, Drag, Grip, Panel, PlayCommand, State, TimelineCommand};
 use crate::store::{Edit, Snapshot};
 use crate::stretch::Stretch;
 
@@ -104,7 +104,9 @@ impl State {
             TimelineCommand::Split => self.split(),
             TimelineCommand::Merge => self.merge(),
             TimelineCommand::Remove => {
-                if let Some(cut) = self.timeline.cut {
+                // A cut is seen on the timeline alone.
+                let cut = self.timeline.cut.filter(|_| self.panel == Panel::Label);
+                if let Some(cut) = cut {
                     self.apply_cuts(CutCommand::Remove(cut));
                     return;
                 }

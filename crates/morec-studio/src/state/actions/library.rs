@@ -3,6 +3,7 @@
 use morec_db::ClipId;
 
 use crate::state::{LibraryCommand, State};
+use crate::store::Edit;
 
 impl State {
     pub(in crate::state) fn apply_library(&mut self, command: LibraryCommand) {
@@ -21,6 +22,7 @@ impl State {
                     (true, None) => selected.push(clip),
                     (false, _) => self.open_clip(clip, None),
                 }
+                self.library.chosen = !self.library.selected.is_empty();
             }
             LibraryCommand::SelectTo(clip) => self.select_to(clip),
             LibraryCommand::Open(clip) => self.open_clip(clip, None),
@@ -28,6 +30,7 @@ impl State {
                 self.open_clip(of.clip, Some((of.span.start_secs, of.span.stop_secs)));
             }
             LibraryCommand::SelectAll => self.select_all(),
+            LibraryCommand::Background => self.background(),
             LibraryCommand::Pattern(text) => self.library.pattern = Some(text),
             LibraryCommand::SelectStretch(of) => {
                 self.selecting = Some(of);
@@ -47,10 +50,24 @@ impl State {
         let clips = &store.snapshot.clips;
         let shown = self.library.shown().iter().filter_map(|&at| clips.get(at));
         self.library.selected = shown.map(|c| c.id).collect();
+        self.library.chosen = true;
         self.say(format!(
             "{} selected",
             crate::format::count(self.library.selected.len(), "clip")
         ));
+    }
+
+    /// Uses the clips that somebody has selected as background, or no longer if all of them are.
+    fn background(&mut self) {
+        let Some(store) = &self.store else { return };
+        let selected = self.library.chosen().iter();
+        let clips: Vec<_> = selected.filter_map(|id| store.snapshot.clip(*id)).collect();
+        if clips.is_empty() {
+            return self.say("select clips in the list first: B is for those");
+        }
+        let on = !clips.iter().all(|clip| clip.is_background());
+        let clips = clips.iter().map(|clip| clip.id).collect();
+        self.edit(Edit::Background { clips, on });
     }
 
     fn select_to(&mut self, clip: ClipId) {
@@ -61,8 +78,11 @@ impl State {
         let place = |id: ClipId| shown.iter().position(|s| *s == id);
         let from = self.library.selected.first().and_then(|id| place(*id));
         let (Some(from), Some(to)) = (from, place(clip)) else {
-            return self.open_clip(clip, None);
+            self.open_clip(clip, None);
+            self.library.chosen = true;
+            return;
         };
+        self.library.chosen = true;
         // The first stays the first, from which another click with Shift begins.
         self.library.selected = match from <= to {
             true => shown[from..=to].to_vec(),

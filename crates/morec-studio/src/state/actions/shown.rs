@@ -14,6 +14,7 @@ impl State {
     /// Shows a clip, and a stretch of it in a loop if one is named, once it is decoded.
     pub(in crate::state) fn open_clip(&mut self, clip: ClipId, stretch: Option<(f64, f64)>) {
         self.library.selected = vec![clip];
+        self.library.chosen = false;
         if let Some(motion) = self.motions.get(clip).cloned() {
             self.show_motion(motion, stretch);
             return;
