@@ -122,10 +122,11 @@ fn print_report(report: &TrainingReport, bytes: usize, material: &ClipMaterial, 
 
 fn print_templates(report: &TrainingReport) {
     if let Some(threshold) = report.threshold {
-        println!(
-            "threshold: {threshold:.3}, set by {}",
-            report.threshold_from
-        );
+        let what = match report.judges_whole {
+            true => "least score",
+            false => "threshold",
+        };
+        println!("{what}: {threshold:.3}, set by {}", report.threshold_from);
     }
     let points: Vec<String> = report
         .operating
@@ -133,7 +134,7 @@ fn print_templates(report: &TrainingReport) {
         .map(|p| format!("{} → {:.2}", p.alarms_per_minute, p.threshold))
         .collect();
     if !points.is_empty() {
-        let of = if report.verified {
+        let of = if report.verified || report.judges_whole {
             "score"
         } else {
             "threshold"

@@ -271,10 +271,12 @@ fn trained(ui: &mut Ui, state: &State, out: Out) {
 fn said(report: &TrainingReport) -> Vec<String> {
     let mut lines = Vec::new();
     if let Some(threshold) = report.threshold {
-        lines.push(format!(
-            "Threshold {threshold:.2}, set by {}",
-            report.threshold_from
-        ));
+        let what = match report.judges_whole {
+            true => "Least score",
+            false => "Threshold",
+        };
+        let from = &report.threshold_from;
+        lines.push(format!("{what} {threshold:.2}, set by {from}"));
     }
     let secs = report.background_secs.iter();
     let secs: Vec<String> = secs.map(|(of, secs)| format!("{of} {secs:.0} s")).collect();

@@ -20,6 +20,7 @@ use crate::features::{RowLayout, Rows, all_bones_of_clip, rows_of_clip};
 use crate::labels::Mark;
 use crate::live::{Detection, Model};
 use crate::roles::RoleMap;
+use crate::second_look::{BodyTrack, Comparison, Judged, SecondLook, grown_of, segment_of};
 use crate::templates::{
     Activities, Nearest, OperatingPoint, PerformerKind, PerformerLevel, StrangerGate,
     TemplateModel, Trace,
@@ -139,6 +140,9 @@ impl<'a> ComparedStream<'a> {
                 None,
             );
         }
+        if let Some(look) = &self.model.look {
+            return self.as_a_whole(look, sought, (class, &ticks));
+        }
         self.open = self.open_gate(sought);
         let Some((_, any)) = self.best(&ticks, |t| self.trace.nearest(t, class)) else {
             return (Reason::NoMatch, None);
@@ -164,6 +168,57 @@ impl<'a> ComparedStream<'a> {
                 .unwrap_or_else(|| self.neighbour(sought, class)),
         };
         (reason, None)
+    }
+
+    /// What kept a motion from being reported that is judged as a whole: its own extent is judged.
+    fn as_a_whole(
+        &self,
+        look: &SecondLook,
+        sought: &Mark<&str>,
+        (class, ticks): (ClassId, &Range<usize>),
+    ) -> (Reason, Option<f64>) {
+        let Some((_, any)) = self.best(ticks, |t| self.trace.nearest(t, class)) else {
+            return (Reason::NoMatch, None);
+        };
+        let mut body = BodyTrack::new(self.model.bones, &self.model.features, self.rows.len());
+        self.rows.iter().for_each(|row| body.push(row));
+        let mut comparison = Comparison::new(look);
+        let columns = BodyTrack::columns(self.model.bones);
+        let extents = match look.flows {
+            true => vec![ticks.clone()],
+            false => grown_of(&body, ticks).to_vec(),
+        };
+        let judged = extents.into_iter().map(|extent| {
+            let segment = segment_of(&body, extent, &columns);
+            comparison.judge(segment.values())
+        });
+        let Some(judged) = judged.max_by(|a, b| a.score.total_cmp(&b.score)) else {
+            return (Reason::NoMatch, None);
+        };
+        let Judged {
+            class: named,
+            score,
+        } = judged;
+        if score <= look.bound || named != class {
+            let name = || self.model.classes[named.index()].name.clone();
+            let reason = Reason::Whole {
+                score,
+                bound: look.bound,
+                other: (named != class).then(name),
+            };
+            let enough = look.operating.iter().filter(|p| score > p.threshold);
+            let rate = enough.map(|p| p.alarms_per_minute).min_by(f64::total_cmp);
+            return (reason, rate.filter(|_| named == class));
+        }
+        let near = any.comparison;
+        if near.distance < look.reach && !near.moves(self.model.decode.rest_gate) {
+            let reason = Reason::Still {
+                share: near.rest_share,
+                most: self.model.decode.rest_gate,
+            };
+            return (reason, None);
+        }
+        (self.neighbour(sought, class), None)
     }
 
     /// What kept an activity from being recognised in `ticks`.

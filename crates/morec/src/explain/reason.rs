@@ -39,6 +39,15 @@ pub enum Reason {
         /// Distances below this are reported of such a performer.
         threshold: f32,
     },
+    /// As a whole it is not like the samples enough, or more like another class.
+    Whole {
+        /// Its score, by the better of its extents.
+        score: f32,
+        /// Scores above this are reported.
+        bound: f32,
+        /// The class that it is nearest to, if that is another one.
+        other: Option<String>,
+    },
     /// Background motion is nearer.
     Background {
         /// Distance of the class.
@@ -112,6 +121,8 @@ impl Reason {
             Self::Far { .. } => "not near enough",
             Self::Still { .. } => "hardly moves",
             Self::Unlike { .. } => "unlike the teacher",
+            Self::Whole { other: Some(_), .. } => "more like another class",
+            Self::Whole { other: None, .. } => "not like the samples enough",
             Self::Background { .. } => "background is nearer",
             Self::OtherClass { .. } => "another class is as near or nearer",
             Self::GoesOnUnlike { .. } => "goes on unlike the samples",
@@ -161,6 +172,18 @@ impl fmt::Display for Reason {
                 "performed unlike the samples: distance {distance:.2}, {threshold:.2} counts once four recognised motions show a \
                  performer unlike the teacher, or with --performer anyone"
             ),
+            Self::Whole {
+                score,
+                bound,
+                other,
+            } => {
+                if let Some(other) = other {
+                    write!(f, "as a whole more like {other}: ")?;
+                } else {
+                    f.write_str("as a whole not like the samples enough: ")?;
+                }
+                write!(f, "score {score:.2}, reported above {bound:.2}")
+            }
             Self::Background { distance, negative } => write!(
                 f,
                 "background motion is nearer: {negative:.2} against {distance:.2}"

@@ -123,32 +123,51 @@ fn another_class_is_far_in_the_bones_that_move() {
     }
 }
 
+/// The templates of an index that `change` was done to.
+fn changed(takes: &[SyntheticTake], change: impl FnOnce(&mut TemplateModel)) -> Model {
+    let Model::Templates(model) = trained(takes, |_| {}) else {
+        unreachable!("templates were trained")
+    };
+    let mut model = (*model).clone();
+    change(&mut model);
+    model.into()
+}
+
 #[test]
 fn a_motion_that_hardly_moves_is_gated() {
     let takes = takes();
-    let model = trained(&takes[1..], |options| {
-        options.params.decode.rest_gate = 1e-4;
-        options.params.stranger.rest_gate = 1e-4;
-    });
+    let model = changed(&takes[1..], |model| model.decode.rest_gate = 1e-4);
     let miss = reason(&model, &takes[0], None);
     assert!(matches!(miss.reason, Reason::Still { .. }), "{miss:?}");
 }
 
 #[test]
-fn a_performer_unlike_the_teacher_is_named_as_such() {
+fn a_motion_that_is_not_like_the_samples_as_a_whole_is_named_as_such() {
     let takes = takes();
-    let Model::Templates(model) = trained(&takes[1..], |options| {
-        options.params.decode.rest_gate = 1e-4;
-        options.params.stranger.rest_gate = 0.9;
-    }) else {
-        unreachable!("templates were trained")
+    let strict = |model: &mut TemplateModel| {
+        let look = model.look.as_mut().unwrap();
+        look.bound = 99.0;
+        let point = |alarms_per_minute, threshold| OperatingPoint {
+            alarms_per_minute,
+            threshold,
+        };
+        look.operating = vec![point(0.1, 99.0), point(1.0, 0.1)];
     };
-    let miss = reason(&Model::Templates(model.clone()), &takes[0], None);
-    assert!(matches!(miss.reason, Reason::Unlike { .. }), "{miss:?}");
-    // Where anyone is expected, nothing is missed for that.
-    let open = model.with_performer(PerformerKind::Anyone).unwrap();
-    let miss = reason(&open.into(), &takes[0], None);
-    assert!(!matches!(miss.reason, Reason::Unlike { .. }), "{miss:?}");
+    let miss = reason(&changed(&takes[1..], strict), &takes[0], None);
+    let Reason::Whole {
+        score,
+        bound,
+        other,
+    } = &miss.reason
+    else {
+        panic!("{miss:?}")
+    };
+    assert!(
+        score < bound && *bound == 99.0 && other.is_none(),
+        "{miss:?}"
+    );
+    // At the rate of the second point it would have been reported.
+    assert_eq!(miss.sensitivity, Some(1.0));
 }
 
 #[test]

@@ -138,7 +138,9 @@ fn look_tensors(look: &SecondLook) -> Vec<(String, Tensor)> {
     ];
     let step = step.map(|step| ("step", Tensor::of_f32(step)));
     let tables = tables.into_iter().chain(step);
-    tables.map(|(name, table)| (format!("look.{name}"), table)).collect()
+    tables
+        .map(|(name, table)| (format!("look.{name}"), table))
+        .collect()
 }
 
 /// All classes' exemplars, one class after the other.

@@ -34,8 +34,18 @@ pub(super) const PACE_AHEAD: i64 = 7;
 
 /// A Gaussian of two ticks.
 const PACE_WEIGHTS: [f32; 13] = [
-    0.002_218_196, 0.008_773_135, 0.027_023_158, 0.064_825_185, 0.121_109_39, 0.176_213_12,
-    0.199_675_63, 0.176_213_12, 0.121_109_39, 0.064_825_185, 0.027_023_158, 0.008_773_135,
+    0.002_218_196,
+    0.008_773_135,
+    0.027_023_158,
+    0.064_825_185,
+    0.121_109_39,
+    0.176_213_12,
+    0.199_675_63,
+    0.176_213_12,
+    0.121_109_39,
+    0.064_825_185,
+    0.027_023_158,
+    0.008_773_135,
     0.002_218_196,
 ];
 
@@ -126,6 +136,17 @@ impl BodyTrack {
             pushed: 0,
             yaw_rad: 0.0,
         }
+    }
+
+    /// A stream of which the pace alone is known.
+    #[cfg(test)]
+    pub(super) fn of_pace(pace: &[f32]) -> Self {
+        let mut track = Self::new(BoneSet::BODY, &FeatureParams::default(), pace.len());
+        for (tick, pace) in track.ring.iter_mut().zip(pace) {
+            tick.pace = *pace;
+        }
+        track.pushed = pace.len() as i64;
+        track
     }
 
     /// Columns of the rows that `bones` place: those of elbows and hands, knees and feet whose bones are there, and the root's.
@@ -232,7 +253,12 @@ impl BodyTrack {
             let hip = scaled(lateral, sign * HALF_HIPS);
             let knee = plus(hip, bone(THIGHS[side], down), HALF_LEG);
             let foot = plus(knee, bone(SHINS[side], down), HALF_LEG);
-            let of = [scaled(hand, 1.0 / ARM), scaled(elbow, 1.0 / ARM), foot, knee];
+            let of = [
+                scaled(hand, 1.0 / ARM),
+                scaled(elbow, 1.0 / ARM),
+                foot,
+                knee,
+            ];
             for (kind, place) in of.into_iter().enumerate() {
                 points[2 * kind + side] = place;
             }
@@ -286,7 +312,9 @@ impl BodyTrack {
     fn smoothed_speed(&self, tick: i64) -> f32 {
         let reach = (PACE_WEIGHTS.len() / 2) as i64;
         let terms = (-reach..=reach).zip(PACE_WEIGHTS);
-        terms.fold(0.0, |sum, (k, weight)| sum + weight * self.held(tick + k).speed)
+        terms.fold(0.0, |sum, (k, weight)| {
+            sum + weight * self.held(tick + k).speed
+        })
     }
 
     /// Places of the points at `tick`, in the trunk frame.
@@ -375,7 +403,9 @@ fn fastest(a: &[[f64; 3]; PACED], b: &[[f64; 3]; PACED], secs: f64) -> f32 {
         apart.fold(0.0, |sum, d| sum + d * d)
     });
     squares.sort_unstable_by(|x, y| y.total_cmp(x));
-    let sum = squares[..3].iter().fold(0.0, |sum, square| sum + square.sqrt());
+    let sum = squares[..3]
+        .iter()
+        .fold(0.0, |sum, square| sum + square.sqrt());
     (sum / 3.0 / secs) as f32
 }
 

@@ -89,7 +89,11 @@ impl Comparison {
     }
 
     /// The same among the samples that count; `None` if none does.
-    pub fn judge_among(&mut self, segment: &[f32], counts: impl Fn(usize) -> bool) -> Option<Judged> {
+    pub fn judge_among(
+        &mut self,
+        segment: &[f32],
+        counts: impl Fn(usize) -> bool,
+    ) -> Option<Judged> {
         let spread = self.map(segment);
         let mut best: Option<(f32, ClassId)> = None;
         for sample in (0..self.classes.len()).filter(|sample| counts(*sample)) {
@@ -138,7 +142,11 @@ impl Comparison {
     fn map(&mut self, segment: &[f32]) -> f32 {
         let dim = self.metric.dim();
         self.metric.apply_each(segment, &mut self.mapped);
-        for (row, out) in self.mapped.chunks_exact(dim).zip(self.segment.chunks_exact_mut(PADDED)) {
+        for (row, out) in self
+            .mapped
+            .chunks_exact(dim)
+            .zip(self.segment.chunks_exact_mut(PADDED))
+        {
             out[..dim].copy_from_slice(row);
         }
         self.noise = noise_of(&self.segment);
@@ -194,7 +202,11 @@ impl Segments {
         }
         let spreads = values.chunks_exact(SEGMENT).map(spread_of).collect();
         let noises = values.chunks_exact(SEGMENT).map(noise_of).collect();
-        Self { values, spreads, noises }
+        Self {
+            values,
+            spreads,
+            noises,
+        }
     }
 }
 
@@ -269,4 +281,17 @@ fn squared(a: &[f32], b: &[f32]) -> f32 {
     }
     let [a, b, c, d, e, f, g, h] = sums;
     ((a + e) + (c + g)) + ((b + f) + (d + h))
+}
+
+/// The cost of aligning rows of one value each.
+#[cfg(test)]
+pub(super) fn warped_rows(a: &[f64], b: &[f64]) -> f32 {
+    let spread = |values: &[f64]| {
+        let mut rows = vec![0.0f32; SEGMENT];
+        for (row, value) in rows.chunks_exact_mut(PADDED).zip(values) {
+            row[0] = *value as f32;
+        }
+        rows
+    };
+    warped(&spread(a), &spread(b), f32::MAX)
 }

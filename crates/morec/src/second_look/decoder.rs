@@ -124,7 +124,10 @@ impl Clone for LookDecoder {
     }
 }
 
-const NOWHERE: Extent = Extent { start: -1, stop: -1 };
+const NOWHERE: Extent = Extent {
+    start: -1,
+    stop: -1,
+};
 const NO_LOOK: Look = Look {
     extent: NOWHERE,
     judged: Judged {
@@ -174,7 +177,9 @@ impl LookDecoder {
     /// Forgets the stream so far, but for the performer and what was [`found`](Self::found).
     pub fn reset(&mut self) {
         self.body.reset();
-        self.near.iter_mut().for_each(|near| near.fill(ClassDistance::NONE));
+        self.near
+            .iter_mut()
+            .for_each(|near| near.fill(ClassDistance::NONE));
         self.open.clear();
         self.waiting.clear();
         (self.judgements, self.reports) = (0, 0);
@@ -193,7 +198,8 @@ impl LookDecoder {
         self.body.push(row);
         for class in 0..near.len() {
             let [before, last] = [0, 1].map(|k| self.near[k][class]);
-            let is_nearest = last.distance <= before.distance && last.distance <= near[class].distance;
+            let is_nearest =
+                last.distance <= before.distance && last.distance <= near[class].distance;
             if is_nearest {
                 self.open_match(last, self.body.ticks() - 2);
             }
@@ -245,7 +251,8 @@ impl LookDecoder {
                 self.open.swap_remove(k);
                 continue;
             }
-            if !is_judged && let Grown::To(extent) = grow(&self.body, matched, SHORT, known, ended) {
+            if !is_judged && let Grown::To(extent) = grow(&self.body, matched, SHORT, known, ended)
+            {
                 self.judge(extent);
                 self.open[k].is_judged = true;
             }
@@ -329,13 +336,23 @@ impl LookDecoder {
             let is_due = |look: &Look| {
                 ended || (look.extent.stop + HOLD_TICKS <= now && !self.goes_on(look))
             };
-            let due = self.waiting.iter().enumerate().filter(|(_, look)| is_due(look));
+            let due = self
+                .waiting
+                .iter()
+                .enumerate()
+                .filter(|(_, look)| is_due(look));
             let first = due.min_by_key(|(_, look)| (look.extent.stop, look.extent.start));
             let Some((place, _)) = first else {
                 return;
             };
             let Look { extent, judged } = self.waiting.swap_remove(place);
-            let last = self.reported.iter().map(|r| r.stop).max().unwrap_or(0).max(0);
+            let last = self
+                .reported
+                .iter()
+                .map(|r| r.stop)
+                .max()
+                .unwrap_or(0)
+                .max(0);
             self.reported[self.reports % REMEMBERED] = extent;
             self.reports += 1;
             if extent.stop <= last || self.found.len() == MOST_OPEN {
@@ -347,7 +364,9 @@ impl LookDecoder {
                 class: judged.class,
                 start: extent.start.max(last),
                 stop: extent.stop,
-                score: self.calibration.map_or(margin, |c| c.probability(margin, 0.0, 0.0)),
+                score: self
+                    .calibration
+                    .map_or(margin, |c| c.probability(margin, 0.0, 0.0)),
                 separation: 0.0,
                 rest_share: 0.0,
                 repetitions: None,

@@ -10,14 +10,16 @@ mod comparison;
 mod decoder;
 mod model;
 mod segment;
+#[cfg(test)]
+mod tests;
 
 pub use body::{BodyTrack, POINTS};
 pub use comparison::{Comparison, Judged};
 pub use decoder::LookDecoder;
 pub use model::SecondLook;
-pub use segment::{Extent, SEGMENT_ROWS, sample_span, segment_of};
 #[cfg(feature = "train")]
 pub(crate) use segment::grown_of;
+pub use segment::{Extent, SEGMENT_ROWS, sample_span, segment_of};
 
 /// Values of a row of the second look over a whole body: [`body`] names the columns.
 pub const LOOK_COLUMNS: usize = 73;

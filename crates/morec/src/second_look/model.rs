@@ -2,7 +2,9 @@
 
 use crate::classes::ClassId;
 use crate::features::{BoneSet, Rows};
-use crate::templates::{OperatingPoint, PackedSymmetric, PerformerKind, snapped, steps, threshold_at};
+use crate::templates::{
+    OperatingPoint, PackedSymmetric, PerformerKind, snapped, steps, threshold_at,
+};
 
 use super::body::BodyTrack;
 use super::comparison::Comparison;
@@ -72,13 +74,17 @@ impl SecondLook {
             ));
         }
         if !self.atlas.len().is_multiple_of(SEGMENT_ROWS) {
-            return Err(format!("{} rows of other motion, expected a multiple of {SEGMENT_ROWS}", self.atlas.len()));
+            return Err(format!(
+                "{} rows of other motion, expected a multiple of {SEGMENT_ROWS}",
+                self.atlas.len()
+            ));
         }
         if let Some(class) = self.classes.iter().find(|class| class.index() >= classes) {
             return Err(format!("a segment of class {}, of {classes}", class.0));
         }
         let numbers = [self.scale, self.bound, self.reach, self.own_score];
-        let sensible = numbers.iter().all(|v| v.is_finite()) && self.scale >= 0.0 && self.reach > 0.0;
+        let sensible =
+            numbers.iter().all(|v| v.is_finite()) && self.scale >= 0.0 && self.reach > 0.0;
         let has_score = self.scale > 0.0 || !self.atlas.is_empty();
         match sensible && has_score {
             true => Ok(()),
@@ -91,7 +97,10 @@ impl SecondLook {
     /// With the bound for this rate of false alarms a minute; `None` if no rates are noted.
     pub fn with_sensitivity(&self, alarms_per_minute: f64) -> Option<Self> {
         let bound = threshold_at(&self.operating, alarms_per_minute)?;
-        Some(Self { bound, ..self.clone() })
+        Some(Self {
+            bound,
+            ..self.clone()
+        })
     }
 
     /// With every row moved to the nearest step of a byte, column by column: what a file holds, to the bit.

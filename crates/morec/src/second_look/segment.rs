@@ -73,7 +73,10 @@ pub fn grow(body: &BodyTrack, matched: Extent, growth: Growth, known: i64, ended
         mut stop,
     } = matched;
     let last = if ended { body.ticks() } else { known };
-    while start > body.first() && matched.start - start < growth.ticks && body.pace(start - 1) > level {
+    while start > body.first()
+        && matched.start - start < growth.ticks
+        && body.pace(start - 1) > level
+    {
         start -= 1;
     }
     loop {
@@ -126,7 +129,9 @@ pub fn write_segment(body: &BodyTrack, extent: Extent, out: &mut [f32]) {
         for ((out, a), b) in out.iter_mut().zip(&row).zip(&next) {
             *out = a * (1.0 - share) + b * share;
         }
-        out.iter_mut().zip(&mean).for_each(|(out, mean)| *out -= mean);
+        out.iter_mut()
+            .zip(&mean)
+            .for_each(|(out, mean)| *out -= mean);
     }
 }
 
@@ -180,8 +185,10 @@ pub fn grown_of(body: &BodyTrack, ticks: &Range<usize>) -> [Range<usize>; 2] {
         start: ticks.start as i64,
         stop: ticks.end as i64,
     };
-    [SHORT, LONG].map(|growth| match grow(body, matched, growth, body.ticks(), true) {
-        Grown::To(extent) => extent.start as usize..extent.stop as usize,
-        Grown::GoesOn => ticks.clone(),
-    })
+    [SHORT, LONG].map(
+        |growth| match grow(body, matched, growth, body.ticks(), true) {
+            Grown::To(extent) => extent.start as usize..extent.stop as usize,
+            Grown::GoesOn => ticks.clone(),
+        },
+    )
 }

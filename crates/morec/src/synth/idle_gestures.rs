@@ -60,8 +60,13 @@ pub fn scratch(a: &mut Actor) {
     let (to, rub, back, hz) = (a.secs(0.7), a.rng.range(0.5, 1.8), a.secs(0.7), a.hz(3.0));
     let (at, axis, t) = (WHERE[a.rng.below(WHERE.len())], a.rng.below(3), a.now_secs);
     a.hand(side, t, to, at);
-    a.timeline
-        .wave(HAND[side.index()] + axis, t + 0.9 * to, rub, (hz, 0.0), 0.05);
+    a.timeline.wave(
+        HAND[side.index()] + axis,
+        t + 0.9 * to,
+        rub,
+        (hz, 0.0),
+        0.05,
+    );
     a.rest_hand(side, t + to + rub, back);
     a.now_secs = t + to + rub + back;
 }

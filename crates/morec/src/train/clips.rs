@@ -7,9 +7,9 @@ use crate::progress::Progress;
 use crate::templates::TemplateModel;
 
 use super::error::TrainError;
+use super::everyday::everyday_clips;
 use super::from_clips::{LabelSet, TrainClip, background_streams, build_train_set};
 use super::mirror::add_mirrored;
-use super::everyday::everyday_clips;
 use super::options::{ENOUGH_BACKGROUND_SECS, Everyday, TrainOptions};
 use super::report::TrainingReport;
 use super::set::{StreamKind, TrainStream};

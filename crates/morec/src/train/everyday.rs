@@ -51,7 +51,10 @@ fn synthetic(clip: Clip) -> TrainClip {
 
 /// A clip that is built in; all of them can be read, as a test sees.
 fn real((name, bytes): &(&str, &[u8])) -> Option<TrainClip> {
-    let clip = mclip::read(bytes, name, &Limits::default()).ok()?.clips.pop()?;
+    let clip = mclip::read(bytes, name, &Limits::default())
+        .ok()?
+        .clips
+        .pop()?;
     Some(TrainClip {
         source: StreamKind::Everyday,
         ..Take::new(clip).ok()?.into()

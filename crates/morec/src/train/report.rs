@@ -12,6 +12,7 @@ use super::from_clips::Prepared;
 use super::kind::ClassKind;
 use super::notes::class_notes;
 use super::params::TrainParams;
+use super::second_look::OwnSample;
 use super::set::{StreamKind, TrainSample, TrainStream};
 use super::templates::TrainedTemplates;
 use super::thesis::SvrdmReport;
@@ -123,6 +124,8 @@ pub struct TrainingReport {
     pub operating: Vec<OperatingPoint>,
     /// Hard negatives found, by the same sources.
     pub negatives: BTreeMap<String, usize>,
+    /// True if the whole motion around a match is judged: thresholds are then scores that must be exceeded.
+    pub judges_whole: bool,
     /// True if candidates are verified; it takes clips named as background to learn that.
     pub verified: bool,
     /// Notes for the user.
@@ -211,16 +214,24 @@ impl TrainingReport {
                     .to_owned(),
             );
         }
+        notes.extend(own_note(&trained.own, &classes));
+        notes.extend(one_teacher_note(&classes));
+        let look = trained.model.look.as_ref();
         Self {
             classes,
             bones: prepared.bones.into(),
             background_secs,
-            threshold: Some(trained.model.threshold),
-            threshold_from: trained.threshold_from.clone(),
-            operating: match &trained.model.verifier {
-                Some(verifier) => verifier.operating.clone(),
-                None => trained.model.operating.clone(),
+            threshold: Some(look.map_or(trained.model.threshold, |look| look.bound)),
+            threshold_from: match look {
+                Some(_) => "the scores that background motion reaches".to_owned(),
+                None => trained.threshold_from.clone(),
             },
+            operating: match (&trained.model.verifier, look) {
+                (Some(verifier), _) => verifier.operating.clone(),
+                (None, Some(look)) => look.operating.clone(),
+                (None, None) => trained.model.operating.clone(),
+            },
+            judges_whole: look.is_some(),
             negatives,
             verified: trained.model.verifier.is_some(),
             notes,
@@ -238,6 +249,55 @@ fn quiet_note(sample: &TrainSample, prepared: &Prepared, tick_hz: f64) -> String
         sample.ticks.start as f64 / tick_hz,
         sample.ticks.end as f64 / tick_hz,
     )
+}
+
+/// What taught samples would be named if only the others were taught, and which classes are taken for each other.
+fn own_note(own: &[OwnSample], classes: &[ClassInfo]) -> Option<String> {
+    let name = |class: ClassId| classes[class.index()].name.as_str();
+    // A class of one sample has no other to be recognised by.
+    let repeated = |sample: &&OwnSample| classes[sample.class.index()].samples > 1;
+    let judged: Vec<&OwnSample> = own.iter().filter(repeated).collect();
+    if judged.is_empty() {
+        return None;
+    }
+    let right = judged.iter().filter(|s| s.class == s.named).count();
+    let mut taken = BTreeMap::<(&str, &str), usize>::new();
+    for sample in judged.iter().filter(|s| s.class != s.named) {
+        *taken
+            .entry((name(sample.class), name(sample.named)))
+            .or_default() += 1;
+    }
+    let taken: Vec<String> = taken
+        .iter()
+        .map(|((class, other), count)| format!("{class} for {other} ({count})"))
+        .collect();
+    let mistakes = match taken.is_empty() {
+        true => String::new(),
+        false => format!(
+            "; taken for another class: {}. Teach more samples of these, or make one class of two that are alike",
+            taken.join(", ")
+        ),
+    };
+    Some(format!(
+        "each sample compared with the others: {right} of {} are named right{mistakes}",
+        judged.len()
+    ))
+}
+
+/// Names the classes that one person taught.
+fn one_teacher_note(classes: &[ClassInfo]) -> Option<String> {
+    let alone: Vec<&str> = classes
+        .iter()
+        .filter(|class| class.people == 1)
+        .map(|class| class.name.as_str())
+        .collect();
+    match alone.len() {
+        0 => None,
+        n if n == classes.len() => Some(
+            "one person taught all classes: other people are recognised less often than by samples of several people".to_owned(),
+        ),
+        _ => Some(format!("taught by one person alone: {}", alone.join(", "))),
+    }
 }
 
 /// Note about two classes that keep each other from being reported.

@@ -82,7 +82,8 @@ pub fn learn(
     let total = covariance(first.iter().map(|s| &s.rows), dim);
     let all = || {
         let places = segments.iter().enumerate();
-        places.flat_map(|(place, (sample, rows))| rows.iter().map(move |r| (place, sample.class, r)))
+        places
+            .flat_map(|(place, (sample, rows))| rows.iter().map(move |r| (place, sample.class, r)))
     };
     let mut distinct: Vec<ClassId> = samples.iter().map(|s| s.class).collect();
     distinct.sort_unstable();
@@ -159,10 +160,16 @@ impl Tracks<'_> {
 
     /// Whether the samples are parts of a flow, and the segments of each: the motion within its label, and where motions are apart
     /// its growths too, as a stream's are judged.
-    fn of_samples<'s>(&self, samples: &'s [TrainSample]) -> (bool, Vec<(&'s TrainSample, Vec<Rows>)>) {
+    fn of_samples<'s>(
+        &self,
+        samples: &'s [TrainSample],
+    ) -> (bool, Vec<(&'s TrainSample, Vec<Rows>)>) {
         let mut by_stream = BTreeMap::<usize, Vec<(usize, &TrainSample)>>::new();
         for (place, sample) in samples.iter().enumerate() {
-            by_stream.entry(sample.stream).or_default().push((place, sample));
+            by_stream
+                .entry(sample.stream)
+                .or_default()
+                .push((place, sample));
         }
         let of_stream = |(stream, samples): (&usize, &Vec<(usize, &'s TrainSample)>)| {
             let track = self.of_stream(*stream);
@@ -175,10 +182,13 @@ impl Tracks<'_> {
                 let [short, long] = grown;
                 let mut spans = vec![start + span.start..start + span.end, short, long];
                 spans.dedup();
-                let rows = spans.into_iter().map(|ticks| segment_of(&track, ticks, &self.columns));
+                let rows = spans
+                    .into_iter()
+                    .map(|ticks| segment_of(&track, ticks, &self.columns));
                 (share, rows.collect())
             };
-            let of_sample = |(place, sample): &(usize, &'s TrainSample)| (*place, *sample, spans(sample));
+            let of_sample =
+                |(place, sample): &(usize, &'s TrainSample)| (*place, *sample, spans(sample));
             samples.iter().map(of_sample).collect::<Vec<_>>()
         };
         let mut cut: Vec<(usize, &TrainSample, (f32, Vec<Rows>))> =
@@ -199,7 +209,8 @@ impl Tracks<'_> {
     /// Segments of everyday motion, drawn evenly from all that move; of what people really did.
     fn atlas(&self) -> Rows {
         let everyday = self.set.streams.iter().enumerate();
-        let everyday = everyday.filter(|(_, s)| s.source == StreamKind::Everyday && is_real(&s.name));
+        let everyday =
+            everyday.filter(|(_, s)| s.source == StreamKind::Everyday && is_real(&s.name));
         let everyday: Vec<usize> = everyday.map(|(place, _)| place).collect();
         let hz = self.params.features.tick_hz();
         let tracks: Vec<BodyTrack> = everyday.par_iter().map(|s| self.of_stream(*s)).collect();
@@ -221,7 +232,10 @@ impl Tracks<'_> {
         let rows = stretches
             .into_iter()
             .map(|(place, ticks)| segment_of(&tracks[place], ticks, &self.columns));
-        Rows::from_values(self.columns.len(), rows.flat_map(Rows::into_values).collect())
+        Rows::from_values(
+            self.columns.len(),
+            rows.flat_map(Rows::into_values).collect(),
+        )
     }
 }
 
@@ -277,7 +291,10 @@ impl Scores {
         set: &TrainSet,
         params: &TrainParams,
     ) -> Result<Self, TemplateModelError> {
-        let background = set.streams.iter().filter(|s| s.source != StreamKind::Labelled);
+        let background = set
+            .streams
+            .iter()
+            .filter(|s| s.source != StreamKind::Labelled);
         let background: Vec<&Rows> = background.map(|s| &s.rows).collect();
         // Margins over a bound of 0, for anyone, are scores.
         let look = model.look.as_ref().map(|look| SecondLook {
@@ -300,7 +317,9 @@ impl Scores {
                 margins.extend(engine.push(row).map(|found| found.score));
             }
             margins.extend(engine.finish().map(|found| found.score));
-            margins.into_iter().map(|margin| -(portable::ln(1.0 - margin) as f32))
+            margins
+                .into_iter()
+                .map(|margin| -(portable::ln(1.0 - margin) as f32))
         };
         let mut scores: Vec<f32> = background.par_iter().flat_map_iter(scores).collect();
         scores.sort_by(|a, b| b.total_cmp(a));

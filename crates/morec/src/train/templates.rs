@@ -108,7 +108,7 @@ pub fn train(
     let samples = samples.into_iter().filter(has_templates).collect();
     let (samples, quiet) = moving(samples, &metric, params);
     let mut samples = templates_of(samples, set.classes.len(), params.max_templates);
-    let look = second_look::learn(set, &samples, bones, params);
+    let taught = samples.clone();
     let params = &of_profile(params, bones, &samples, &metric);
     let step = TrainingContext {
         set,
@@ -121,7 +121,9 @@ pub fn train(
     let verified = verified_gate(&classes, &samples, params);
     let verified = verified.filter(|_| params.verify);
     let verifies = verified.is_some() && verifier::has_background(set, params);
-    let wide = wide_gate(set, &samples, params).filter(|_| !verifies);
+    // The second look judges a body, whoever it is.
+    let is_body = Profile::of(bones) == Profile::Body;
+    let wide = wide_gate(set, &samples, params).filter(|_| !verifies && !is_body);
     let gates = TrainGates { plain, wide };
     let gate_of_verifier = verified.filter(|_| verifies).map(MatchGate::plain);
     let most = step.largest_threshold();
@@ -161,13 +163,22 @@ pub fn train(
             verifier = step.verifier(&matches, &near_negatives, threshold);
         }
     }
-    let alike = match verifier {
-        None => step.alike(&samples, plain, threshold)?,
-        Some(_) => Vec::new(),
+    let learned = match verifier {
+        None => second_look::learn(set, &taught, bones, params),
+        Some(_) => None,
     };
-    let calibration = match verifier {
-        Some(_) => Calibration::VERIFIED,
-        None => Calibration::MEASURED,
+    let (look, own) = learned.map_or((None, Vec::new()), |(look, own)| (Some(look), own));
+    let alike = match verifier.is_none() && look.is_none() {
+        true => step.alike(&samples, plain, threshold)?,
+        false => Vec::new(),
+    };
+    if look.is_some() {
+        decode.rest_gate = CANDIDATE_REST_GATE;
+    }
+    let calibration = match (&verifier, &look) {
+        (Some(_), _) => Calibration::VERIFIED,
+        (None, Some(_)) => Calibration::OF_LOOKS,
+        (None, None) => Calibration::MEASURED,
     };
     let model = TemplateModel {
         features: params.features.clone(),
@@ -191,7 +202,7 @@ pub fn train(
         stranger: stranger.filter(|_| verifier.is_none()),
         verifier,
         held,
-        look: None,
+        look,
         activities,
         step: None,
     };
@@ -200,15 +211,7 @@ pub fn train(
     } else {
         model
     };
-    let mut own = Vec::new();
-    if let Some((look, judged)) = look.filter(|_| model.verifier.is_none()) {
-        model.decode.rest_gate = CANDIDATE_REST_GATE;
-        model.calibration = params.calibrate.then_some(Calibration::OF_LOOKS);
-        model.look = Some(look);
-        model.stranger = None;
-        own = judged;
-        second_look::set_bound(&mut model, set, params)?;
-    }
+    second_look::set_bound(&mut model, set, params)?;
     model.check()?;
     Ok(TrainedTemplates {
         model,

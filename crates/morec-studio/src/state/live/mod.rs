@@ -179,7 +179,7 @@ impl Live {
     pub fn knows_performers(&self) -> bool {
         // Asked in every frame of the window: `Model::with_performer` would copy the model.
         let model = self.index.as_ref().map(|index| &index.model);
-        matches!(model, Some(Model::Templates(model)) if model.stranger.is_some())
+        matches!(model, Some(Model::Templates(model)) if model.stranger.is_some() || model.look.is_some())
     }
 
     pub fn index(&self) -> Option<&Arc<MotionIndex>> {
