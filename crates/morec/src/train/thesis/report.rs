@@ -91,6 +91,7 @@ pub(super) fn of(
         threshold: None,
         threshold_from,
         negatives: BTreeMap::new(),
+        judges_whole: false,
         verified: false,
         notes,
         svrdm: Some(svrdm),
