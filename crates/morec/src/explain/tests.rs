@@ -197,7 +197,7 @@ fn a_larger_sensitivity_is_named_where_it_would_help() {
     };
     let mut strict = (*model).clone();
     strict.threshold = 1e-3;
-    strict.stranger = None;
+    strict.look = None;
     strict.operating = vec![
         OperatingPoint {
             alarms_per_minute: 0.1,
