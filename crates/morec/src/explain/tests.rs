@@ -92,7 +92,10 @@ fn a_class_the_index_does_not_know_is_named_as_such() {
 #[test]
 fn far_is_said_with_the_distance_and_the_bones() {
     let takes = takes();
-    let model = trained(&takes[1..], |options| options.params.max_threshold = 1e-3);
+    let model = changed(&takes[1..], |model| {
+        model.look = None;
+        model.threshold = 1e-3;
+    });
     let miss = reason(&model, &takes[0], None);
     let Reason::Far {
         distance,
@@ -108,7 +111,7 @@ fn far_is_said_with_the_distance_and_the_bones() {
 #[test]
 fn another_class_is_far_in_the_bones_that_move() {
     let takes = takes();
-    let model = trained(&takes[1..], |_| {});
+    let model = changed(&takes[1..], |model| model.look = None);
     // A wave looked for where somebody bows, or the other way round.
     let other = if takes[0].labels[0].class == "wave" {
         "bow"

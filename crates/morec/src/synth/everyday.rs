@@ -27,7 +27,7 @@ const ARMS_SECS: f64 = 36.0;
 const RATE_HZ: f64 = 60.0;
 
 /// Motions of the library, each by every person.
-pub const CONTENTS: [(&str, Perform); 20] = [
+pub const CONTENTS: [(&str, Perform); 16] = [
     ("stand", stand),
     ("walk", walk),
     ("run", run),
@@ -44,6 +44,10 @@ pub const CONTENTS: [(&str, Perform); 20] = [
     ("flail", flail),
     ("swing_arms", swing_arms),
     ("applaud", applaud),
+];
+
+/// Gestures of the library, each by every person.
+const GESTURES: [(&str, Perform); 4] = [
     ("greet", idle_gestures::greet),
     ("indicate", idle_gestures::point_out),
     ("scratch", idle_gestures::scratch),
@@ -58,8 +62,12 @@ pub fn everyday(seed: u64) -> Vec<Clip> {
         .collect();
     // Each clip draws from numbers of its own: it does not matter which thread makes it.
     let clip = |at: usize| {
-        let person = &people[at / CONTENTS.len()];
-        let (content, perform) = CONTENTS[at % CONTENTS.len()];
+        let (of, at_of) = match at.checked_sub(PEOPLE * CONTENTS.len()) {
+            None => (CONTENTS.as_slice(), at),
+            Some(at) => (GESTURES.as_slice(), at),
+        };
+        let person = &people[at_of / of.len()];
+        let (content, perform) = of[at_of % of.len()];
         let mut actor = Actor::new(person, Rng::for_part(seed, at as u64));
         actor.wait(0.4);
         let secs = match content {
@@ -75,7 +83,7 @@ pub fn everyday(seed: u64) -> Vec<Clip> {
         let name = format!("everyday_{content}_{}", person.name);
         film(actor, &name, RATE_HZ)
     };
-    let clips = 0..PEOPLE * CONTENTS.len();
+    let clips = 0..PEOPLE * (CONTENTS.len() + GESTURES.len());
     clips.into_par_iter().map(clip).collect()
 }
 

@@ -85,6 +85,9 @@ pub struct TrainParams {
     pub compact: bool,
     /// Bounds of the score above which a candidate is accepted.
     pub bar_range: (f64, f64),
+    /// True if whole motions are judged, of bodies: see [`SecondLook`](crate::second_look::SecondLook).
+    #[serde(default)]
+    pub judge_whole: bool,
     /// True if classes that go on are recognised as activities.
     #[serde(default)]
     pub activities: bool,
@@ -146,6 +149,7 @@ impl Default for TrainParams {
             calibrate: true,
             verify: true,
             compact: true,
+            judge_whole: true,
             activities: true,
             stranger: StrangerParams::default(),
             ..Self::reference()
@@ -210,6 +214,7 @@ impl TrainParams {
             verifier_ridge: 0.03,
             compact: false,
             bar_range: (0.1, 0.3),
+            judge_whole: false,
             activities: false,
             kinds: BTreeMap::new(),
         }

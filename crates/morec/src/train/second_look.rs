@@ -6,7 +6,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use crate::classes::ClassId;
-use crate::features::{BoneSet, Profile, Rows};
+use crate::features::{BoneSet, Rows};
 use crate::math::portable;
 use crate::rng::Rng;
 use crate::second_look::{BodyTrack, Comparison, SecondLook, grown_of, sample_span, segment_of};
@@ -52,15 +52,15 @@ pub struct OwnSample {
     pub score: f32,
 }
 
-/// Learns from the segments of `samples`, over the bones of a body. [`set_bound`] sets the bound. Beside it, samples judged among the
-/// others. `None` of other performers, and where there is nothing to scale the score by.
+/// Learns from the segments of `samples`, of a body. [`set_bound`] sets the bound. Beside it, samples judged among the
+/// others. `None` where there is nothing to scale the score by.
 pub fn learn(
     set: &TrainSet,
     samples: &[TrainSample],
     bones: BoneSet,
     params: &TrainParams,
 ) -> Option<(SecondLook, Vec<OwnSample>)> {
-    if Profile::of(bones) != Profile::Body || samples.is_empty() {
+    if samples.is_empty() {
         return None;
     }
     let tracks = Tracks {

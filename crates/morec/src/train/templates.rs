@@ -121,9 +121,9 @@ pub fn train(
     let verified = verified_gate(&classes, &samples, params);
     let verified = verified.filter(|_| params.verify);
     let verifies = verified.is_some() && verifier::has_background(set, params);
-    // The second look judges a body, whoever it is.
-    let is_body = Profile::of(bones) == Profile::Body;
-    let wide = wide_gate(set, &samples, params).filter(|_| !verifies && !is_body);
+    // The second look needs no gate of its own for strangers.
+    let judges_whole = params.judge_whole && Profile::of(bones) == Profile::Body;
+    let wide = wide_gate(set, &samples, params).filter(|_| !verifies && !judges_whole);
     let gates = TrainGates { plain, wide };
     let gate_of_verifier = verified.filter(|_| verifies).map(MatchGate::plain);
     let most = step.largest_threshold();
@@ -164,8 +164,8 @@ pub fn train(
         }
     }
     let learned = match verifier {
-        None => second_look::learn(set, &taught, bones, params),
-        Some(_) => None,
+        None if judges_whole => second_look::learn(set, &taught, bones, params),
+        _ => None,
     };
     let (look, own) = learned.map_or((None, Vec::new()), |(look, own)| (Some(look), own));
     let alike = match verifier.is_none() && look.is_none() {
