@@ -18,8 +18,10 @@ const REACH: f32 = 7.0;
 /// The picture, as large as there is room for.
 pub fn show(ui: &mut Ui, state: &State, thesis: &Thesis, branch: &Boundary, out: Out) {
     let c = Colours::now(ui);
-    // As much as is seen at once when it is scrolled to.
-    let tall = ui.clip_rect().height() - AXIS.y - LEGEND;
+    // As much as is seen at once; where little is left below, after scrolling.
+    let seen = ui.clip_rect();
+    let left = seen.bottom() - ui.cursor().top();
+    let tall = left.max(0.7 * seen.height()) - AXIS.y - LEGEND;
     let side = (ui.available_width() - AXIS.x - 8.0)
         .min(tall)
         .clamp(300.0, 620.0);

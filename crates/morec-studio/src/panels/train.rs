@@ -37,6 +37,14 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
         });
     CentralPanel::default().frame(padded()).show(ctx, |ui| {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            // An index of the method of 2009 comes after its tree, which says more.
+            let index = state.train.index.as_ref();
+            let of_2009 = index.is_some_and(|index| index.model.needs_rotations());
+            let first = of_2009 && state.train.thesis.is_some();
+            if first {
+                thesis::show(ui, state, out);
+                ui.add_space(14.0);
+            }
             let nothing = state.train.index.is_none() && state.train.judged.is_none();
             if nothing && state.train.thesis.is_none() {
                 widgets::nothing(
@@ -48,7 +56,9 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
                 trained(ui, state, out);
                 matrix::show(ui, state, out);
             }
-            thesis::show(ui, state, out);
+            if !first {
+                thesis::show(ui, state, out);
+            }
         });
     });
 }
