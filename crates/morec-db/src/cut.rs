@@ -1,10 +1,12 @@
 //! Cutting the clips of a database where their behaviour changes.
 
+use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 use morec::TimeSpan;
-use morec::features::FeatureParams;
+use morec::discover::{DiscoverError, DiscoverParams, discover};
+use morec::features::{BoneSet, FeatureParams, RowLayout, Rows};
 use morec::pivots::{PivotMap, PivotSet, PoseParams, pose_rows_of_clip};
 use morec::progress::Progress;
 use morec::segment::{
@@ -26,6 +28,8 @@ pub enum Cutter {
     /// Probabilistic principal components over the rotations of these pivots, as in the thesis of 2009 with its distance
     /// corrected.
     Ppca(PpcaParams, PivotSet),
+    /// Ends of repetitions of all clips together.
+    Repeats(DiscoverParams),
 }
 
 /// Cuts of a clip, and the stretches without motion.
@@ -65,6 +69,7 @@ impl Cutter {
         match self {
             Self::Kernel(_) => "kernel",
             Self::Ppca(..) => "ppca",
+            Self::Repeats(_) => "repeats",
         }
     }
 
@@ -91,6 +96,12 @@ impl Cutter {
                 let found = segment(&rows, poses.rate_hz, params).map_err(|e| invalid(&e))?;
                 Ok(found.cuts.iter().map(|cut| cut.secs).collect())
             }
+            Self::Repeats(params) => {
+                let one = std::slice::from_ref(rows);
+                Ok(repeats(one, params, &())?
+                    .remove(&rows.clip)
+                    .unwrap_or_default())
+            }
         }
     }
 
@@ -98,6 +109,7 @@ impl Cutter {
         match self {
             Self::Kernel(params) => params.check(),
             Self::Ppca(params, _) => params.check(),
+            Self::Repeats(_) => Ok(()),
         }
         .map_err(DbError::Invalid)
     }
@@ -195,6 +207,19 @@ impl MotionDb {
         cutter: &Cutter,
         progress: &dyn Progress,
     ) -> Result<Vec<Result<Done, DbError>>, DbError> {
+        let together = match cutter {
+            Cutter::Repeats(params) => {
+                let chosen = rows
+                    .iter()
+                    .filter(|r| clips.iter().any(|clip| clip.id == r.clip));
+                Some(repeats(
+                    &chosen.cloned().collect::<Vec<_>>(),
+                    params,
+                    progress,
+                )?)
+            }
+            _ => None,
+        };
         // A connection serves one thread at a time.
         let (db, done) = (Mutex::new(self), AtomicUsize::new(0));
         let stored = |clip: ClipId| db.lock().unwrap_or_else(PoisonError::into_inner).clip(clip);
@@ -206,11 +231,36 @@ impl MotionDb {
             let Some(rows) = rows.iter().find(|r| r.clip == clip.id) else {
                 return Ok(Ok((nothing(clip), Vec::new())));
             };
-            let cuts = cutter.cuts(rows, || stored(clip.id));
+            let cuts = match &together {
+                Some(all) => Ok(all.get(&clip.id).cloned().unwrap_or_default()),
+                None => cutter.cuts(rows, || stored(clip.id)),
+            };
             Ok(cuts.map(|cuts| stretches(clip, rows, cuts)))
         };
         clips.par_iter().map(one).collect()
     }
+}
+
+/// Ends of repetitions in each clip, found by the bones that all of them show.
+fn repeats(
+    clips: &[ClipRows],
+    params: &DiscoverParams,
+    progress: &dyn Progress,
+) -> Result<BTreeMap<ClipId, Vec<f64>>, DbError> {
+    let bones = clips.iter().map(|clip| clip.bones).reduce(BoneSet::and);
+    let bones = bones.unwrap_or(BoneSet::NONE);
+    let common = |of: &ClipRows| of.rows.columns(&RowLayout::kept_columns(of.bones, bones));
+    let rows: Vec<Rows> = clips.iter().map(common).collect();
+    let tick_hz = FeatureParams::default().tick_hz();
+    let found = discover(&rows, tick_hz, params, progress).map_err(|error| match error {
+        DiscoverError::Cancelled => DbError::Cancelled,
+        other => DbError::Invalid(other.to_string()),
+    })?;
+    let cuts = |(number, of): (usize, &ClipRows)| {
+        let end_secs = of.rows.len() as f64 / tick_hz;
+        (of.clip, found.cuts_of(number, end_secs))
+    };
+    Ok(clips.iter().enumerate().map(cuts).collect())
 }
 
 /// A clip that was cut: what is reported of it and what is kept.

@@ -1,5 +1,6 @@
 //! Cutting clips where their behaviour changes.
 
+use morec::discover::DiscoverParams;
 use morec::pivots::PivotSet;
 use morec::segment::{KernelParams, PassDirections, PpcaParams};
 use morec_db::Cutter;
@@ -49,6 +50,8 @@ pub enum CutMethod {
     Kernel,
     /// Probabilistic principal components over joint rotations, as in the thesis of 2009 with its distance corrected
     Ppca,
+    /// Where repetitions begin and end that `morec discover` finds in all clips together
+    Repeats,
 }
 
 impl Default for CutSettings {
@@ -99,6 +102,7 @@ impl CutSettings {
         Ok(match self.method {
             CutMethod::Kernel => Cutter::Kernel(kernel),
             CutMethod::Ppca => Cutter::Ppca(ppca, pivots),
+            CutMethod::Repeats => Cutter::Repeats(DiscoverParams::default()),
         })
     }
 }

@@ -22,6 +22,7 @@
 mod arguments;
 mod crossval;
 mod cut;
+mod discover;
 mod error;
 mod evaluate;
 mod group;
@@ -38,6 +39,9 @@ mod words;
 pub use arguments::arguments;
 pub use crossval::{CrossvalMeasures, CrossvalSettings, LeftOut};
 pub use cut::{CutMethod, CutSettings};
+pub use discover::{
+    AloneStretch, DiscoverClip, DiscoverSettings, DiscoveredSet, DiscoveredSets, DiscoveredStretch,
+};
 pub use error::OperationError;
 pub use evaluate::{EvaluateMeasures, EvaluateSettings};
 pub use group::{GroupMethod, GroupSettings, GroupedStretch, Grouping, Shapes, largest_first};

@@ -147,6 +147,8 @@ pub mod cluster;
 #[cfg(feature = "train")]
 pub mod crossval;
 #[cfg(feature = "train")]
+pub mod discover;
+#[cfg(feature = "train")]
 pub mod eval;
 #[cfg(feature = "train")]
 pub mod explain;

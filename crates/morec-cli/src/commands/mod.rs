@@ -10,6 +10,7 @@ pub mod crossval;
 pub mod cut;
 pub mod db;
 pub mod demo;
+pub mod discover;
 pub mod evaluate;
 pub mod group;
 pub mod inspect;

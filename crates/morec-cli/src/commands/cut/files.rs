@@ -4,8 +4,9 @@ use std::io::Write;
 use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail};
-use morec::features::{FeatureParams, rows_of_clip};
-use morec::import::Take;
+use morec::clip::Clip;
+use morec::discover::{DiscoverParams, discover};
+use morec::features::{BoneSet, FeatureParams, RowLayout, Rows, rows_of_clip};
 use morec::segment::{KernelParams, PpcaParams, Segmentation, kernel_cuts, segment};
 use morec_db::Cutter;
 use serde::Serialize;
@@ -14,6 +15,7 @@ use super::args::Args;
 use crate::json::write_json;
 use crate::output;
 use crate::poses::{PoseReader, PosedClip};
+use crate::progress::StageBar;
 
 #[derive(Serialize)]
 struct CutClip {
@@ -46,7 +48,10 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let reader = args.poses.reader()?;
     let found = match &args.settings.cutter(reader.set.clone())? {
         Cutter::Kernel(params) if args.plot.is_none() => by_kernel(&reader, params, args)?,
-        Cutter::Kernel(_) => bail!("--plot draws the misfit of --method ppca"),
+        Cutter::Repeats(params) if args.plot.is_none() => by_repeats(&reader, params, args)?,
+        Cutter::Kernel(_) | Cutter::Repeats(_) => {
+            bail!("--plot draws the misfit of --method ppca")
+        }
         Cutter::Ppca(params, _) => by_ppca(&reader, params, args)?,
     };
     let mut out = crate::console::stdout();
@@ -71,10 +76,41 @@ fn by_kernel(reader: &PoseReader<'_>, params: &KernelParams, args: &Args) -> Res
             &features,
         );
         let cuts = kernel_cuts(&rows, &features, params).context(take.clip.name.clone())?;
-        found.push(CutClip::at(&take, &cuts));
+        found.push(CutClip::at(&take.clip, &cuts));
         Ok(())
     })?;
     Ok(found)
+}
+
+/// All clips together: what repeats in another clip is cut, too.
+fn by_repeats(
+    reader: &PoseReader<'_>,
+    params: &DiscoverParams,
+    args: &Args,
+) -> Result<Vec<CutClip>> {
+    let features = FeatureParams::default();
+    let mut clips = Vec::new();
+    reader.each_take(&args.inputs, |take| {
+        let bones = take.bones();
+        let rows = rows_of_clip(&take.clip, &take.roles, take.rest(), bones, &features);
+        clips.push((CutClip::at(&take.clip, &[]), bones, rows));
+        Ok(())
+    })?;
+    let bones = clips
+        .iter()
+        .map(|(_, bones, _)| *bones)
+        .reduce(BoneSet::and);
+    let bones = bones.unwrap_or(BoneSet::NONE);
+    let common = clips
+        .iter()
+        .map(|(_, of, rows)| rows.columns(&RowLayout::kept_columns(*of, bones)));
+    let rows: Vec<Rows> = common.collect();
+    let sets = discover(&rows, features.tick_hz(), params, &StageBar::stoppable()?)?;
+    let cut = |(number, (clip, ..)): (usize, (CutClip, BoneSet, Rows))| {
+        let cuts = sets.cuts_of(number, clip.frames as f64 / clip.rate_hz);
+        clip.cut_at(&cuts)
+    };
+    Ok(clips.into_iter().enumerate().map(cut).collect())
 }
 
 fn by_ppca(reader: &PoseReader<'_>, params: &PpcaParams, args: &Args) -> Result<Vec<CutClip>> {
@@ -101,21 +137,26 @@ fn by_ppca(reader: &PoseReader<'_>, params: &PpcaParams, args: &Args) -> Result<
 
 impl CutClip {
     /// A clip cut at these seconds.
-    fn at(take: &Take, cuts: &[f64]) -> Self {
-        let rate_hz = take.clip.rate_hz;
-        let cut = |secs: &f64| FoundCut {
-            secs: *secs,
-            frame: (secs * rate_hz).round() as usize,
-            passes: None,
-        };
-        Self {
-            clip: take.clip.name.clone(),
-            rate_hz,
-            frames: take.clip.frames,
-            cuts: cuts.iter().map(cut).collect(),
+    fn at(clip: &Clip, cuts: &[f64]) -> Self {
+        let whole = Self {
+            clip: clip.name.clone(),
+            rate_hz: clip.rate_hz,
+            frames: clip.frames,
+            cuts: Vec::new(),
             forward: Vec::new(),
             backward: Vec::new(),
-        }
+        };
+        whole.cut_at(cuts)
+    }
+
+    fn cut_at(mut self, cuts: &[f64]) -> Self {
+        let cut = |secs: &f64| FoundCut {
+            secs: *secs,
+            frame: (secs * self.rate_hz).round() as usize,
+            passes: None,
+        };
+        self.cuts = cuts.iter().map(cut).collect();
+        self
     }
 
     fn new(clip: &PosedClip, found: Segmentation) -> Self {

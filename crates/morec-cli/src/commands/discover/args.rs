@@ -1,0 +1,42 @@
+//! The command line of `morec discover`.
+
+use std::path::PathBuf;
+
+use morec_ops::DiscoverSettings;
+
+use crate::poses::PoseArgs;
+
+/// Find motions that repeat, without labels
+///
+/// Repetitions of one motion become a set, in whichever clips and by whichever people; sets that explain most of what moves
+/// come first. Naming twenty sets takes minutes and gives the samples of a first index: --name-as proposes them in a database.
+/// What is done once is in no set. Where a cycle begins (which foot, up or down) is chosen by chance, and the labels that
+/// you would set may be longer or shorter: the window moves the bounds of a whole set at once. The same clips give the same sets.
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  morec discover clips/
+  morec discover moves.mdb --report sets.html   # a page that plays the sets
+  morec discover moves.mdb --name-as set        # then: morec db classes --rename, morec db propose
+  morec discover recordings/ --runs --json > sets.json")]
+pub struct Args {
+    /// Clips, folders of clips, or one database
+    #[arg(required = true, value_name = "CLIP|DB")]
+    pub(super) inputs: Vec<PathBuf>,
+    /// Clips of a database of this name; `*` stands for any text, `?` for one character
+    #[arg(long, value_name = "CLIP")]
+    pub(super) clip: Option<String>,
+    #[command(flatten)]
+    pub(super) settings: DiscoverSettings,
+    /// Propose each repetition as a sample of the class NAME_1, NAME_2, … (databases)
+    #[arg(long, value_name = "NAME")]
+    pub(super) name_as: Option<String>,
+    /// Write a page that plays the sets, too
+    #[arg(long, value_name = "HTML")]
+    pub(super) report: Option<PathBuf>,
+    /// Print one JSON object
+    #[arg(long)]
+    pub(super) json: bool,
+    #[command(flatten)]
+    pub(super) poses: PoseArgs,
+}
