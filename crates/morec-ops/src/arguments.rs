@@ -99,6 +99,10 @@ mod tests {
             ..ImportSettings::default()
         });
         returns(&SearchSettings::default());
+        returns(&crate::DiscoverSettings {
+            plain: true,
+            runs: true,
+        });
         returns(&SearchSettings {
             mirror: true,
             learned: true,

@@ -3,7 +3,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use morec::TimeSpan;
-use morec::discover::{DiscoverError, DiscoverParams, Discovery, MotionSet, SetInstance, discover};
+use morec::discover::{
+    DiscoverError, DiscoverParams, Discovery, RepetitionSet, SetInstance, discover,
+};
 use morec::features::{BoneSet, FeatureParams, RowLayout, Rows};
 use morec::progress::Progress;
 use morec_db::labels::{NewSample, SampleState};
@@ -117,10 +119,6 @@ impl DiscoverSettings {
         progress: &dyn Progress,
     ) -> Result<DiscoveredSets, OperationError> {
         let bones = clips.iter().map(|clip| clip.bones).reduce(BoneSet::and);
-        if bones.is_some_and(|bones| bones == BoneSet::NONE) {
-            let none = "no bone is shown by all clips: choose clips of one kind of skeleton";
-            return Err(OperationError::Settings(none.to_owned()));
-        }
         let bones = bones.unwrap_or(BoneSet::NONE);
         let rows = clips.iter().map(|clip| {
             let kept = RowLayout::kept_columns(clip.bones, bones);
@@ -176,7 +174,12 @@ impl DiscoverSettings {
         }
     }
 
-    fn named_set(&self, number: usize, set: &MotionSet, clips: &[DiscoverClip]) -> DiscoveredSet {
+    fn named_set(
+        &self,
+        number: usize,
+        set: &RepetitionSet,
+        clips: &[DiscoverClip],
+    ) -> DiscoveredSet {
         let people = set
             .instances
             .iter()

@@ -19,7 +19,7 @@ use crate::database;
 use crate::print::{print_json, print_table};
 use crate::progress::StageBar;
 use crate::table::TextTable;
-use page::Motions;
+use page::ShownMotions;
 
 /// Finds sets in clips or in a database, prints them, and proposes them if asked to.
 pub fn run(args: &Args) -> Result<ExitCode> {
@@ -46,7 +46,7 @@ fn of_database(path: &Path, args: &Args) -> Result<()> {
         .settings
         .of_database(&db, &filter, &StageBar::stoppable()?)?;
     if let Some(page) = &args.report {
-        page::write(page, &found, Motions::Stored(&db))?;
+        page::write(page, &found, ShownMotions::Stored(&db))?;
     }
     if let Some(name) = &args.name_as {
         propose(&mut db, &found, name)?;
@@ -90,7 +90,11 @@ fn of_files(paths: &[PathBuf], args: &Args) -> Result<()> {
     let found = args.settings.of_clips(&clips, &StageBar::stoppable()?)?;
     if let Some(page) = &args.report {
         let names = clips.iter().map(|clip| clip.name.as_str());
-        page::write(page, &found, Motions::Read(&names.zip(&motions).collect()))?;
+        page::write(
+            page,
+            &found,
+            ShownMotions::Read(&names.zip(&motions).collect()),
+        )?;
     }
     print(&found, args)
 }

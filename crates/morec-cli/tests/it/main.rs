@@ -4,6 +4,7 @@ mod convert;
 mod db;
 mod demo;
 mod devices;
+mod discover;
 #[cfg(unix)]
 mod documents;
 mod evaluate;

@@ -23,7 +23,7 @@ const LEAST_REST_SECS: f64 = 5.0 / 30.0;
 
 /// A stretch of a clip.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Stretch {
+pub(super) struct MovingStretch {
     pub(super) clip: usize,
     /// First tick.
     pub(super) start: usize,
@@ -33,7 +33,7 @@ pub(super) struct Stretch {
     pub(super) moving_secs: f64,
 }
 
-impl Stretch {
+impl MovingStretch {
     pub(super) fn ticks(&self) -> usize {
         self.stop - self.start
     }
@@ -94,7 +94,7 @@ impl Movement {
     }
 
     /// Candidates of the clip, by start and stop. 7 to 12 a second of motion.
-    pub(super) fn candidates(&self, clip: usize) -> Vec<Stretch> {
+    pub(super) fn candidates(&self, clip: usize) -> Vec<MovingStretch> {
         let mut spans = Vec::new();
         for width in WIDTHS_SECS {
             let bounds = self.bounds(width * self.tick_hz);
@@ -109,7 +109,7 @@ impl Movement {
         }
         spans.sort_unstable();
         spans.dedup();
-        let stretch = |(start, stop)| Stretch {
+        let stretch = |(start, stop)| MovingStretch {
             clip,
             start,
             stop,
@@ -119,7 +119,7 @@ impl Movement {
         stretches.filter(|s| self.may_be(s)).collect()
     }
 
-    fn may_be(&self, of: &Stretch) -> bool {
+    fn may_be(&self, of: &MovingStretch) -> bool {
         let secs = of.ticks() as f64 / self.tick_hz;
         if !LENGTHS_SECS.contains(&secs)
             || of.moving_secs < LEAST_MOVING_SECS

@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, BinaryHeap};
 
-use super::candidates::Stretch;
+use super::candidates::MovingStretch;
 use super::neighbours::Neighbours;
 
 /// Sets that explain less are none.
@@ -15,16 +15,16 @@ const SHARED: f64 = 0.15;
 
 /// What a candidate would explain, as known at a time: by sets found so far.
 #[derive(PartialEq)]
-struct Offer {
+struct CoverOffer {
     gain: f64,
     of: usize,
     /// Sets found when it was counted; `None` for a bound that counts overlapping neighbours too.
     known: Option<usize>,
 }
 
-impl Eq for Offer {}
+impl Eq for CoverOffer {}
 
-impl Ord for Offer {
+impl Ord for CoverOffer {
     /// The greater gain, then the earlier candidate.
     fn cmp(&self, other: &Self) -> Ordering {
         self.gain
@@ -33,7 +33,7 @@ impl Ord for Offer {
     }
 }
 
-impl PartialOrd for Offer {
+impl PartialOrd for CoverOffer {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
@@ -41,7 +41,7 @@ impl PartialOrd for Offer {
 
 /// Candidates that are still free, and what each would explain.
 struct Cover<'a> {
-    stretches: &'a [Stretch],
+    stretches: &'a [MovingStretch],
     neighbours: &'a Neighbours,
     theta: f64,
     free: Vec<bool>,
@@ -49,19 +49,23 @@ struct Cover<'a> {
 
 /// Sets of candidates, each led by the one that its members are neighbours of. Greedy: gains only fall, so the first of the heap that was
 /// counted lately is the best (lazy evaluation; Minoux, *Accelerated greedy algorithms for maximizing submodular set functions*, 1978).
-pub(super) fn cover(stretches: &[Stretch], neighbours: &Neighbours, theta: f64) -> Vec<Vec<usize>> {
+pub(super) fn cover(
+    stretches: &[MovingStretch],
+    neighbours: &Neighbours,
+    theta: f64,
+) -> Vec<Vec<usize>> {
     let mut cover = Cover {
         stretches,
         neighbours,
         theta,
         free: vec![true; stretches.len()],
     };
-    let bound = |of: usize| Offer {
+    let bound = |of: usize| CoverOffer {
         gain: cover.gains(of).iter().map(|(_, gain)| gain).sum(),
         of,
         known: None,
     };
-    let mut heap: BinaryHeap<Offer> = (0..stretches.len()).map(bound).collect();
+    let mut heap: BinaryHeap<CoverOffer> = (0..stretches.len()).map(bound).collect();
     let mut sets: Vec<Vec<usize>> = Vec::new();
     while let Some(best) = heap.pop() {
         if best.gain < LEAST_GAIN_SECS || sets.len() == MOST_SETS {
@@ -75,7 +79,7 @@ pub(super) fn cover(stretches: &[Stretch], neighbours: &Neighbours, theta: f64) 
             cover.use_up(&members);
             sets.push(members);
         } else if members.len() >= 2 {
-            heap.push(Offer {
+            heap.push(CoverOffer {
                 gain,
                 of: best.of,
                 known: Some(sets.len()),

@@ -37,14 +37,14 @@
 
 mod candidates;
 mod cover;
+mod error;
 mod neighbours;
 mod revise;
 mod schedule;
+mod sets;
 mod shapes;
 mod split;
 mod votes;
-
-use std::collections::BTreeSet;
 
 use rayon::prelude::*;
 
@@ -54,17 +54,18 @@ use crate::pca::{ComponentCount, Moments, Pca};
 use crate::progress::Progress;
 use crate::templates::Metric;
 use crate::train::{ridged, within_groups};
-use candidates::{Movement, Stretch};
+pub use error::DiscoverError;
+pub use sets::{Discovery, LoneStretch, RepetitionSet, SetInstance};
+
+use candidates::{Movement, MovingStretch};
 use neighbours::Neighbours;
-use revise::Exemplars;
+use revise::SetExemplars;
 use shapes::ShapeTable;
 
 /// Share of the variance of all rows that is kept: with fewer components nearest neighbours become wrong.
 const VARIANCE_KEPT: f64 = 0.99;
 /// Rounds of revision.
 const ROUNDS: usize = 2;
-/// Instances of a set in a clip are one run if they are less than this share of a length apart.
-const RUN_GAP: f64 = 0.35;
 /// What a stretch seen once is worth less than its moving time, so that one stretch is better than its parts.
 const ALONE_PRICE_SECS: f64 = 0.15;
 
@@ -113,128 +114,6 @@ impl DiscoverParams {
     }
 }
 
-/// Why sets cannot be found.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[allow(missing_docs)] // The messages say it all.
-pub enum DiscoverError {
-    #[error("rows of {found} values beside rows of {expected}: all clips must show the same bones")]
-    Width { expected: usize, found: usize },
-    #[error("rows of {0} values are no feature rows: their number is 6 for each bone and 4")]
-    Layout(usize),
-    #[error("the rate must be above 0 and at most 1000 rows a second, found {0}")]
-    Rate(f64),
-    #[error("row {row} of clip {clip} holds a value that is not finite")]
-    NotFinite { clip: usize, row: usize },
-    #[error("cancelled")]
-    Cancelled,
-}
-
-/// One time that a motion is done.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
-pub struct SetInstance {
-    /// Number of the clip, in the order in which they were given.
-    pub clip: usize,
-    /// When.
-    #[serde(flatten)]
-    pub span: TimeSpan,
-    /// How far it is from the middle of its set: mean elastic distance over spread; outermost members are the doubtful ones.
-    pub distance: f64,
-}
-
-/// Instances of one motion.
-#[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub struct MotionSet {
-    /// By clip and time. Two or more.
-    pub instances: Vec<SetInstance>,
-    /// Seconds of moving beyond the longest instance: what a description of one instance explains of the others.
-    pub explained_secs: f64,
-}
-
-/// A stretch that no set explains.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
-pub struct LoneStretch {
-    /// Number of the clip.
-    pub clip: usize,
-    /// When.
-    #[serde(flatten)]
-    pub span: TimeSpan,
-    /// The set that it is nearest to, and its distance, if any is near.
-    pub nearest: Option<(usize, f64)>,
-}
-
-/// Result of [`discover`].
-#[derive(Debug, Clone, PartialEq, Default, serde::Serialize)]
-pub struct Discovery {
-    /// Sets by what they explain, the greatest first.
-    pub sets: Vec<MotionSet>,
-    /// What was seen once, by clip and time.
-    pub alone: Vec<LoneStretch>,
-    /// Time weighted by how fast it is, in all clips.
-    pub moving_secs: f64,
-    /// That of the sets' instances.
-    pub moving_in_sets_secs: f64,
-}
-
-impl Discovery {
-    /// Share of the motion that lies in sets, 0 to 1.
-    pub fn share_in_sets(&self) -> f64 {
-        match self.moving_secs > 0.0 {
-            true => (self.moving_in_sets_secs / self.moving_secs).min(1.0),
-            false => 0.0,
-        }
-    }
-
-    /// Moments at which a clip is cut: where instances begin and end, in order, its own ends left out.
-    pub fn cuts_of(&self, clip: usize, duration_secs: f64) -> Vec<f64> {
-        let instances = self.sets.iter().flat_map(|set| &set.instances);
-        let of_clip = instances.filter(|instance| instance.clip == clip);
-        let mut cuts: Vec<f64> = of_clip
-            .flat_map(|i| [i.span.start_secs, i.span.stop_secs])
-            .collect();
-        cuts.retain(|&cut| cut > 0.0 && cut < duration_secs);
-        cuts.sort_by(f64::total_cmp);
-        cuts.dedup();
-        cuts
-    }
-}
-
-impl MotionSet {
-    /// Number of clips in which the motion is done.
-    pub fn clips(&self) -> usize {
-        let clips: BTreeSet<usize> = self.instances.iter().map(|i| i.clip).collect();
-        clips.len()
-    }
-
-    /// Median length.
-    pub fn length_secs(&self) -> f64 {
-        median_of(
-            self.instances
-                .iter()
-                .map(|i| i.span.duration_secs())
-                .collect(),
-        )
-    }
-
-    /// Runs in place of instances: such as follow each other at once, joined.
-    pub fn runs(&self) -> Vec<SetInstance> {
-        let gap = RUN_GAP * self.length_secs();
-        let mut runs: Vec<SetInstance> = Vec::new();
-        for &instance in &self.instances {
-            match runs.last_mut() {
-                Some(last)
-                    if last.clip == instance.clip
-                        && instance.span.start_secs - last.span.stop_secs <= gap =>
-                {
-                    last.span.stop_secs = last.span.stop_secs.max(instance.span.stop_secs);
-                    last.distance = last.distance.max(instance.distance);
-                }
-                _ => runs.push(instance),
-            }
-        }
-        runs
-    }
-}
-
 /// Sets of the same motion in feature rows of `clips`, which must all be over the same bones. The same clips give the same sets. O(candidates²)
 /// for the comparison, 3 to 4 kilobytes a candidate; 7 to 12 candidates a second of motion.
 ///
@@ -253,12 +132,12 @@ pub fn discover(
         .par_iter()
         .map(|rows| Movement::of(rows, layout, tick_hz))
         .collect();
-    let of_clips: Vec<Vec<Stretch>> = movements
+    let of_clips: Vec<Vec<MovingStretch>> = movements
         .par_iter()
         .enumerate()
         .map(|(clip, m)| m.candidates(clip))
         .collect();
-    let stretches: Vec<Stretch> = of_clips.into_iter().flatten().collect();
+    let stretches: Vec<MovingStretch> = of_clips.into_iter().flatten().collect();
     let moving_secs = movements.iter().map(Movement::moving_secs).sum();
     let nothing = Discovery {
         moving_secs,
@@ -294,7 +173,7 @@ pub fn discover(
         sets = votes::vote(&parts, &shapes, CAP, support, true);
     }
     ranked(&mut sets, &stretches);
-    let exemplars = Exemplars::of(&sets, &stretches, &shapes);
+    let exemplars = SetExemplars::of(&sets, &stretches, &shapes);
     let alone = alone(&sets, &stretches, &exemplars, bound, tick_hz);
     let set = |(number, members): (usize, &Vec<usize>)| {
         motion_set(number, members, &stretches, &exemplars, tick_hz)
@@ -317,6 +196,9 @@ fn check(clips: &[Rows], tick_hz: f64) -> Result<Option<RowLayout>, DiscoverErro
         return Ok(None);
     };
     let layout = RowLayout::from_dim(expected).ok_or(DiscoverError::Layout(expected))?;
+    if layout.bones() == 0 {
+        return Err(DiscoverError::NoBones);
+    }
     for (clip, rows) in clips.iter().enumerate() {
         let found = rows.dim();
         if found != expected {
@@ -332,7 +214,7 @@ fn check(clips: &[Rows], tick_hz: f64) -> Result<Option<RowLayout>, DiscoverErro
 
 /// A pass up to the votes.
 fn sets_of(
-    stretches: &[Stretch],
+    stretches: &[MovingStretch],
     shapes: &ShapeTable,
     bounds: PassBounds,
     progress: &dyn Progress,
@@ -354,8 +236,8 @@ fn learned_metric(shapes: &ShapeTable, sets: &[Vec<usize>]) -> Metric {
         .filter(|(_, members)| members.len() > 1)
     {
         for &member in members {
-            for (at, point) in shapes.points_of(member).enumerate() {
-                points.push(point);
+            for (at, point) in shapes.points(member).enumerate() {
+                points.push(&point);
                 groups.push((set, at));
             }
         }
@@ -366,7 +248,7 @@ fn learned_metric(shapes: &ShapeTable, sets: &[Vec<usize>]) -> Metric {
 }
 
 /// Sorts sets by the moving time that they explain.
-fn ranked(sets: &mut [Vec<usize>], stretches: &[Stretch]) {
+fn ranked(sets: &mut [Vec<usize>], stretches: &[MovingStretch]) {
     sets.iter_mut().for_each(|set| set.sort_unstable());
     sets.sort_by(|a, b| {
         explained(b, stretches)
@@ -375,28 +257,28 @@ fn ranked(sets: &mut [Vec<usize>], stretches: &[Stretch]) {
     });
 }
 
-fn explained(members: &[usize], stretches: &[Stretch]) -> f64 {
+fn explained(members: &[usize], stretches: &[MovingStretch]) -> f64 {
     let moving = || members.iter().map(|&m| stretches[m].moving_secs);
     moving().sum::<f64>() - moving().fold(0.0, f64::max)
 }
 
-fn span(stretch: &Stretch, tick_hz: f64) -> TimeSpan {
+fn span(stretch: &MovingStretch, tick_hz: f64) -> TimeSpan {
     TimeSpan::of_frames(stretch.start..stretch.stop, tick_hz)
 }
 
 fn motion_set(
     number: usize,
     members: &[usize],
-    stretches: &[Stretch],
-    exemplars: &Exemplars<'_>,
+    stretches: &[MovingStretch],
+    exemplars: &SetExemplars<'_>,
     tick_hz: f64,
-) -> MotionSet {
+) -> RepetitionSet {
     let instance = |&member: &usize| SetInstance {
         clip: stretches[member].clip,
         span: span(&stretches[member], tick_hz),
         distance: f64::from(exemplars.distance(member, number)),
     };
-    MotionSet {
+    RepetitionSet {
         instances: members.iter().map(instance).collect(),
         explained_secs: explained(members, stretches),
     }
@@ -405,8 +287,8 @@ fn motion_set(
 /// Candidates outside of all sets, those that hold most motion without overlap.
 fn alone(
     sets: &[Vec<usize>],
-    stretches: &[Stretch],
-    exemplars: &Exemplars<'_>,
+    stretches: &[MovingStretch],
+    exemplars: &SetExemplars<'_>,
     bound: f32,
     tick_hz: f64,
 ) -> Vec<LoneStretch> {
@@ -417,9 +299,9 @@ fn alone(
         let clip = of_clip[0].clip;
         let first = stretches.partition_point(|s| s.clip < clip);
         let taken = explained.iter().filter(|&&m| stretches[m].clip == clip);
-        let taken: Vec<&Stretch> = taken.map(|&m| &stretches[m]).collect();
+        let taken: Vec<&MovingStretch> = taken.map(|&m| &stretches[m]).collect();
         // Instances are few beside candidates, and in order.
-        let is_free = |s: &Stretch| {
+        let is_free = |s: &MovingStretch| {
             let at = taken.partition_point(|t| t.stop <= s.start + 1);
             taken.get(at).is_none_or(|t| !t.overlaps(s))
         };
@@ -438,16 +320,6 @@ fn alone(
             .map(|&(r, set)| (set, f64::from(r))),
     };
     alone.into_par_iter().map(stretch).collect()
-}
-
-/// The middle value; the mean of the middle two where their number is even.
-fn median_of(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    let n = values.len();
-    match n {
-        0 => 0.0,
-        _ => 0.5 * (values[(n - 1) / 2] + values[n / 2]),
-    }
 }
 
 #[cfg(test)]

@@ -2,10 +2,11 @@
 
 use rayon::prelude::*;
 
-use super::DiscoverError;
-use super::candidates::Stretch;
-use super::shapes::ShapeTable;
+use super::candidates::MovingStretch;
+use super::error::DiscoverError;
+use super::shapes::{HEAD, ShapeTable};
 use crate::progress::Progress;
+use crate::templates::kernel::{self, LANES};
 
 /// Pairs whose even distance is farther than this many bounds are not compared elastically.
 const PREFILTER: f32 = 2.0;
@@ -24,7 +25,7 @@ impl Neighbours {
     /// Pairs below `bound` that do not overlap. Exact but for the prefilter; O(stretches²) sums of few values, and elastic distances of what
     /// is left of them.
     pub(super) fn of(
-        stretches: &[Stretch],
+        stretches: &[MovingStretch],
         shapes: &ShapeTable,
         bound: f32,
         progress: &dyn Progress,
@@ -32,21 +33,31 @@ impl Neighbours {
         // By length: those that are too long for one end the list.
         let mut order: Vec<usize> = (0..stretches.len()).collect();
         order.sort_by_key(|&i| (stretches[i].ticks(), i));
+        let heads = order.iter().map(|&i| shapes.head(i)).enumerate();
+        let heads = kernel::interleaved(order.len(), HEAD, heads);
         let of_one = |at: usize| -> Vec<(u32, u32, f32)> {
             let one = order[at];
-            let longer = order[at + 1..].iter().copied();
-            let longer =
-                longer.take_while(|&b| stretches[b].as_long(&stretches[one], LENGTH_FACTOR));
-            longer
-                .filter_map(|other| {
-                    shapes.linear(one, other, PREFILTER * bound)?;
-                    if stretches[one].overlaps(&stretches[other]) {
-                        return None;
-                    }
-                    let r = shapes.elastic(one, other, bound)?;
-                    Some((one as u32, other as u32, r))
-                })
-                .collect()
+            let as_long = |&b: &usize| stretches[b].as_long(&stretches[one], LENGTH_FACTOR);
+            let end = at + 1 + order[at + 1..].partition_point(as_long);
+            // The first coordinates of many at once: what is far in them is far.
+            let blocks = (at + 1) / LANES..end.div_ceil(LANES);
+            let mut apart = vec![[0.0; LANES]; blocks.len()];
+            let of_blocks = &heads[blocks.start * HEAD..blocks.end * HEAD];
+            kernel::squared_distances(of_blocks, shapes.head(one), &mut apart);
+            let mut found = Vec::new();
+            for place in at + 1..end {
+                let other = order[place];
+                let head = apart[place / LANES - blocks.start][place % LANES];
+                if head >= PREFILTER * bound * shapes.unit(one, other)
+                    || shapes.linear(one, other, PREFILTER * bound).is_none()
+                    || stretches[one].overlaps(&stretches[other])
+                {
+                    continue;
+                }
+                let r = shapes.elastic(one, other, bound);
+                found.extend(r.map(|r| (one as u32, other as u32, r)));
+            }
+            found
         };
         let mut pairs = Vec::new();
         for start in (0..order.len()).step_by(AT_ONCE) {

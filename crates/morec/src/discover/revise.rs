@@ -4,14 +4,15 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
-use super::candidates::Stretch;
+use super::candidates::MovingStretch;
 use super::schedule::schedule;
+use super::sets::median_of;
 use super::shapes::ShapeTable;
 use super::split::by_clip;
 
 /// Members of a set in each clip that stand for it: the most central ones.
 const EXEMPLARS: usize = 3;
-/// Exemplars, nearest at an even pace, that a candidate is compared with elastically.
+/// SetExemplars, nearest at an even pace, that a candidate is compared with elastically.
 const COMPARED: usize = 24;
 /// They are no farther at an even pace than this many bounds.
 const PREFILTER: f32 = 2.0;
@@ -23,17 +24,17 @@ const LENGTH_FACTOR: f64 = 1.6;
 const LENGTHS_COMPARED: f64 = 2.0;
 
 /// Members of sets that stand for them.
-pub(super) struct Exemplars<'a> {
-    stretches: &'a [Stretch],
+pub(super) struct SetExemplars<'a> {
+    stretches: &'a [MovingStretch],
     shapes: &'a ShapeTable,
     /// Candidate and its set.
     of: Vec<(usize, usize)>,
 }
 
-impl<'a> Exemplars<'a> {
+impl<'a> SetExemplars<'a> {
     pub(super) fn of(
         sets: &[Vec<usize>],
-        stretches: &'a [Stretch],
+        stretches: &'a [MovingStretch],
         shapes: &'a ShapeTable,
     ) -> Self {
         let mut of = Vec::new();
@@ -104,7 +105,7 @@ impl<'a> Exemplars<'a> {
         }
         ticks
             .into_iter()
-            .map(|(set, ticks)| (set, super::median_of(ticks)))
+            .map(|(set, ticks)| (set, median_of(ticks)))
             .collect()
     }
 }
@@ -119,11 +120,11 @@ fn mean_of_nearest(mut distances: Vec<f32>) -> f32 {
 /// with fewer than two instances is none.
 pub(super) fn revise(
     sets: &[Vec<usize>],
-    stretches: &[Stretch],
+    stretches: &[MovingStretch],
     shapes: &ShapeTable,
     bound: f32,
 ) -> Vec<Vec<usize>> {
-    let exemplars = Exemplars::of(sets, stretches, shapes);
+    let exemplars = SetExemplars::of(sets, stretches, shapes);
     let lengths = exemplars.median_ticks();
     let offer = |candidate: usize| -> Option<(usize, usize, f64)> {
         let near = exemplars.nearest_sets(candidate, bound);

@@ -1,10 +1,10 @@
 //! The best choice of stretches that do not overlap.
 
-use super::candidates::Stretch;
+use super::candidates::MovingStretch;
 
 /// Of stretches of one clip with what each is worth, above 0, those that together are worth most: weighted interval scheduling, exact
 /// (Kleinberg and Tardos, *Algorithm Design*, 6.1). In the order of their ends. O(n log n).
-pub(super) fn schedule(mut offers: Vec<(usize, f64)>, stretches: &[Stretch]) -> Vec<usize> {
+pub(super) fn schedule(mut offers: Vec<(usize, f64)>, stretches: &[MovingStretch]) -> Vec<usize> {
     offers.sort_by_key(|&(i, _)| (stretches[i].stop, i));
     let stops: Vec<usize> = offers.iter().map(|&(i, _)| stretches[i].stop).collect();
     // best[n]: worth of the best choice among the first n; a tick in common is allowed.
@@ -40,13 +40,13 @@ mod tests {
         fn no_other_choice_is_worth_more(
             spans in prop::collection::vec((0usize..30, 2usize..9, 0.1f64..2.0), 0..10),
         ) {
-            let stretch = |&(start, ticks, _): &(usize, usize, f64)| Stretch {
+            let stretch = |&(start, ticks, _): &(usize, usize, f64)| MovingStretch {
                 clip: 0,
                 start,
                 stop: start + ticks,
                 moving_secs: 1.0,
             };
-            let stretches: Vec<Stretch> = spans.iter().map(stretch).collect();
+            let stretches: Vec<MovingStretch> = spans.iter().map(stretch).collect();
             let fits = |chosen: &[usize]| {
                 let mut pairs = chosen.iter().flat_map(|&a| chosen.iter().map(move |&b| (a, b)));
                 pairs.all(|(a, b)| a == b || !stretches[a].overlaps(&stretches[b]))

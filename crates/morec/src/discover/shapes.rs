@@ -3,7 +3,7 @@
 use multiversion::multiversion;
 use rayon::prelude::*;
 
-use super::candidates::Stretch;
+use super::candidates::MovingStretch;
 use crate::cluster::resampled;
 use crate::features::Rows;
 
@@ -11,51 +11,55 @@ use crate::features::Rows;
 const POINTS: usize = 16;
 /// Points by which a path may leave the diagonal.
 const BAND: usize = 3;
-/// Values that are summed side by side, and to a multiple of which rows are padded.
-const LANES: usize = 8;
-/// Coordinates after which a sum is compared with its bound.
-const BLOCK: usize = 32;
+/// A coordinate of all points, with room for points beyond the ends: none of them is on a path.
+const LINE: usize = 24;
+/// Points that are compared with one at once: all within the band, and one more.
+const NEAR: usize = 2 * BAND + 2;
+/// Points of the other that are taken together.
+const TOGETHER: usize = 4;
+/// Coordinates of a code after which a sum is compared with its bound.
+pub(super) const HEAD: usize = 32;
+/// Sums of squares side by side.
+const SUMS: usize = 8;
+
+/// Coordinates of a code at most: they hold as much of the variance as 192 principal components do, without the eigenvectors of a matrix of hundreds of rows.
+const CODE: usize = 288;
 
 /// All candidates, resampled to as many points each.
 pub(super) struct ShapeTable {
-    /// Values in a point, and padded.
+    /// Values in a point.
     dim: usize,
-    wide: usize,
-    /// [`POINTS`] points of each candidate.
-    points: Vec<f32>,
+    /// The points of each candidate, coordinate by coordinate.
+    lines: Vec<[f32; LINE]>,
     /// Mean squared distance of a candidate's points from their mean.
     spread: Vec<f32>,
-    /// The same points in coordinates sorted by variance: their squared distance is the mean over the points.
+    /// The same points in the coordinates that vary most: their squared distance is the mean over the points, or little less.
     codes: Vec<f32>,
     code_len: usize,
 }
 
 impl ShapeTable {
     /// Of stretches of `clips`, all of the same width. O(stretches · values of a row).
-    pub(super) fn of(clips: &[Rows], stretches: &[Stretch]) -> Self {
+    pub(super) fn of(clips: &[Rows], stretches: &[MovingStretch]) -> Self {
         let dim = clips.first().map_or(0, Rows::dim);
-        let wide = dim.next_multiple_of(LANES).max(LANES);
-        let shape = |s: &Stretch| {
+        let shape = |s: &MovingStretch| {
             let points = resampled(&clips[s.clip].slice(s.start..s.stop), POINTS);
-            let spread = spread(&points, dim);
-            let mut padded = vec![0.0; POINTS * wide];
-            for (to, from) in padded
-                .chunks_exact_mut(wide)
-                .zip(points.chunks_exact(dim.max(1)))
-            {
-                to[..dim].copy_from_slice(from);
+            let mut lines = vec![[0.0; LINE]; dim];
+            for (at, point) in points.chunks_exact(dim.max(1)).enumerate() {
+                for (line, value) in lines.iter_mut().zip(point) {
+                    line[BAND + at] = *value;
+                }
             }
-            (padded, spread)
+            (lines, spread(&points, dim))
         };
-        let shapes: Vec<(Vec<f32>, f32)> = stretches.par_iter().map(shape).collect();
+        let shapes: Vec<(Vec<[f32; LINE]>, f32)> = stretches.par_iter().map(shape).collect();
         let spread = shapes.iter().map(|(_, spread)| *spread).collect();
-        let points: Vec<f32> = shapes.into_iter().flat_map(|(points, _)| points).collect();
-        let code_len = (POINTS * wide).next_multiple_of(BLOCK);
+        let lines: Vec<[f32; LINE]> = shapes.into_iter().flat_map(|(lines, _)| lines).collect();
+        let code_len = (POINTS * dim).next_multiple_of(HEAD).min(CODE);
         Self {
-            codes: codes(&points, wide, code_len),
+            codes: codes(&lines, dim, code_len),
             dim,
-            wide,
-            points,
+            lines,
             spread,
             code_len,
         }
@@ -65,17 +69,19 @@ impl ShapeTable {
         self.dim
     }
 
-    /// The points of a candidate.
-    pub(super) fn points_of(&self, of: usize) -> impl Iterator<Item = &[f32]> {
-        self.points(of)
-            .chunks_exact(self.wide)
-            .map(|point| &point[..self.dim])
+    fn lines(&self, of: usize) -> &[[f32; LINE]] {
+        &self.lines[of * self.dim..(of + 1) * self.dim]
     }
 
-    /// The points of a candidate, padded, one after the other.
-    fn points(&self, of: usize) -> &[f32] {
-        let len = POINTS * self.wide;
-        &self.points[of * len..(of + 1) * len]
+    /// The points of a candidate.
+    pub(super) fn points(&self, of: usize) -> impl Iterator<Item = Vec<f32>> {
+        let lines = self.lines(of);
+        (BAND..BAND + POINTS).map(|at| lines.iter().map(|line| line[at]).collect())
+    }
+
+    /// The first coordinates of a code, [`HEAD`] of them.
+    pub(super) fn head(&self, of: usize) -> &[f32] {
+        &self.code(of)[..HEAD]
     }
 
     fn code(&self, of: usize) -> &[f32] {
@@ -83,7 +89,7 @@ impl ShapeTable {
     }
 
     /// By what distances of the two are divided: the mean of their spreads.
-    fn unit(&self, a: usize, b: usize) -> f32 {
+    pub(super) fn unit(&self, a: usize, b: usize) -> f32 {
         (0.5 * (self.spread[a] + self.spread[b])).max(f32::MIN_POSITIVE)
     }
 
@@ -99,8 +105,7 @@ impl ShapeTable {
     pub(super) fn elastic(&self, a: usize, b: usize, bound: f32) -> Option<f32> {
         let unit = self.unit(a, b);
         let weight = (2 * POINTS) as f32;
-        let (of_a, of_b) = (self.points(a), self.points(b));
-        let found = path_cost_below(of_a, of_b, self.wide, bound * unit * weight);
+        let found = path_cost_below(self.lines(a), self.lines(b), bound * unit * weight);
         let r = found / (unit * weight);
         (r < bound).then_some(r)
     }
@@ -133,24 +138,20 @@ fn spread(points: &[f32], dim: usize) -> f32 {
 }
 
 /// Points through the cosine transform over their number, which keeps distances and gathers most of them in few coordinates; those that vary most
-/// come first, so that a sum soon passes its bound.
-fn codes(points: &[f32], wide: usize, code_len: usize) -> Vec<f32> {
-    let len = POINTS * wide;
-    let transform = cosines();
-    let mut transformed = vec![0f32; points.len()];
-    transformed
-        .par_chunks_exact_mut(len)
-        .zip(points.par_chunks_exact(len))
-        .for_each(|(to, from)| {
-            for (line, to) in transform.iter().zip(to.chunks_exact_mut(wide)) {
-                for (weight, point) in line.iter().zip(from.chunks_exact(wide)) {
-                    to.iter_mut()
-                        .zip(point)
-                        .for_each(|(to, v)| *to += weight * v);
-                }
-            }
-        });
-    let count = (points.len() / len).max(1) as f64;
+/// come first, so that a sum soon passes its bound, and those beyond [`CODE`] are left out.
+fn codes(lines: &[[f32; LINE]], dim: usize, code_len: usize) -> Vec<f32> {
+    let len = (POINTS * dim).max(1);
+    let cosines = cosines();
+    let transform = |line: &[f32; LINE]| {
+        cosines.map(|of| {
+            of.iter()
+                .zip(&line[BAND..])
+                .map(|(c, v)| c * v)
+                .sum::<f32>()
+        })
+    };
+    let transformed: Vec<f32> = lines.par_iter().flat_map_iter(transform).collect();
+    let count = (transformed.len() / len).max(1) as f64;
     let (mut sum, mut squares) = (vec![0f64; len], vec![0f64; len]);
     for shape in transformed.chunks_exact(len) {
         for (k, v) in shape.iter().enumerate() {
@@ -161,11 +162,11 @@ fn codes(points: &[f32], wide: usize, code_len: usize) -> Vec<f32> {
     let variance = |k: usize| squares[k] - sum[k].powi(2) / count;
     let mut order: Vec<usize> = (0..len).collect();
     order.sort_by(|&a, &b| variance(b).total_cmp(&variance(a)));
+    order.truncate(code_len);
     let code = |shape: &[f32]| {
-        let sorted: Vec<f32> = order.iter().map(|&k| shape[k]).collect();
-        sorted
-            .into_iter()
-            .chain(std::iter::repeat_n(0.0, code_len - len))
+        let mut code: Vec<f32> = order.iter().map(|&k| shape[k]).collect();
+        code.resize(code_len, 0.0);
+        code
     };
     transformed.chunks_exact(len).flat_map(code).collect()
 }
@@ -191,20 +192,16 @@ fn cosines() -> [[f32; POINTS]; POINTS] {
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 fn squared_distance_below(a: &[f32], b: &[f32], bound: f32) -> Option<f32> {
     let mut sum = 0.0;
-    for (a, b) in a
-        .as_chunks::<BLOCK>()
-        .0
-        .iter()
-        .zip(b.as_chunks::<BLOCK>().0)
-    {
-        let mut sums = [0f32; LANES];
-        for k in 0..BLOCK / LANES {
-            for lane in 0..LANES {
-                let apart = a[k * LANES + lane] - b[k * LANES + lane];
+    for (a, b) in a.as_chunks::<HEAD>().0.iter().zip(b.as_chunks::<HEAD>().0) {
+        let mut sums = [0f32; SUMS];
+        for k in 0..HEAD / SUMS {
+            for lane in 0..SUMS {
+                let apart = a[k * SUMS + lane] - b[k * SUMS + lane];
                 sums[lane] += apart * apart;
             }
         }
-        sum += total(sums);
+        let [a, b, c, d, e, f, g, h] = sums;
+        sum += ((a + e) + (c + g)) + ((b + f) + (d + h));
         if sum >= bound {
             return None;
         }
@@ -212,48 +209,55 @@ fn squared_distance_below(a: &[f32], b: &[f32], bound: f32) -> Option<f32> {
     Some(sum)
 }
 
-#[inline(always)]
-fn total(s: [f32; LANES]) -> f32 {
-    ((s[0] + s[4]) + (s[2] + s[6])) + ((s[1] + s[5]) + (s[3] + s[7]))
-}
-
 /// The cost of the best path from the first points of both to the last: a step along one of them costs the squared distance of the points
 /// reached, one along both twice as much. Infinite as soon as it cannot be below `bound`.
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
-fn path_cost_below(a: &[f32], b: &[f32], wide: usize, bound: f32) -> f32 {
-    // costs[j + 1]: to point j of b; the first is where paths begin.
+fn path_cost_below(a: &[[f32; LINE]], b: &[[f32; LINE]], bound: f32) -> f32 {
+    // before[j + 1]: to point j of b; the first is where paths begin.
     let mut before = [f32::INFINITY; POINTS + 1];
     before[0] = 0.0;
-    for (i, point) in a.chunks_exact(wide).enumerate() {
-        let mut costs = [f32::INFINITY; POINTS + 1];
-        let mut least = f32::INFINITY;
-        for j in i.saturating_sub(BAND)..(i + BAND + 1).min(POINTS) {
-            let other = &b[j * wide..(j + 1) * wide];
-            let mut sums = [0f32; LANES];
-            for (a, b) in point
-                .as_chunks::<LANES>()
-                .0
-                .iter()
-                .zip(other.as_chunks::<LANES>().0)
-            {
-                for lane in 0..LANES {
-                    let apart = a[lane] - b[lane];
-                    sums[lane] += apart * apart;
-                }
+    for first in (0..POINTS).step_by(TOGETHER) {
+        let apart = match first {
+            0 => near_distances::<0>(a, b),
+            TOGETHER => near_distances::<TOGETHER>(a, b),
+            8 => near_distances::<8>(a, b),
+            _ => near_distances::<12>(a, b),
+        };
+        for (i, apart) in (first..).zip(&apart) {
+            let mut costs = [f32::INFINITY; POINTS + 1];
+            let mut least = f32::INFINITY;
+            for j in i.saturating_sub(BAND)..(i + BAND + 1).min(POINTS) {
+                let apart = apart[j + BAND - i];
+                let along_one = before[j + 1].min(costs[j]) + apart;
+                costs[j + 1] = along_one.min(before[j] + 2.0 * apart);
+                least = least.min(costs[j + 1]);
             }
-            let apart = total(sums);
-            let cost = (before[j] + 2.0 * apart)
-                .min(before[j + 1] + apart)
-                .min(costs[j] + apart);
-            costs[j + 1] = cost;
-            least = least.min(cost);
+            if least >= bound {
+                return f32::INFINITY;
+            }
+            before = costs;
         }
-        if least >= bound {
-            return f32::INFINITY;
-        }
-        before = costs;
     }
     before[POINTS]
+}
+
+/// Squared distances of points of `a`, from `FIRST` on, to those of `b` from [`BAND`] points before each: lanes that do not depend on each other.
+#[inline(always)]
+fn near_distances<const FIRST: usize>(
+    a: &[[f32; LINE]],
+    b: &[[f32; LINE]],
+) -> [[f32; NEAR]; TOGETHER] {
+    let mut sums = [[0f32; NEAR]; TOGETHER];
+    for (a, b) in a.iter().zip(b) {
+        for at in 0..TOGETHER {
+            let point = a[BAND + FIRST + at];
+            for lane in 0..NEAR {
+                let apart = point - b[FIRST + at + lane];
+                sums[at][lane] += apart * apart;
+            }
+        }
+    }
+    sums
 }
 
 #[cfg(test)]
@@ -282,13 +286,13 @@ mod tests {
             .iter()
             .map(|s| Rows::from_values(2, s.clone()))
             .collect();
-        let stretch = |(clip, rows): (usize, &Rows)| Stretch {
+        let stretch = |(clip, rows): (usize, &Rows)| MovingStretch {
             clip,
             start: 0,
             stop: rows.len(),
             moving_secs: 1.0,
         };
-        let stretches: Vec<Stretch> = clips.iter().enumerate().map(stretch).collect();
+        let stretches: Vec<MovingStretch> = clips.iter().enumerate().map(stretch).collect();
         ShapeTable::of(&clips, &stretches)
     }
 
@@ -321,12 +325,12 @@ mod tests {
         let mut b = vec![0.0; POINTS];
         a[..5].copy_from_slice(&[0.0, 1.0, 3.0, 2.0, 1.0]);
         b[..5].copy_from_slice(&[0.5, 0.5, 1.0, 3.0, 1.5]);
-        let wide = |v: &[f32]| -> Vec<f32> {
-            v.iter()
-                .flat_map(|v| std::iter::once(*v).chain([0.0; LANES - 1]))
-                .collect()
+        let line = |v: &[f32]| {
+            let mut line = [9.0; LINE];
+            line[BAND..BAND + POINTS].copy_from_slice(v);
+            [line]
         };
-        let found = path_cost_below(&wide(&a), &wide(&b), LANES, f32::INFINITY);
+        let found = path_cost_below(&line(&a), &line(&b), f32::INFINITY);
         let expected = plain(&a[..7], &b[..7], 6, 6);
         assert!(
             (f64::from(found) - expected).abs() < 1e-5,

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::candidates::Stretch;
+use super::candidates::MovingStretch;
 use super::shapes::ShapeTable;
 use crate::cluster::Hierarchy;
 
@@ -22,7 +22,7 @@ pub(super) struct ClipPart {
 }
 
 /// Members of each set by clip, in order.
-pub(super) fn by_clip(sets: &[Vec<usize>], stretches: &[Stretch]) -> Vec<ClipPart> {
+pub(super) fn by_clip(sets: &[Vec<usize>], stretches: &[MovingStretch]) -> Vec<ClipPart> {
     let mut parts: BTreeMap<(usize, usize), Vec<usize>> = BTreeMap::new();
     for (set, members) in sets.iter().enumerate() {
         for &member in members {

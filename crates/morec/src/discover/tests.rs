@@ -45,7 +45,7 @@ fn what_people_repeat_is_in_sets_of_its_own() {
             label.map(|l| l.1)
         };
         for class in ["wave", "bow"] {
-            let of_class = |set: &&MotionSet| {
+            let of_class = |set: &&RepetitionSet| {
                 set.instances
                     .iter()
                     .all(|of| class_of(of).is_none_or(|c| c == class))
@@ -131,6 +131,7 @@ fn nothing_in_it_is_no_set_and_wrong_rows_are_named() {
         }
     );
     assert_eq!(error(&[Rows::new(5)], 30.0), DiscoverError::Layout(5));
+    assert_eq!(error(&[Rows::new(4)], 30.0), DiscoverError::NoBones);
     assert_eq!(error(&[still], 0.0), DiscoverError::Rate(0.0));
 }
 
@@ -154,7 +155,7 @@ fn repetitions_that_follow_each_other_are_a_run() {
         span: TimeSpan::new(start, stop),
         distance: start,
     };
-    let set = MotionSet {
+    let set = RepetitionSet {
         instances: vec![
             instance(0, 0.0, 1.0),
             instance(0, 1.3, 2.3),
@@ -177,10 +178,10 @@ fn repetitions_that_follow_each_other_are_a_run() {
 }
 
 /// Candidates on a line of time, each with a number for a shape.
-fn line(spans: &[(usize, usize, f64)]) -> (Vec<Stretch>, Vec<Rows>) {
-    let mut stretches: Vec<Stretch> = spans
+fn line(spans: &[(usize, usize, f64)]) -> (Vec<MovingStretch>, Vec<Rows>) {
+    let mut stretches: Vec<MovingStretch> = spans
         .iter()
-        .map(|&(start, ticks, moving_secs)| Stretch {
+        .map(|&(start, ticks, moving_secs)| MovingStretch {
             clip: start % 2,
             start,
             stop: start + ticks,
@@ -199,7 +200,7 @@ fn line(spans: &[(usize, usize, f64)]) -> (Vec<Stretch>, Vec<Rows>) {
 }
 
 /// The best set, all gains counted anew each time; the first of the best.
-fn plain_cover(stretches: &[Stretch], shapes: &ShapeTable, theta: f64) -> Vec<Vec<usize>> {
+fn plain_cover(stretches: &[MovingStretch], shapes: &ShapeTable, theta: f64) -> Vec<Vec<usize>> {
     let mut free = vec![true; stretches.len()];
     let mut sets = Vec::new();
     loop {
@@ -212,7 +213,8 @@ fn plain_cover(stretches: &[Stretch], shapes: &ShapeTable, theta: f64) -> Vec<Ve
                 if !stretches[of].as_long(&stretches[other], 2.0) {
                     return None;
                 }
-                let (a, b) = match stretches[of].ticks() <= stretches[other].ticks() {
+                let by_length = |i: usize| (stretches[i].ticks(), i);
+                let (a, b) = match by_length(of) <= by_length(other) {
                     true => (of, other),
                     false => (other, of),
                 };

@@ -10,6 +10,7 @@ mod segmentation;
 mod streams;
 mod study;
 mod thesis;
+mod unlabelled;
 
 use serde::Serialize;
 
@@ -23,6 +24,7 @@ pub use performance::{StageClock, StageCost, StagePerformance};
 pub use segmentation::Segmented;
 pub use streams::Streamed;
 pub use study::{Picture, ReproduceError, Setting, Study};
+pub use unlabelled::UnlabelledChain;
 
 /// Everything that came out.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -39,6 +41,8 @@ pub struct Reproduction {
     pub classes: Vec<ClassLengths>,
     /// §5.5, for each setting.
     pub performance: Vec<StagePerformance>,
+    /// Cuts and clusters as one chain, beside sets without labels.
+    pub unlabelled: Vec<UnlabelledChain>,
     /// All pictures.
     #[serde(skip)]
     pub pictures: Vec<Picture>,
@@ -84,6 +88,7 @@ pub fn reproduce(
         performance.push(performance::run(study, setting)?);
     }
     at(steps)?;
+    let unlabelled = unlabelled::run(study, &segmentation)?;
     Ok(Reproduction {
         segmentation,
         clustering,
@@ -91,6 +96,7 @@ pub fn reproduce(
         streams,
         classes: class_lengths(study.samples.iter().map(Sample::length)),
         performance,
+        unlabelled,
         pictures,
     })
 }

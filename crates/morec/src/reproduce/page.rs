@@ -34,6 +34,7 @@ pub fn page(result: &Reproduction, about: &[(String, String)]) -> String {
     push_classification(&mut out, result);
     push_streams(&mut out, result);
     push_performance(&mut out, result);
+    super::unlabelled::push(&mut out, &result.unlabelled);
     out.push_str("</body>\n</html>\n");
     out
 }

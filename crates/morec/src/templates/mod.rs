@@ -9,7 +9,7 @@ mod dot;
 mod early;
 mod engine;
 mod held;
-mod kernel;
+pub(crate) mod kernel;
 mod matcher;
 mod metric;
 mod model;

@@ -17,7 +17,7 @@ use crate::poses::PoseArgs;
 Examples:
   morec discover clips/
   morec discover moves.mdb --report sets.html   # a page that plays the sets
-  morec discover moves.mdb --name-as set        # then: morec db classes --rename, morec db propose
+  morec discover moves.mdb --name-as set        # propose them as samples
   morec discover recordings/ --runs --json > sets.json")]
 pub struct Args {
     /// Clips, folders of clips, or one database

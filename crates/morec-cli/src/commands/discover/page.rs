@@ -14,7 +14,7 @@ use crate::commands::db::page::Page;
 const SHOWN: usize = 12;
 
 /// Where the motion of clips is.
-pub enum Motions<'a> {
+pub enum ShownMotions<'a> {
     /// In a database.
     Stored(&'a MotionDb),
     /// In memory, by name.
@@ -29,7 +29,7 @@ pub fn name_of_two(clips: &[DiscoverClip]) -> Option<&str> {
 }
 
 /// Writes the page.
-pub fn write(path: &Path, found: &DiscoveredSets, motions: Motions<'_>) -> Result<()> {
+pub fn write(path: &Path, found: &DiscoveredSets, motions: ShownMotions<'_>) -> Result<()> {
     let mut page = Page::default();
     for set in &found.sets {
         let (count, secs) = (set.instances.len(), set.length_secs);
@@ -65,15 +65,15 @@ pub fn write(path: &Path, found: &DiscoveredSets, motions: Motions<'_>) -> Resul
 
 fn strip(
     page: &mut Page,
-    motions: &Motions<'_>,
+    motions: &ShownMotions<'_>,
     clip: &str,
     id: Option<ClipId>,
     span: TimeSpan,
     caption: &str,
 ) -> Result<()> {
     match (motions, id) {
-        (Motions::Stored(db), Some(id)) => page.figure(db, id, span, caption)?,
-        (Motions::Read(clips), _) => {
+        (ShownMotions::Stored(db), Some(id)) => page.figure(db, id, span, caption)?,
+        (ShownMotions::Read(clips), _) => {
             if let Some(stored) = clips.get(clip) {
                 page.figure_of(stored, span, caption);
             }

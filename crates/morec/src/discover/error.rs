@@ -1,0 +1,19 @@
+//! Why sets cannot be found.
+
+/// Why sets cannot be found.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[allow(missing_docs)] // The messages say it all.
+pub enum DiscoverError {
+    #[error("rows of {found} values beside rows of {expected}: all clips must show the same bones")]
+    Width { expected: usize, found: usize },
+    #[error("rows of {0} values are no feature rows: their number is 6 for each bone and 4")]
+    Layout(usize),
+    #[error("no bone is shown by all clips: choose clips of one kind of skeleton")]
+    NoBones,
+    #[error("the rate must be above 0 and at most 1000 rows a second, found {0}")]
+    Rate(f64),
+    #[error("row {row} of clip {clip} holds a value that is not finite")]
+    NotFinite { clip: usize, row: usize },
+    #[error("cancelled")]
+    Cancelled,
+}
