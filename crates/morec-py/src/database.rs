@@ -66,7 +66,7 @@ impl PyDatabase {
     }
 
     /// Does `work` that takes long, with reports of its progress.
-    fn run<T: Send>(
+    pub fn run<T: Send>(
         &self,
         py: Python<'_>,
         progress: Option<&Bound<'_, PyAny>>,

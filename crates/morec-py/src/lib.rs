@@ -7,6 +7,7 @@ mod clip;
 mod clip_data;
 mod crossval;
 mod database;
+mod discover;
 mod divided;
 mod errors;
 mod evaluate;
@@ -57,6 +58,8 @@ fn _morec(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(crossval::crossval, module)?)?;
     module.add_function(wrap_pyfunction!(evaluate::evaluate, module)?)?;
     module.add_function(wrap_pyfunction!(segment::cut, module)?)?;
+    module.add_function(wrap_pyfunction!(discover::discover, module)?)?;
+    module.add_function(wrap_pyfunction!(discover::discover_stored, module)?)?;
     module.add_function(wrap_pyfunction!(synth::synth_database, module)?)?;
     module.add_function(wrap_pyfunction!(synth::synth_everyday, module)?)?;
     module.add_function(wrap_pyfunction!(synth::synth_motions, module)?)?;

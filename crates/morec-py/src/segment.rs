@@ -1,5 +1,6 @@
 //! Cuts where behaviour changes, without labels.
 
+use morec::discover::{DiscoverParams, discover};
 use morec::features::{FeatureParams, bones_of_clip, rows_of_clip};
 use morec::pivots::{PivotMap, PivotSet, PoseParams, pose_rows_of_clip};
 use morec::segment::{KernelParams, MisfitSample, PpcaParams, Segmentation, kernel_cuts, segment};
@@ -28,6 +29,7 @@ pub fn cut<'py>(
     let dict = PyDict::new(py);
     let named = |error: String| morec_error(format!("{}: {error}", data.clip.name));
     let cuts: Vec<f64> = match cutter.map_err(operation_error)? {
+        Cutter::Repeats(params) => py.detach(|| by_repeats(&data, &params)).map_err(named)?,
         Cutter::Kernel(params) => py.detach(|| by_kernel(&data, &params)).map_err(named)?,
         Cutter::Ppca(params, set) => {
             let found = py.detach(|| by_ppca(&data, &params, &set)).map_err(named)?;
@@ -50,6 +52,14 @@ fn by_kernel(data: &ClipData, params: &KernelParams) -> Result<Vec<f64>, String>
     let bones = bones_of_clip(&data.clip, &data.roles, &data.rest);
     let rows = rows_of_clip(&data.clip, &data.roles, &data.rest, bones, &features);
     kernel_cuts(&rows, &features, params).map_err(|e| e.to_string())
+}
+
+fn by_repeats(data: &ClipData, params: &DiscoverParams) -> Result<Vec<f64>, String> {
+    let features = FeatureParams::default();
+    let bones = bones_of_clip(&data.clip, &data.roles, &data.rest);
+    let rows = rows_of_clip(&data.clip, &data.roles, &data.rest, bones, &features);
+    let sets = discover(&[rows], features.tick_hz(), params, &()).map_err(|e| e.to_string())?;
+    Ok(sets.cuts_of(0, data.clip.frames as f64 / data.clip.rate_hz))
 }
 
 fn by_ppca(data: &ClipData, params: &PpcaParams, set: &PivotSet) -> Result<Segmentation, String> {

@@ -13,6 +13,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from . import plot, synth
+from ._discover import discover
 from ._files import read, read_all, read_folder
 from ._drawing import animation
 from ._learn import crossval, evaluate, train
@@ -54,6 +55,7 @@ __all__ = [
     "animation",
     "crossval",
     "cut",
+    "discover",
     "evaluate",
     "features",
     "listen",

@@ -262,9 +262,9 @@ def cut(
     Parameters
     ----------
     clip : Clip
-    method : {"kernel", "ppca"}
+    method : {"kernel", "ppca", "repeats"}
         Kernel change points over feature rows; or the thesis's method over joint rotations: the poses so far are modelled, and
-        a cut lies where the poses ahead stop fitting.
+        a cut lies where the poses ahead stop fitting; or where the repetitions that `discover` finds in the clip begin and end.
     window, penalty, least : float, optional
         kernel: length of the windows whose statistics are compared, seconds; what a cut costs; no segment is shorter, seconds.
     rise, quality : float, optional

@@ -1,0 +1,46 @@
+"""Sets of the same motion in clips without labels."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from . import _morec
+from ._files import Clips, as_clips
+from ._morec import Database
+from ._progress import Progress, listener
+from ._tables import Table
+
+
+def discover(
+    clips: Clips | Database,
+    *,
+    plain: bool = False,
+    runs: bool = False,
+    clip: str | None = None,
+    progress: Progress = None,
+) -> Table:
+    """Motions that repeat, without labels; what ``morec discover`` finds.
+
+    Parameters
+    ----------
+    clips : Clip, path, sequence of these, or Database
+    plain : bool
+        Compare by the plain metric, in one pass: half the time, and as good where people rest between motions.
+    runs : bool
+        Join repetitions that follow each other at once.
+    clip : str, optional
+        Clips of a database of this name; ``*`` stands for any text.
+    progress : bool or callable, optional
+
+    Returns
+    -------
+    Table
+        A row for each repetition: set (from 1, those that explain most first), clip, start_secs, stop_secs, distance (from the
+        middle of its set, in spreads).
+    """
+    settings: dict[str, Any] = {"plain": plain, "runs": runs}
+    if isinstance(clips, Database):
+        return _morec.discover_stored(clips, clip, listener(progress), **settings)
+    if clip is not None:
+        raise ValueError("clip: chooses clips of a database")
+    return _morec.discover(as_clips(clips), listener(progress), **settings)
