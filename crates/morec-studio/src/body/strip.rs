@@ -28,6 +28,15 @@ pub fn strip(motion: &ClipMotion, span: TimeSpan, rect: Rect, palette: &BodyColo
     shapes
 }
 
+/// One figure in the middle of `rect`.
+pub fn at_moment(motion: &ClipMotion, secs: f64, rect: Rect, palette: &BodyColours) -> Vec<Shape> {
+    let scale = 0.68 * rect.height() / motion.body.height as f32;
+    let foot = Pos2::new(rect.center().x, rect.bottom() - 0.05 * rect.height());
+    let mut shapes = Vec::new();
+    figure(motion, secs, foot, scale, palette, &mut shapes);
+    shapes
+}
+
 fn figure(
     motion: &ClipMotion,
     secs: f64,

@@ -3,6 +3,7 @@
 pub mod align;
 pub mod channel;
 pub mod cut;
+pub mod discover;
 pub mod example;
 pub mod export;
 pub mod group;
@@ -36,6 +37,7 @@ pub enum JobOutcome {
     Loaded(load::DecodedClip),
     Curves(cut::Curves),
     Grouped(group::ClusteredItems),
+    Discovered(morec_ops::DiscoveredSets),
     Proposed(usize),
     Trained(Box<train::TrainedIndex>),
     Judged(Box<judge::CrossvalResult>),

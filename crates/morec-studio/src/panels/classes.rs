@@ -6,7 +6,7 @@ use egui::{
 };
 use morec_db::labels::{DbSample, SampleState as Judged};
 
-use super::{Out, card, carried, groups, label, padded, proposals, similar, view, widgets};
+use super::{Out, card, carried, groups, label, padded, proposals, shelf, similar, view, widgets};
 use crate::format;
 use crate::state::{ClassCommand, Command, State};
 use crate::theme::Colours;
@@ -30,6 +30,7 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
         tools(ui, state, out);
         ui.add_space(4.0);
         match (&state.classes.similar, &state.classes.groups) {
+            (None, None) if state.shelf.open => shelf::show(ui, state, out),
             (Some(found), _) => similar::show(ui, state, found, out),
             (None, Some(_)) => groups_and_columns(ui, state, out),
             (None, None) => columns(ui, state, out),
@@ -43,6 +44,9 @@ fn tools(ui: &mut Ui, state: &State, out: Out) {
         if let Some(found) = &state.classes.similar {
             similar::tools(ui, state, found, out);
             return;
+        }
+        if state.shelf.open && state.classes.groups.is_none() {
+            return shelf::tools(ui, state, out);
         }
         let mut class = |command| out.push(Command::Classes(command));
         if let Some(groups) = &state.classes.groups {
@@ -81,6 +85,7 @@ fn tools(ui: &mut Ui, state: &State, out: Out) {
             class(ClassCommand::NextDoubtful);
         }
         proposals::at_once(ui, state, out);
+        shelf::button(ui, state, out);
         let mut class = |command| out.push(Command::Classes(command));
         ui.separator();
         if ui
@@ -124,7 +129,7 @@ fn columns(ui: &mut Ui, state: &State, out: Out) {
         widgets::nothing(
             ui,
             "No classes yet",
-            "Label a few motions, or cut the clips and group the cuts.",
+            "Label a few motions, or let what repeats be found and name it.",
         );
         return;
     }

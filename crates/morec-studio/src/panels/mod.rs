@@ -32,6 +32,7 @@ mod player;
 mod proposals;
 mod roles;
 mod scale;
+mod shelf;
 mod similar;
 mod strips;
 mod teach;

@@ -8,7 +8,7 @@ use morec_db::ClipId;
 use morec_db::labels::SampleId;
 
 use super::Out;
-use crate::body::strip::strip;
+use crate::body::strip::{at_moment, strip};
 use crate::state::{Command, LibraryCommand, State, TimelineCommand};
 use crate::stretch::Stretch;
 use crate::theme::Colours;
@@ -49,6 +49,29 @@ pub fn draw(ui: &Ui, state: &State, of: Stretch, rect: Rect) {
     let mut mesh = Mesh::clone(&mesh);
     mesh.translate(rect.min - pos2(0.0, 0.0));
     ui.painter_at(rect).add(Shape::mesh(mesh));
+}
+
+/// Draws over a strip the performer at a moment of it; all strips of a set, which take `secs`, are at the same share of theirs.
+pub fn play(ui: &Ui, state: &State, of: Stretch, rect: Rect, secs: f64) {
+    let Some(motion) = state
+        .motions
+        .get(of.clip)
+        .filter(|_| ui.is_rect_visible(rect))
+    else {
+        return;
+    };
+    let share = (ui.input(|i| i.time) / secs.max(0.2)).fract();
+    let (c, at) = (
+        Colours::now(ui),
+        of.span.start_secs + share * of.span.duration_secs(),
+    );
+    let place = Rect::from_min_size(rect.min, Vec2::new(rect.height(), rect.height()));
+    let painter = ui.painter_at(rect);
+    painter.rect_filled(place, 3.0, c.well);
+    painter.add(Shape::mesh(one(&at_moment(motion, at, place, &c.body()))));
+    let x = rect.left() + share as f32 * rect.width();
+    painter.vline(x, rect.y_range(), (1.0, c.playhead));
+    ui.ctx().request_repaint();
 }
 
 /// Shows the stretch of a strip, and selects it: the sample that it is, else the stretch itself.

@@ -16,6 +16,7 @@ use super::compare::CompareCommand;
 use super::cuts::CutCommand;
 use super::live::LiveCommand;
 use super::player::PlayCommand;
+use super::shelf::ShelfCommand;
 use super::similar::SimilarCommand;
 use crate::body::Camera;
 use crate::store::Edit;
@@ -78,6 +79,7 @@ pub enum Command {
     Live(LiveCommand),
     Cuts(CutCommand),
     Similar(SimilarCommand),
+    Shelf(ShelfCommand),
     Compare(CompareCommand),
     /// Cancels the job of this place.
     Cancel(usize),

@@ -12,6 +12,7 @@ pub mod layout;
 mod library;
 pub mod live;
 pub mod player;
+pub mod shelf;
 pub mod similar;
 pub mod timeline;
 mod train;
@@ -93,6 +94,8 @@ pub struct State {
     /// Detections of the index in the clip that is shown.
     pub detections: Option<(ClipId, Vec<ClipDetection>)>,
     pub classes: Classes,
+    /// Sets that were found without labels.
+    pub shelf: shelf::Shelf,
     pub train: Train,
     pub live: Live,
     pub import_report: Option<import::ImportSummary>,
@@ -197,6 +200,7 @@ impl State {
             curves: None,
             detections: None,
             classes: Classes::default(),
+            shelf: shelf::Shelf::default(),
             train: Train::default(),
             live: Live::default(),
             import_report: None,
@@ -275,6 +279,7 @@ impl State {
             Command::Live(command) => self.apply_live(command),
             Command::Cuts(command) => self.apply_cuts(command),
             Command::Similar(command) => self.apply_similar(command),
+            Command::Shelf(command) => self.apply_shelf(command),
             Command::Compare(command) => self.apply_compare(command),
             Command::Cancel(at) => {
                 if let Some(job) = self.jobs.running.get(at) {

@@ -23,6 +23,7 @@ mod pictures;
 mod places;
 mod roles;
 mod selection;
+mod shelf;
 mod train;
 mod undo;
 mod unsaved;

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use morec::roles::Role;
-use morec_db::labels::{NewSample, SampleId, WholeClip};
+use morec_db::labels::{NewSample, SampleId, SampleState, WholeClip};
 use morec_db::{ClipId, ClipUpdate};
 use morec_ops::TrainSettings;
 use serde::Serialize;
@@ -108,12 +108,15 @@ pub(super) fn train_line(
 /// The command that sets a label.
 fn label_line(db: &Path, snapshot: &Snapshot, sample: &NewSample) -> Option<ShownCommand> {
     let line = ShownCommand::new("morec db label").word(db);
-    Some(
-        line.with("--clip", &snapshot.clip(sample.clip)?.name)
-            .with("--class", &sample.class)
-            .secs("--start", sample.start_secs)
-            .secs("--stop", sample.stop_secs),
-    )
+    let line = line
+        .with("--clip", &snapshot.clip(sample.clip)?.name)
+        .with("--class", &sample.class)
+        .secs("--start", sample.start_secs)
+        .secs("--stop", sample.stop_secs);
+    Some(match sample.state {
+        SampleState::Accepted => line,
+        state => line.with("--state", state.name()),
+    })
 }
 
 /// The commands that set labels.

@@ -17,6 +17,7 @@ mod marks;
 mod outcomes;
 mod proposals;
 mod roles;
+mod shelf;
 mod shown;
 mod similar;
 mod thesis;

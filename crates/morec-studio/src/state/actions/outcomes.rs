@@ -137,6 +137,7 @@ impl State {
                 });
                 self.reload();
             }
+            JobOutcome::Discovered(found) => self.found_sets(found),
             JobOutcome::Grouped(groups) => self.classes.show_groups(groups),
             JobOutcome::Trained(trained) => self.trained(*trained),
             JobOutcome::Judged(judged) => {
