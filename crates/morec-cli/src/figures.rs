@@ -52,12 +52,18 @@ pub fn write_misses(out: &mut impl Write, misses: &[Miss]) -> io::Result<()> {
 
 fn write_figures(out: &mut impl Write, e: &Evaluation) -> io::Result<()> {
     let totals = &e.totals;
+    let events = &e.events;
     writeln!(
         out,
-        "{} clips, {:.1} s; {} samples, {} detections\n",
-        totals.known_clips, totals.known_secs, totals.samples, totals.detections
+        "{} clips, {:.1} s; {} samples, {} detections\n{} of {} samples found, {} false or double\n",
+        totals.known_clips,
+        totals.known_secs,
+        totals.samples,
+        totals.detections,
+        events.matched,
+        events.matched + events.missed,
+        events.spurious
     )?;
-    let t = &e.thesis;
     let mut line = |name: &str, value: String, detail: String| {
         writeln!(
             out,
@@ -65,26 +71,17 @@ fn write_figures(out: &mut impl Write, e: &Evaluation) -> io::Result<()> {
             format!("{name:<24} {value:>8}   {detail}").trim_end()
         )
     };
-    line(
-        "thesis accuracy",
-        figure(t.accuracy),
-        format!(
-            "TP {}  FP {}  FN {}  TN {}",
-            t.true_positives, t.false_positives, t.false_negatives, t.true_negatives
-        ),
-    )?;
-    line(
-        "F1 at half overlap",
-        figure(e.f1_at(MEASURED_OVERLAP)),
-        String::new(),
-    )?;
-    let events = &e.events;
     let detail = format!(
         "precision {}  recall {}, middles within a sample",
         figure(events.precision),
         figure(events.recall)
     );
     line("F1 of events", figure(events.f1), detail)?;
+    line(
+        "F1 at half overlap",
+        figure(e.f1_at(MEASURED_OVERLAP)),
+        String::new(),
+    )?;
     let detail = "mean difference of score and share of right detections".to_owned();
     line("calibration error", figure(e.reliability.error), detail)?;
     let alarms = &e.false_alarms;
@@ -132,7 +129,13 @@ fn write_figures(out: &mut impl Write, e: &Evaluation) -> io::Result<()> {
     let detail = format!("{} of what is labelled", figure(s.labelled_accuracy));
     line("frame accuracy", figure(s.frame_accuracy), detail)?;
     let detail = "order of classes, whenever they were".to_owned();
-    line("edit score", figure(s.edit_score), detail)
+    line("edit score", figure(s.edit_score), detail)?;
+    let t = &e.thesis;
+    let detail = format!(
+        "TP {}  FP {}  FN {}  TN {}",
+        t.true_positives, t.false_positives, t.false_negatives, t.true_negatives
+    );
+    line("thesis accuracy", figure(t.accuracy), detail)
 }
 
 fn write_overlaps(out: &mut impl Write, e: &Evaluation) -> io::Result<()> {

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
+use morec::diagnosis::errors_of_clip;
 use morec::files::{
     ClipFile, FileError, FileReader, Listing, is_large, list, read_file, read_stream, split_choice,
 };
@@ -101,10 +102,13 @@ pub fn takes(path: &Path, args: &ReadArgs, options: &ImportOptions) -> Result<Ve
     Ok(takes)
 }
 
-/// Says on standard error what cannot be true of the bodies in a file.
+/// Says on standard error what cannot be true of the bodies in a file, and what `morec inspect` calls an error of them.
 pub fn say_doubts(path: &Path, takes: &[Take]) {
-    for doubt in takes.iter().flat_map(|take| &take.report.doubts) {
-        eprintln!("morec: {}: {doubt}", path.display());
+    for take in takes {
+        let errors = errors_of_clip(&take.clip, &take.roles, take.rest());
+        for doubt in take.report.doubts.iter().chain(&errors) {
+            eprintln!("morec: {}: {doubt}", path.display());
+        }
     }
 }
 

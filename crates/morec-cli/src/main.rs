@@ -49,6 +49,7 @@ enum Subcommands {
     Smooth(commands::smooth::Args),
     Play(commands::play::Args),
     Train(commands::train::Args),
+    #[command(alias = "recognise")]
     Recognize(commands::recognize::Args),
     Evaluate(commands::evaluate::Args),
     Crossval(commands::crossval::Args),

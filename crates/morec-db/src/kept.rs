@@ -4,6 +4,7 @@
 use std::path::{Path, PathBuf};
 
 use morec::clip::Clip;
+use morec::diagnosis::errors_of_clip;
 use morec::features::{FeatureParams, Rows};
 use morec::files::{ClipFile, FileError, FileReader, each_piece, split_choice};
 use morec::formats::{Place, Warning};
@@ -207,6 +208,10 @@ impl KeptClip {
         let mut file = file.clone();
         for doubt in &take.report.doubts {
             let warning = Warning::new(Place::File, format!("{name}: {doubt}"));
+            file.warnings.push(warning.to_string());
+        }
+        for error in errors_of_clip(&take.clip, &take.roles, take.rest()) {
+            let warning = Warning::new(Place::File, format!("{name}: {error}"));
             file.warnings.push(warning.to_string());
         }
         let packed = pack(take, &()).map_err(|reason| format!("{name}: {reason}"))?;

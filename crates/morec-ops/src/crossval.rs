@@ -1,5 +1,7 @@
 //! Cross-validation, and its measures.
 
+use std::collections::BTreeSet;
+
 use morec::crossval::{
     CrossvalData, CrossvalOptions, CrossvalOutcome, FoldBy, FoldReport, Tested, crossval,
 };
@@ -86,6 +88,8 @@ impl LeftOut {
 /// What a cross-validation recognised, and its measures.
 #[derive(Debug, Clone)]
 pub struct CrossvalMeasures {
+    /// What was left out in turn, in words.
+    pub divided: String,
     /// Streams, samples and detections of the clips as they are.
     pub tested: Tested,
     /// Their measures.
@@ -113,24 +117,68 @@ impl CrossvalSettings {
         }
     }
 
+    /// What is left out in turn, in words, with how many parts there are.
+    ///
+    /// # Errors
+    /// There is nobody but one person, without whom nothing is left to learn from.
+    pub fn divided(&self, data: &CrossvalData<'_>) -> Result<String, OperationError> {
+        let labelled: BTreeSet<&str> = data.samples.iter().map(|s| s.clip.as_str()).collect();
+        let clips = data
+            .clips
+            .iter()
+            .filter(|c| labelled.contains(c.name.as_str()));
+        let named: BTreeSet<&str> = clips.clone().filter_map(|c| c.person.as_deref()).collect();
+        let unnamed = clips.filter(|c| c.person.is_none()).count();
+        let one = named.first().filter(|_| named.len() == 1 && unnamed == 0);
+        match (self.by, one) {
+            (LeftOut::Person, Some(person)) if data.tests.is_none() => {
+                return Err(OperationError::Settings(format!(
+                    "all labels are by one person, {person}: without them nothing is left to learn from. Divide by clip or by half instead \
+                     of by person"
+                )));
+            }
+            _ => {}
+        }
+        let clips = |n: usize| match n {
+            1 => "1 clip".to_owned(),
+            n => format!("{n} clips"),
+        };
+        Ok(match (self.by, named.len(), unnamed) {
+            (LeftOut::Person, 0, _) => format!(
+                "each clip in turn, {}, as nobody is named: a column `person` of the labels, or a table of people, names them",
+                clips(unnamed)
+            ),
+            (LeftOut::Person, people, 0) => format!("{}, {people} people", self.by.said()),
+            (LeftOut::Person, people, others) => format!(
+                "{}, {people} named and {} of nobody known, each like a person",
+                self.by.said(),
+                clips(others)
+            ),
+            (LeftOut::Clip, _, _) => format!("{}, {}", self.by.said(), clips(labelled.len())),
+            (LeftOut::Half | LeftOut::Own, _, _) => self.by.said().to_owned(),
+        })
+    }
+
     /// Trains as `train` says without each part in turn, recognises that part, and measures.
     ///
     /// # Errors
-    /// Settings that make no sense, a fold that cannot be trained or recognised, or `progress` cancels.
+    /// Settings that make no sense, one person alone, a fold that cannot be trained or recognised, or `progress` cancels.
     pub fn crossval(
         &self,
         data: &CrossvalData<'_>,
         train: &TrainSettings,
         progress: &dyn Progress,
     ) -> Result<CrossvalMeasures, OperationError> {
+        let divided = self.divided(data)?;
         let outcome = crossval(data, &self.options(), &train.recipe()?, progress)?;
-        Ok(CrossvalMeasures::of(outcome)?)
+        Ok(CrossvalMeasures::of(outcome, divided)?)
     }
 }
 
 impl CrossvalMeasures {
-    fn of(outcome: CrossvalOutcome) -> Result<Self, EvalError> {
+    fn of(outcome: CrossvalOutcome, divided: String) -> Result<Self, EvalError> {
         Ok(Self {
+            divided,
             evaluation: evaluation(&outcome.tested)?,
             tested: outcome.tested,
             perturbed: measured(&outcome.perturbed)?,

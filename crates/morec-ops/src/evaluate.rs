@@ -8,7 +8,7 @@ use morec::eval::{
     timelines,
 };
 use morec::explain::{Miss, Performance, deviation, explain};
-use morec::labels::{ClipLength, Mark, Resolved, Sample, hint, some_of};
+use morec::labels::{ClipLength, Mark, Resolved, Sample, hint, said_absent, some_of};
 use morec::live::{Detection, Model};
 use morec::train::TrainClip;
 use rayon::prelude::*;
@@ -80,16 +80,17 @@ impl EvaluateSettings {
         unknown: &BTreeSet<String>,
         labels: Resolved,
     ) -> Result<LabelledStreams, OperationError> {
+        if let Some(why) = labels.doubtful_unit() {
+            return Err(OperationError::Settings(format!("labels: {why}")));
+        }
         self.check(&labels.samples)?;
         let labelled: BTreeSet<String> = labels.samples.iter().map(|s| s.clip.clone()).collect();
         let mut notes = Vec::new();
         if !labels.absent.is_empty() {
-            let rows: usize = labels.absent.values().sum();
-            let names = some_of(labels.absent.keys());
-            notes.push(format!(
-                "{rows} labels are of clips that are not there; left out: {names}"
-            ));
+            let known: Vec<String> = clips.keys().cloned().collect();
+            notes.push(said_absent(&labels.absent, &known));
         }
+        notes.extend(labels.misspelled());
         let counts = |s: &Sample| self.classes.is_empty() || self.classes.contains(&s.class);
         let counted = labels.samples.into_iter().filter(counts);
         let (lost, kept): (Vec<_>, Vec<_>) = counted.partition(|s| unknown.contains(&s.clip));

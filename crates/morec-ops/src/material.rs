@@ -1,7 +1,8 @@
 //! What a database has to train from.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
+use morec::diagnosis::errors_of_clip;
 use morec::labels::{Extent, Label, Labels, some_of};
 use morec::train::{StreamKind, TrainClip, TrainingData, TrainingMaterial};
 use morec_db::labels::{DbSample, SampleFilter, SampleState};
@@ -86,6 +87,7 @@ pub fn training_data(
         unknown: &unknown,
     };
     let mut data = material.sort_out(all)?;
+    data.notes.extend(errors_of(&data.clips));
     if !marked.labelled.is_empty() {
         data.notes.push(format!(
             "{} clips have the tag {BACKGROUND}, but hold samples of the classes: they are used as labelled clips: {}",
@@ -94,6 +96,18 @@ pub fn training_data(
         ));
     }
     Ok(data)
+}
+
+/// What [`errors_of_clip`] says of clips that teach, each sentence once.
+fn errors_of(clips: &[TrainClip]) -> Vec<String> {
+    let mut said: BTreeMap<String, Vec<&str>> = BTreeMap::new();
+    for clip in clips {
+        for error in errors_of_clip(&clip.clip, &clip.roles, &clip.rest) {
+            said.entry(error).or_default().push(&clip.name);
+        }
+    }
+    let sentence = |(error, clips): (String, Vec<&str>)| format!("{}: {error}", some_of(clips));
+    said.into_iter().map(sentence).collect()
 }
 
 /// Clips of a database, as labelled ones.

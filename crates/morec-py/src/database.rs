@@ -1,6 +1,6 @@
 //! `morec.Database`: clips, labels and search in one file.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -8,7 +8,7 @@ use morec::files::{FileReader, list};
 use morec::labels::{ClipLength, Sample};
 use morec::pivots::PivotSet;
 use morec::progress::Progress;
-use morec_db::labels::{NewSample, SampleFilter, SampleState};
+use morec_db::labels::{LabelOptions, NewSample, SampleFilter, SampleState};
 use morec_db::search::{Example, SearchIndex};
 use morec_db::{ClipFilter, ClipId, ClipInfo, DbError, ImportOutcome, MotionDb};
 use morec_ops::{
@@ -316,11 +316,25 @@ impl PyDatabase {
             };
             let lengths = clips.iter().map(|c| (c.name.clone(), length(c))).collect();
             let resolved = labels.resolve(&lengths);
+            if let Some(why) = resolved.doubtful_unit() {
+                return Err(DbError::Invalid(format!("labels: {why}")));
+            }
             if let Some(clip) = resolved.absent.keys().next() {
                 // Says which names come near.
                 db.find_clip(clip)?;
             }
+            let described = clips.iter().filter(|clip| clip.subject.is_some());
+            let described: BTreeSet<ClipId> = described.map(|clip| clip.id).collect();
             let ids: BTreeMap<String, ClipId> = clips.into_iter().map(|c| (c.name, c.id)).collect();
+            let people = resolved.samples.iter();
+            let people = people.filter_map(|s| Some((*ids.get(&s.clip)?, s.person.clone()?)));
+            let options = LabelOptions {
+                by: by.to_owned(),
+                people: people
+                    .filter(|(clip, _)| !described.contains(clip))
+                    .collect(),
+                ..LabelOptions::default()
+            };
             let sample = |s: Sample| {
                 Some(NewSample {
                     clip: *ids.get(&s.clip)?,
@@ -333,7 +347,7 @@ impl PyDatabase {
                 })
             };
             let samples: Vec<NewSample> = resolved.samples.into_iter().filter_map(sample).collect();
-            Ok((db.add_samples(&samples, by)?, resolved.warnings))
+            Ok((db.label(&samples, &options)?.counts, resolved.warnings))
         })?;
         warn(py, warnings.iter().map(|w| format!("labels: {w}")))?;
         plain(py, &added)

@@ -1,5 +1,8 @@
 //! The keyboard.
 
+mod help;
+mod typing;
+
 use egui::{Key, Modifiers};
 
 use crate::state::{
@@ -7,6 +10,8 @@ use crate::state::{
     LiveCommand, Panel, PlayCommand, SimilarCommand, State, TimelineCommand, TrainCommand,
 };
 use crate::store::Edit;
+pub use help::HELP;
+use typing::{follow_typing, is_changed, remember_change};
 
 /// The keys of the first nine classes.
 pub const CLASS_KEYS: [Key; 9] = [
@@ -24,113 +29,11 @@ pub const CLASS_KEYS: [Key; 9] = [
 /// The key of whichever class it was given to, beyond the ninth, too.
 const QUICK_KEY: Key = Key::Q;
 
-/// Entries of the page of keys: area, keys, effect.
-pub const HELP: &[(&str, &str, &str)] = &[
-    (
-        "Anywhere",
-        "Ctrl 1 … 5",
-        "Library, Label, Classes, Train, Live",
-    ),
-    ("Anywhere", "Ctrl Z, Ctrl Shift Z", "undo, redo"),
-    (
-        "Anywhere",
-        "Ctrl O, Ctrl I",
-        "open a database, import clips",
-    ),
-    ("Anywhere", "Ctrl T", "train"),
-    ("Anywhere", "Ctrl H, F1", "history, this page"),
-    ("Library", "Ctrl A", "select all clips of the list"),
-    (
-        "Library",
-        "1 … 9",
-        "the clips that you have selected, as a whole, show this class",
-    ),
-    (
-        "Library",
-        "B",
-        "use the selected clips as background, or no longer",
-    ),
-    ("Playing", "Space", "play, stop"),
-    (
-        "Playing",
-        "J  K  L",
-        "backwards, stop, forwards; again is faster",
-    ),
-    ("Playing", "Left Right  , .", "a frame back, a frame on"),
-    ("Playing", "Shift Left Right", "a second back, a second on"),
-    ("Playing", "Home, End", "to the beginning, to the end"),
-    ("Playing", "O", "loop the selected stretch or label"),
-    ("Playing", "I", "stay inside the segment between the cuts"),
-    ("Labels", "1 … 9 held", "label what passes while playing"),
-    (
-        "Labels",
-        "1 … 9 tapped",
-        "count repetitions: each tap ends one and begins the next",
-    ),
-    (
-        "Labels",
-        "1 … 9, selected",
-        "label the selected stretch, or change the selected label's class",
-    ),
-    ("Labels", "Escape", "end the selection"),
-    (
-        "Labels, live",
-        "Q, W",
-        "like 1 … 9, for any class; W chooses it by the beginning of its name",
-    ),
-    ("Labels", "S, M", "split at the playhead, merge"),
-    (
-        "Labels",
-        "[  ]",
-        "start, stop of the selected label to the playhead",
-    ),
-    (
-        "Labels",
-        "Ctrl Left Right",
-        "move the selected label by a frame",
-    ),
-    ("Labels", "Alt Left Right", "move its start by a frame"),
-    ("Labels", "Alt Shift Left Right", "move its stop by a frame"),
-    ("Labels", "Delete", "remove the selected labels"),
-    ("Labels", "Tab, Enter", "go to a label, select it"),
-    (
-        "Proposals",
-        "A, R",
-        "accept, reject; the next doubtful one is shown",
-    ),
-    ("Proposals", "N", "the next doubtful one"),
-    (
-        "Searching",
-        "F, C",
-        "more like the selection, the nearest beside the performer",
-    ),
-    ("Cuts", "X", "cut at the playhead"),
-    (
-        "Cuts",
-        "Ctrl Left Right  [ ]",
-        "move the selected cut by a frame, to the playhead",
-    ),
-    ("Cuts", "Delete", "remove the selected cut"),
-    ("Timeline", "+  −  0", "zoom in, zoom out, the whole clip"),
-    (
-        "Live",
-        "1 … 9",
-        "the last motion, or the selected stretch, was this class",
-    ),
-    ("Live", "0", "it was none of the classes: background"),
-    ("Live", "Space, R", "start or stop, record a take"),
-    (
-        "Live",
-        "Left Right, End",
-        "look back in the last minutes, look on, to the present",
-    ),
-];
-
 /// Reads the keyboard into commands. Keys without Ctrl act on what is seen alone: none does while something lies over the panel or a
 /// text has the keyboard, and each only on the panels that show what it changes.
 pub fn read(ctx: &egui::Context, state: &State, asks_a_file: bool, out: &mut Vec<Command>) {
     // A question is answered first.
-    if state.leaving.is_some() || state.undo_asks {
+    if state.leaving.is_some() || state.undo_asks || state.discarding.is_some() {
         return;
     }
     let focused = ctx.memory(|memory| memory.focused());
@@ -157,6 +60,7 @@ pub fn read(ctx: &egui::Context, state: &State, asks_a_file: bool, out: &mut Vec
             Panel::Live => return live(i, state, out),
             Panel::Library => library(i, state, out),
             Panel::Label => {
+                rows(i, out);
                 labels(i, state, out);
                 timeline(i, state, out);
             }
@@ -169,44 +73,16 @@ pub fn read(ctx: &egui::Context, state: &State, asks_a_file: bool, out: &mut Vec
     if in_field {
         follow_typing(ctx);
     }
-}
-
-/// Where it is remembered whether the text in the field was changed since Enter.
-fn changed_id() -> egui::Id {
-    egui::Id::new("text was changed")
-}
-
-/// True if keys with Ctrl are the text's own: it was changed, and Enter has not been pressed since.
-fn is_changed(ctx: &egui::Context) -> bool {
-    ctx.data(|data| data.get_temp(changed_id()))
-        .unwrap_or(false)
-}
-
-fn remember_change(ctx: &egui::Context, changed: bool) {
-    ctx.data_mut(|data| data.insert_temp(changed_id(), changed));
-}
-
-/// Notices that the text that has the keyboard is changed, or accepted by Enter.
-fn follow_typing(ctx: &egui::Context) {
-    use egui::Event;
-    let last = ctx.input(|i| {
-        let events = i.events.iter().rev();
-        let mut said = events.filter_map(|event| match event {
-            Event::Text(_) | Event::Paste(_) | Event::Cut | Event::Ime(_) => Some(true),
-            Event::Key {
-                key, pressed: true, ..
-            } => match key {
-                Key::Enter => Some(false),
-                Key::Backspace | Key::Delete => Some(true),
-                _ => None,
-            },
-            _ => None,
-        });
-        said.next()
-    });
-    if let Some(changed) = last {
-        remember_change(ctx, changed);
+    if !in_text && !covered && ctx.input_mut(|i| i.consume_key(Modifiers::COMMAND, Key::F)) {
+        out.push(Command::Show(Panel::Library));
+        // The field is there in the next frame.
+        ctx.data_mut(|data| data.insert_temp(search_field(), true));
     }
+}
+
+/// The field in which clips are searched, and where it is remembered that it shall have the keyboard.
+pub fn search_field() -> egui::Id {
+    egui::Id::new("search clips")
 }
 
 fn class_key(slot: usize, down: bool) -> Command {
@@ -259,9 +135,19 @@ fn library(i: &mut egui::InputState, state: &State, out: &mut Vec<Command>) {
     if i.consume_key(Modifiers::COMMAND, Key::A) {
         out.push(Command::Library(LibraryCommand::SelectAll));
     }
+    rows(i, out);
     class_keys(i, state, out);
     if i.consume_key(Modifiers::NONE, Key::B) {
         out.push(Command::Library(LibraryCommand::Background));
+    }
+}
+
+/// Up and down in the list of clips.
+fn rows(i: &mut egui::InputState, out: &mut Vec<Command>) {
+    for (key, by) in [(Key::ArrowUp, -1), (Key::ArrowDown, 1)] {
+        if i.consume_key(Modifiers::NONE, key) {
+            out.push(Command::Library(LibraryCommand::Step(by)));
+        }
     }
 }
 

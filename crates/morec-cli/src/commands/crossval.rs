@@ -89,6 +89,13 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     if settings.sensitivities.is_empty() && args.report.is_some() {
         settings.sensitivities = ALARM_RATES.to_vec();
     }
+    // Before the minutes that it may take.
+    let divided = settings.divided(&of)?;
+    let mut out = crate::console::stdout();
+    if !args.json {
+        writeln!(out, "Left out: {divided}\n")?;
+        out.flush()?;
+    }
     let measures = settings.crossval(&of, &args.material.settings, &StageBar::new())?;
     let (tested, evaluation) = (&measures.tested, &measures.evaluation);
     // Before anything is printed: whoever stops reading still gets the report.
@@ -96,7 +103,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         let timelines = timelines(&tested.streams, &tested.truths, &tested.founds)?;
         let about = [
             ("labels".to_owned(), args.material.label_source()),
-            ("left out".to_owned(), settings.by.said().to_owned()),
+            ("left out".to_owned(), measures.divided.clone()),
         ];
         let mut motion = ReportMotion::of(&timelines);
         match &args.material.db {
@@ -119,7 +126,6 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         };
         figures::write_report(path, &report)?;
     }
-    let mut out = crate::console::stdout();
     if args.json {
         let named = |p: &(Perturbation, Evaluation)| PerturbedFigures {
             perturbation: p.0.to_string(),
@@ -130,6 +136,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
             evaluation: s.1.clone(),
         };
         let all = CrossvalJson {
+            left_out: &measures.divided,
             evaluation,
             missed: &tested.misses,
             perturbed: measures.perturbed.iter().map(named).collect(),
@@ -150,6 +157,8 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 /// Everything measured, for JSON.
 #[derive(serde::Serialize)]
 struct CrossvalJson<'a> {
+    /// What was left out in turn.
+    left_out: &'a str,
     #[serde(flatten)]
     evaluation: &'a Evaluation,
     missed: &'a [Miss],

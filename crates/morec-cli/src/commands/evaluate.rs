@@ -25,7 +25,7 @@ use crate::output;
 
 /// Measure detections against labels.
 ///
-/// Prints thesis accuracy with its four counts, F1 at overlaps of 0.1, 0.25, 0.5 and 0.75, false alarms a minute,
+/// Prints how many samples were found, F1 of events and at overlaps of 0.1, 0.25, 0.5 and 0.75, false alarms a minute,
 /// delay, errors of starts and stops, P_C/P_E/P_R and the confusion matrix, over all clips and class by class.
 ///
 /// Labels and detections are tables of tab-separated text with a header: `clip`, `class`, and `start`, `stop`

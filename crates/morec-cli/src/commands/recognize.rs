@@ -10,7 +10,7 @@ use morec::explain::{MotionDeviation, deviation};
 use morec::features::all_bones_of_clip;
 use morec::import::{ImportOptions, Take};
 use morec::index::MotionIndex;
-use morec::labels::{FOUND_HEADER, FoundLine};
+use morec::labels::{FOUND_HEADER, FoundLine, some_of};
 use morec::live::{Detection, Model, PoseExtractor, RecognizerCache, recognize_clip_in_session};
 use morec_live::vmc::Bundling;
 use morec_ops::RecognizeSettings;
@@ -155,13 +155,19 @@ fn recognize_all(
     }
     let mut stats = Stats::default();
     let mut failed = false;
+    let mut without = Vec::new();
     let mut progress = SlowProgress::new(paths.len(), "recognising");
     let recognizers = RecognizerCache::new(&index.model);
     for path in paths {
         match recognize_file(path, index, &recognizers, options, args, &mut stats) {
-            Ok(found) => found
-                .iter()
-                .try_for_each(|f| write_found(out, args, f, index))?,
+            Ok(found) => {
+                if found.is_empty() {
+                    without.push(path.display().to_string());
+                }
+                found
+                    .iter()
+                    .try_for_each(|f| write_found(out, args, f, index))?;
+            }
             Err(error) => {
                 failed = true;
                 progress.suspend(|| eprintln!("morec: {error:#}"));
@@ -171,6 +177,11 @@ fn recognize_all(
     }
     out.flush()?;
     drop(progress);
+    if !without.is_empty() {
+        let (count, all) = (without.len(), paths.len());
+        let names = some_of(&without);
+        eprintln!("morec: nothing was found in {count} of {all} files: {names}");
+    }
     if args.stats {
         eprint!("{stats}");
     }

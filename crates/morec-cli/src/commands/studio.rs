@@ -36,7 +36,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let status = match Command::new(&program).args(&args.arguments).status() {
         Err(error) if error.kind() == ErrorKind::NotFound => bail!(
             "the window is a program of its own and is not installed; in a clone of the repository: cargo install \
-             --path crates/{PROGRAM}, or cargo run --release -p {PROGRAM}"
+             --path crates/{PROGRAM} --features window, or cargo run --release -p {PROGRAM} --features window"
         ),
         started => started.with_context(|| program.display().to_string())?,
     };

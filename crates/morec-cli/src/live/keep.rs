@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail};
 use morec::files::FileReader;
 use morec::formats::bvh;
+use morec::import::ImportOptions;
 use morec::live::Recording;
 use morec_db::{ClipUpdate, ImportOutcome, MotionDb};
 use morec_live::write_pose_lines;
@@ -75,7 +76,7 @@ impl TakeStore {
                         .with_context(|| folder.display().to_string())?;
                 }
                 write_bvh(recording, file)?;
-                import(path, file, tags)
+                import(path, file, recording, tags)
             }
         }
     }
@@ -95,7 +96,7 @@ fn write_lines(recording: &Recording, file: &Path) -> Result<()> {
         .with_context(|| file.display().to_string())
 }
 
-fn import(database: &Path, file: &Path, tags: &[String]) -> Result<()> {
+fn import(database: &Path, file: &Path, recording: &Recording, tags: &[String]) -> Result<()> {
     let mut db = if database.exists() {
         MotionDb::open(database)?
     } else {
@@ -105,7 +106,15 @@ fn import(database: &Path, file: &Path, tags: &[String]) -> Result<()> {
         add_tags: tags.to_vec(),
         ..ClipUpdate::default()
     };
-    let report = db.import(&[file.to_owned()], &FileReader::default(), &about, &())?;
+    let clip = recording.to_clip("")?;
+    let reader = FileReader {
+        import: ImportOptions {
+            mapping: recording.mapping(&clip),
+            ..ImportOptions::default()
+        },
+        ..FileReader::default()
+    };
+    let report = db.import(&[file.to_owned()], &reader, &about, &())?;
     for (_, outcome) in &report.files {
         match outcome {
             ImportOutcome::Refused(refused) => bail!("{}: {}", file.display(), refused.reason),

@@ -92,6 +92,12 @@ fn tables_report_and_what_was_left_out() {
     let output = evaluate(folder.path(), &["--report", "out/deep/report.html"]);
     let (printed, said) = (text(&output.stdout), text(&output.stderr));
     assert!(output.status.success(), "{said}");
+    // In words first; the measure of 2009 last.
+    assert!(printed.contains("1 of 2 samples found, "), "{printed}");
+    let place = |what: &str| printed.find(what).unwrap();
+    assert!(place("samples found") < place("F1 of events"));
+    assert!(place("F1 of events") < place("F1 at half overlap"));
+    assert!(place("edit score") < place("thesis accuracy"));
     for line in [
         "thesis accuracy",
         "TP 1  FP 0  FN 1  TN 3",
@@ -102,7 +108,7 @@ fn tables_report_and_what_was_left_out() {
         assert!(printed.contains(line), "{line} not in\n{printed}");
     }
     assert!(
-        said.contains("1 labels are of clips that are not there; left out: elsewhere"),
+        said.contains("1 labels are of clips that are not there: elsewhere"),
         "{said}"
     );
     assert!(

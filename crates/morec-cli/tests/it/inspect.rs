@@ -274,3 +274,108 @@ fn what_is_no_human_body_is_told() {
         "an arm alone: {out}"
     );
 }
+
+/// The clip as one sees it whose X points the other way: a recording in left-handed coordinates.
+fn mirrored(clip: &morec::clip::Clip) -> morec::clip::Clip {
+    use morec::math::{Quat, Vec3};
+    let image = |v: &Vec3| Vec3::new(-v.x, v.y, v.z);
+    let mut mirrored = clip.clone();
+    let mut joints = clip.skeleton.joints().to_vec();
+    for joint in &mut joints {
+        joint.offset = image(&joint.offset);
+        joint.tip = joint.tip.as_ref().map(image);
+    }
+    mirrored.skeleton = morec::clip::Skeleton::new(joints).unwrap();
+    for turned in &mut mirrored.rotations {
+        let about = turned.scaled_axis();
+        *turned = Quat::from_scaled_axis(Vec3::new(about.x, -about.y, -about.z));
+    }
+    for track in &mut mirrored.tracks {
+        track.positions.iter_mut().for_each(|p| *p = image(p));
+    }
+    mirrored
+}
+
+#[test]
+fn what_inspect_calls_an_error_is_said_wherever_the_clip_is_read() {
+    let (folder, takes) = crate::db::studio(2);
+    for take in &takes {
+        let mut bytes = Vec::new();
+        morec::formats::bvh::write(&mirrored(&take.clip), &mut bytes).unwrap();
+        let file = folder.path().join(format!("clips/{}.bvh", take.clip.name));
+        std::fs::write(file, bytes).unwrap();
+    }
+    let clip = format!("clips/{}.bvh", takes[0].clip.name);
+    let inspected = folder.morec(&["inspect", &clip]).ok();
+    let error = "left and right are exchanged or one axis points the wrong way";
+    assert!(
+        inspected.contains("error: ") && inspected.contains(error),
+        "{inspected}"
+    );
+    let train = [
+        "train",
+        "--clips",
+        "clips",
+        "--labels",
+        "labels.tsv",
+        "--everyday",
+        "never",
+        "-o",
+        "x.index",
+    ];
+    for args in [
+        &train[..],
+        &["recognize", "x.index", &clip],
+        &["db", "import", "m.mdb", "clips"],
+        &["db", "label", "m.mdb", "labels.tsv"],
+        &[
+            "train",
+            "--db",
+            "m.mdb",
+            "--everyday",
+            "never",
+            "-o",
+            "y.index",
+        ],
+    ] {
+        let ran = folder.morec(args);
+        assert_eq!(ran.code, Some(0), "{ran:?}");
+        let quiet = args.contains(&"label");
+        assert!(quiet || ran.err.contains(error), "{args:?}: {}", ran.err);
+    }
+}
+
+#[test]
+fn recognise_is_recognize_and_names_files_in_which_nothing_is_found() {
+    let (folder, takes) = crate::db::studio(2);
+    let train = [
+        "train",
+        "--clips",
+        "clips",
+        "--labels",
+        "labels.tsv",
+        "--everyday",
+        "never",
+        "-o",
+        "x.index",
+    ];
+    folder.morec(&train).ok();
+    // A clip of nothing but standing: the first frame of a take again and again.
+    let mut clip = takes[0].clip.clone();
+    let joints = clip.skeleton.len();
+    for frame in 1..clip.frames {
+        let (first, rest) = clip.rotations.split_at_mut(joints);
+        rest[(frame - 1) * joints..frame * joints].copy_from_slice(first);
+    }
+    for track in &mut clip.tracks {
+        let first = track.positions[0];
+        track.positions.fill(first);
+    }
+    let mut bytes = Vec::new();
+    morec::formats::bvh::write(&clip, &mut bytes).unwrap();
+    std::fs::write(folder.path().join("still.bvh"), bytes).unwrap();
+    let ran = folder.morec(&["recognise", "x.index", "still.bvh", "clips"]);
+    assert!(ran.err.contains("nothing was found in 1 of"), "{ran:?}");
+    assert!(ran.err.contains(": still.bvh"), "{ran:?}");
+    ran.ok();
+}

@@ -74,4 +74,10 @@ impl Ran {
         assert_eq!(self.code, Some(0), "{self:?}");
         self.out
     }
+
+    /// Its standard error, if it failed as something that cannot be done does.
+    pub fn fails(self) -> String {
+        assert_eq!(self.code, Some(1), "{self:?}");
+        self.err
+    }
 }

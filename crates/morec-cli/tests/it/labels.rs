@@ -225,3 +225,217 @@ fn folders_of_label_tracks_come_back() {
         assert_eq!(again["samples"]["unchanged"], all, "{form}: {again}");
     }
 }
+
+/// The labels of the studio's takes as a table with other columns: `extent` of a label in seconds.
+fn table(
+    takes: &[morec::synth::SyntheticTake],
+    header: &str,
+    row: impl Fn(&str, &str, f64, f64) -> String,
+) -> String {
+    let mut text = format!("{header}\n");
+    for take in takes {
+        for l in &take.labels {
+            text += &row(
+                &take.clip.name,
+                l.class,
+                l.span.start_secs,
+                l.span.stop_secs,
+            );
+            text.push('\n');
+        }
+    }
+    text
+}
+
+#[test]
+fn the_column_person_of_a_table_says_who_is_in_the_clips() {
+    let (folder, takes) = studio(2);
+    folder.morec(&["db", "import", "m.mdb", "clips"]).ok();
+    let people: std::collections::BTreeMap<_, _> = takes
+        .iter()
+        .map(|t| (t.clip.name.clone(), t.person.clone()))
+        .collect();
+    let text = table(
+        &takes,
+        "clip\tclass\tstart_secs\tstop_secs\tperson",
+        |clip, class, start, stop| format!("{clip}\t{class}\t{start}\t{stop}\t{}", people[clip]),
+    );
+    std::fs::write(folder.path().join("by.tsv"), text).unwrap();
+    let done = json(&folder, &["db", "label", "m.mdb", "by.tsv"]);
+    assert_eq!(done["samples"]["people"], takes.len());
+    for clip in json(&folder, &["db", "clips", "m.mdb"]).as_array().unwrap() {
+        let name = clip["clip"].as_str().unwrap();
+        assert_eq!(clip["subject"].as_str(), Some(people[name].as_str()));
+    }
+    // Somebody who is known stays, and it is said.
+    let other = format!(
+        "clip\tclass\tstart_secs\tstop_secs\tperson\n{}\tbow\t0.5\t1.5\tzoe\n",
+        takes[0].clip.name
+    );
+    std::fs::write(folder.path().join("other.tsv"), other).unwrap();
+    let error = folder.morec(&["db", "label", "m.mdb", "other.tsv"]).err;
+    assert!(
+        error.contains("that a label says zoe changes nothing"),
+        "{error}"
+    );
+    // One step takes back labels and people.
+    folder.morec(&["db", "undo", "m.mdb"]).ok();
+    folder.morec(&["db", "undo", "m.mdb"]).ok();
+    let clips = json(&folder, &["db", "clips", "m.mdb"]);
+    assert!(
+        clips
+            .as_array()
+            .unwrap()
+            .iter()
+            .all(|c| c["subject"].is_null()),
+        "{clips}"
+    );
+}
+
+#[test]
+fn times_in_the_wrong_column_are_an_error_with_the_likely_reason() {
+    let (folder, takes) = studio(2);
+    folder.morec(&["db", "import", "m.mdb", "clips"]).ok();
+    let whole = table(
+        &takes,
+        "clip\tclass\tstart\tstop",
+        |clip, class, start, stop| format!("{clip}\t{class}\t{}\t{}", start.floor(), stop.ceil()),
+    );
+    let framed = table(
+        &takes,
+        "clip\tclass\tstart_secs\tstop_secs",
+        |clip, class, start, stop| {
+            format!(
+                "{clip}\t{class}\t{}\t{}",
+                (start * 60.0).round(),
+                (stop * 60.0).round()
+            )
+        },
+    );
+    std::fs::write(folder.path().join("whole.tsv"), whole).unwrap();
+    std::fs::write(folder.path().join("framed.tsv"), framed).unwrap();
+    for (file, why) in [
+        ("whole.tsv", "last "),
+        ("framed.tsv", "run over the end of their clips"),
+    ] {
+        for args in [
+            vec!["db", "label", "m.mdb", file],
+            vec![
+                "train", "--clips", "clips", "--labels", file, "-o", "x.index",
+            ],
+            vec![
+                "crossval", "--clips", "clips", "--labels", file, "--by", "half",
+            ],
+            vec!["group", "--clips", "clips", "--labels", file],
+        ] {
+            let ran = folder.morec(&args);
+            let error = ran.fails();
+            assert!(
+                error.contains(why) && error.contains("`start_secs`"),
+                "{args:?}: {error}"
+            );
+        }
+    }
+    assert!(!folder.path().join("x.index").exists());
+    assert_eq!(
+        json(&folder, &["db", "samples", "m.mdb"])
+            .as_array()
+            .unwrap()
+            .len(),
+        0
+    );
+}
+
+#[test]
+fn a_misspelt_class_or_clip_in_a_table_is_asked_about() {
+    let (folder, takes) = studio(3);
+    folder.morec(&["db", "import", "m.mdb", "clips"]).ok();
+    folder.morec(&["db", "label", "m.mdb", "labels.tsv"]).ok();
+    let clip = &takes[0].clip.name;
+    let class = takes[0].labels[0].class;
+    let slip = format!("{}{}", class, &class[class.len() - 1..]);
+    let text = format!(
+        "clip\tclass\tstart_secs\tstop_secs\n{clip}\t{slip}\t0.2\t1.2\n{clip}s\t{class}\t0.2\t1.2\n"
+    );
+    std::fs::write(folder.path().join("slip.tsv"), &text).unwrap();
+    let error = folder
+        .morec(&["db", "label", "m.mdb", "slip.tsv", "--dry-run"])
+        .err;
+    assert!(
+        error.contains(&format!("did you mean `{class}`?")),
+        "{error}"
+    );
+    let mut rows = table(
+        &takes,
+        "clip\tclass\tstart_secs\tstop_secs",
+        |clip, class, start, stop| format!("{clip}\t{class}\t{start}\t{stop}"),
+    );
+    rows += &text[text.find('\n').unwrap() + 1..];
+    std::fs::write(folder.path().join("all.tsv"), rows).unwrap();
+    let error = folder
+        .morec(&[
+            "train",
+            "--clips",
+            "clips",
+            "--labels",
+            "all.tsv",
+            "--everyday",
+            "never",
+            "-o",
+            "x.index",
+        ])
+        .err;
+    assert!(
+        error.contains(&format!("for `{clip}s` did you mean `{clip}`?")),
+        "{error}"
+    );
+    assert!(
+        error.contains(&format!(
+            "the class {slip} has 1 label; did you mean `{class}`?"
+        )),
+        "{error}"
+    );
+}
+
+#[test]
+fn crossval_says_by_what_it_divides_and_refuses_one_person() {
+    let (folder, takes) = studio(2);
+    let rows = |person: &str| {
+        table(
+            &takes,
+            "clip\tclass\tstart_secs\tstop_secs\tperson",
+            |clip, class, start, stop| format!("{clip}\t{class}\t{start}\t{stop}\t{person}"),
+        )
+    };
+    std::fs::write(folder.path().join("one.tsv"), rows("ada")).unwrap();
+    std::fs::write(folder.path().join("nobody.tsv"), rows("")).unwrap();
+    let run = |labels: &str, by: &str| {
+        let args = [
+            "crossval",
+            "--clips",
+            "clips",
+            "--labels",
+            labels,
+            "--by",
+            by,
+            "--everyday",
+            "never",
+        ];
+        folder.morec(&args)
+    };
+    let error = run("one.tsv", "person").fails();
+    assert!(
+        error.contains("all labels are by one person, ada"),
+        "{error}"
+    );
+    let said = run("nobody.tsv", "person").ok();
+    assert!(
+        said.starts_with(&format!(
+            "Left out: each clip in turn, {} clips, as nobody is named",
+            takes.len()
+        )),
+        "{said}"
+    );
+    let said = run("one.tsv", "half").ok();
+    assert!(said.starts_with("Left out: half of the labels"), "{said}");
+}

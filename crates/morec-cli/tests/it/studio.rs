@@ -24,10 +24,15 @@ fn without_the_window_it_says_how_to_get_it() {
         .unwrap();
     assert_eq!(output.status.code(), Some(1));
     let said = String::from_utf8(output.stderr).unwrap();
-    assert!(
-        said.contains("cargo install --path crates/morec-studio"),
-        "{said}"
-    );
+    // Both are commands that cargo carries out: the window needs its feature.
+    let manifest = include_str!("../../../morec-studio/Cargo.toml");
+    assert!(manifest.contains("required-features = [\"window\"]"));
+    for advice in [
+        "cargo install --path crates/morec-studio --features window",
+        "cargo run --release -p morec-studio --features window",
+    ] {
+        assert!(said.contains(advice), "{said}");
+    }
 }
 
 #[cfg(unix)]

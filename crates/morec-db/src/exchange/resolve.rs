@@ -3,12 +3,12 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use morec::labels::{ClipLength, names_of_clip};
+use morec::labels::{ClipLength, doubtful_unit, names_of_clip};
 
 use super::annotation::{Annotation, ClipLengths, snap};
 use super::clip_of_file_name;
-use crate::ClipInfo;
 use crate::labels::NewSample;
+use crate::{ClipId, ClipInfo};
 
 /// Labels run over the end of their clip by so much without a note, seconds: they were drawn by hand.
 const OVER_SECS: f64 = 0.1;
@@ -20,8 +20,45 @@ pub struct ResolvedLabels {
     pub samples: Vec<NewSample>,
     /// Clips that are not there, with the number of labels of each.
     pub absent: BTreeMap<String, usize>,
-    /// Labels that lie behind the end of their clip, wholly or in part, in sentences.
+    /// Who is in clips of which that was not known.
+    pub people: BTreeMap<ClipId, String>,
+    /// Number of labels that were cut or left out at the end of their clips.
+    pub beyond: usize,
+    /// Labels that lie behind the end of their clip, wholly or in part, and people who are not those that are known, in
+    /// sentences.
     pub notes: Vec<String>,
+}
+
+impl ResolvedLabels {
+    /// Reason why the times are probably not in the unit that the file says; see [`doubtful_unit`].
+    pub fn doubtful_unit(&self) -> Option<String> {
+        let parts = self.samples.iter().filter(|s| !s.whole_clip);
+        doubtful_unit(parts.map(|s| s.stop_secs - s.start_secs), self.beyond)
+    }
+
+    /// Notes who is in a clip, as a file says.
+    fn add_person(&mut self, clip: &ClipInfo, person: &str) {
+        let known = clip.subject.as_deref();
+        if known.is_some_and(|known| known != person) {
+            let known = known.unwrap_or_default();
+            self.differ(&clip.name, known, person);
+        } else if known.is_none() {
+            match self.people.insert(clip.id, person.to_owned()) {
+                Some(before) if before != person => {
+                    self.differ(&clip.name, &before, person);
+                    self.people.insert(clip.id, before);
+                }
+                _ => {}
+            }
+        }
+    }
+
+    fn differ(&mut self, clip: &str, kept: &str, person: &str) {
+        let note = format!("{clip} is by {kept}; that a label says {person} changes nothing");
+        if !self.notes.contains(&note) {
+            self.notes.push(note);
+        }
+    }
 }
 
 /// Lengths of clips by name.
@@ -50,7 +87,13 @@ pub fn resolve(annotations: Vec<Annotation>, clips: &[ClipInfo]) -> ResolvedLabe
             *resolved.absent.entry(a.clip).or_default() += 1;
             continue;
         };
-        let Some((start_secs, stop_secs)) = extent(&a, clip, &mut resolved.notes) else {
+        if let Some(person) = &a.person {
+            resolved.add_person(clip, person);
+        }
+        let noted = resolved.notes.len();
+        let extent = extent(&a, clip, &mut resolved.notes);
+        resolved.beyond += resolved.notes.len() - noted;
+        let Some((start_secs, stop_secs)) = extent else {
             continue;
         };
         resolved.samples.push(NewSample {

@@ -1,14 +1,15 @@
 //! Labels as a whole: added to what is there, or in place of it.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use rusqlite::{Connection, params};
 
 use super::read::list;
 use super::sample::{Added, DbSample, NewSample, SampleFilter, SampleState};
 use super::write::{Change, add, alter};
+use crate::clips::describe;
 use crate::history::counted;
-use crate::{DbError, MotionDb};
+use crate::{ClipId, ClipUpdate, DbError, MotionDb};
 
 /// Options of adding labels.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -19,6 +20,8 @@ pub struct LabelOptions {
     pub replace: bool,
     /// Only say what would change.
     pub dry_run: bool,
+    /// Who is in clips, as files of labels say.
+    pub people: BTreeMap<ClipId, String>,
 }
 
 /// Kind of change of a sample.
@@ -91,6 +94,20 @@ fn added(labels: &[NewSample]) -> String {
 }
 
 impl MotionDb {
+    /// Questions about classes of labels that are to be added and are probably misspelled, beside those that are there.
+    ///
+    /// # Errors
+    /// The database cannot be read.
+    pub fn misspelled(&self, labels: &[NewSample]) -> Result<Vec<String>, DbError> {
+        let there = self.classes()?;
+        let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+        counts.extend(there.iter().map(|c| (c.name.as_str(), c.accepted)));
+        for label in labels {
+            *counts.entry(label.class.trim()).or_default() += 1;
+        }
+        Ok(morec::labels::misspelled(&counts))
+    }
+
     /// Takes labels in, all or none, as one step. A label that is there already (clip, class and extent) is judged anew;
     /// but a proposal changes nothing that was accepted or rejected. A new accepted label rejects what other classes were
     /// proposed for just that stretch; proposals of groups, which claim no class, are withdrawn instead.
@@ -118,6 +135,13 @@ impl MotionDb {
             let mut left = unsaid(there, labels);
             for label in labels {
                 take_in(conn, label, &mut left, options, &mut done)?;
+            }
+            for (clip, person) in &options.people {
+                let update = ClipUpdate {
+                    subject: Some(person.clone()),
+                    ..ClipUpdate::default()
+                };
+                done.counts.people += describe(conn, *clip, &update)?;
             }
             for sample in left {
                 conn.prepare_cached("DELETE FROM samples WHERE id = ?1")?

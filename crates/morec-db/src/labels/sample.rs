@@ -115,6 +115,8 @@ pub struct Added {
     pub rejected: usize,
     /// Proposals of groups for the same stretch that are there no more.
     pub withdrawn: usize,
+    /// Clips of which it is known now who is in them.
+    pub people: usize,
 }
 
 /// Conditions on samples; all must hold.

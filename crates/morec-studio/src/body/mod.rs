@@ -41,6 +41,8 @@ pub struct Body {
     pub hip_joints: Option<(usize, usize)>,
     /// From the lowest joint to the highest, metres.
     pub height: f64,
+    /// Hands without a body.
+    pub is_hand: bool,
 }
 
 /// Bones between roles, for skeletons whose joints do not hang together (clips of points, streams of roles).
@@ -117,7 +119,10 @@ impl Body {
         Self {
             limbs,
             head: of(Role::Head).map(|head| (head, of(Role::Neck))),
-            hips: of(Role::Hips).or((!parents.is_empty()).then_some(0)),
+            hips: of(Role::Hips)
+                .or_else(|| wrist(roles))
+                .or((!parents.is_empty()).then_some(0)),
+            is_hand: is_hand(roles),
             hip_joints: of(Role::LeftThigh).zip(of(Role::RightThigh)),
             height,
         }
@@ -137,6 +142,19 @@ impl Body {
         let heading = (-across.z).atan2(across.x);
         heading.is_finite().then_some(heading)
     }
+}
+
+fn is_hand(roles: &RoleMap) -> bool {
+    matches!(roles.profile(), Profile::Hand | Profile::Hands)
+}
+
+/// The wrist, or else the palm, of a hand without a body.
+fn wrist(roles: &RoleMap) -> Option<usize> {
+    let points = Hand::BOTH.map(Hand::points);
+    let mut places = points.iter().flat_map(|hand| [hand.wrist, hand.palm]);
+    places
+        .find_map(|role| roles.joint(role))
+        .filter(|_| is_hand(roles))
 }
 
 fn height(positions: &[Vec3], profile: Profile) -> f64 {

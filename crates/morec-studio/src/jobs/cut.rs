@@ -1,6 +1,5 @@
 //! Cutting clips where their behaviour changes, and the curves that say why.
 
-use std::path::Path;
 use std::sync::Arc;
 
 use morec::features::FeatureParams;
@@ -11,11 +10,12 @@ use morec::segment::{
     kernel_cuts, segment, still_stretches,
 };
 use morec_db::rows::ClipRows;
-use morec_db::{BY_HAND, ClipFilter, ClipId, ClipInfo, MotionDb};
+use morec_db::{BY_HAND, ClipFilter, ClipId, ClipInfo};
 use morec_ops::{CutMethod, CutSettings, OperationError};
 
 use super::load::ClipMotion;
 use super::progress::{JobError, JobProgress};
+use crate::store::DbPlace;
 
 /// Result of cutting clips.
 #[derive(Debug, Clone)]
@@ -49,7 +49,7 @@ pub struct Curves {
 
 /// Cuts clips (all, if none are named) and keeps the cuts in place of earlier ones, as one step.
 pub fn cut(
-    db: &Path,
+    db: &DbPlace,
     method: CutMethod,
     only: &[ClipId],
     progress: &JobProgress,
@@ -58,13 +58,13 @@ pub fn cut(
 }
 
 fn cut_all(
-    path: &Path,
+    place: &DbPlace,
     method: CutMethod,
     only: &[ClipId],
     progress: &JobProgress,
 ) -> Result<CutSummary, OperationError> {
     let cutter = CutSettings::from(method).cutter(PivotSet::thesis())?;
-    let mut db = MotionDb::open(path)?;
+    let mut db = place.open()?;
     let methods = db.cut_methods()?;
     let by_hand = |c: &ClipInfo| methods.get(&c.id).is_some_and(|m| m == BY_HAND);
     let (kept, clips): (Vec<ClipInfo>, Vec<ClipInfo>) = db

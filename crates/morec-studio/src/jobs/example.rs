@@ -11,7 +11,7 @@ use morec_db::{ClipUpdate, MotionDb};
 
 use super::import::ImportSummary;
 use super::progress::{JobError, JobProgress};
-use crate::store::BY;
+use crate::store::{BY, DbPlace};
 
 /// Seed of the people: the year of the thesis, as in the demo.
 const SEED: u64 = 2009;
@@ -108,7 +108,11 @@ pub fn of_clips(
     let paths = (1..).map(|n| folder.join(format!("clips_{n}.mdb")));
     let path = paths.into_iter().find(|p| !p.exists()).unwrap_or_default();
     let mut db = MotionDb::create(&path).map_err(failed)?;
-    let report = super::import::import(&path, clips, progress)?;
+    let place = DbPlace {
+        path: path.clone(),
+        signature: BY.to_owned(),
+    };
+    let report = super::import::import(&place, clips, progress)?;
     // There is nothing of the person's own to take back yet.
     db.forget_history().map_err(failed)?;
     Ok(MadeDatabase {

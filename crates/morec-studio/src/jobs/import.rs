@@ -1,15 +1,16 @@
 //! Files into the database.
 
 use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use morec::files::{FileReader, list};
 use morec::progress::Progress;
-use morec_db::{ClipFilter, ClipInfo, ImportOutcome, MotionDb};
+use morec_db::{ClipFilter, ClipInfo, ImportOutcome};
 use morec_ops::{CopiedClip, ImportSettings};
 
 use super::label_files::{beside, is_labels};
 use super::progress::{JobError, JobProgress};
+use crate::store::DbPlace;
 use crate::stretch::Stretch;
 
 /// Result of an import.
@@ -80,9 +81,9 @@ fn files(n: usize, what: &str) -> String {
     }
 }
 
-/// Imports files, and those in folders, into the database at `db`.
+/// Imports files, and those in folders, into the database `db`.
 pub fn import(
-    db: &Path,
+    db: &DbPlace,
     paths: &[PathBuf],
     progress: &JobProgress,
 ) -> Result<ImportSummary, JobError> {
@@ -102,7 +103,7 @@ pub fn import(
             Err(error) => report.refused.push((path.clone(), error.kind.to_string())),
         }
     }
-    let imported = MotionDb::open(db).and_then(|mut db| {
+    let imported = db.open().and_then(|mut db| {
         let settings = ImportSettings::default();
         let done = settings.run(&mut db, &clips, &FileReader::default(), progress)?;
         progress.report("looking for labels", 0, 0);

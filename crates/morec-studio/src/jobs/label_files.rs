@@ -10,7 +10,9 @@ use morec_db::exchange::{
     self, ClipLengths, LabelFormat, ReadLabels, clip_lengths, clip_of_file, resolve,
 };
 use morec_db::labels::{LabelOptions, Labelled, NewSample};
-use morec_db::{ClipFilter, ClipInfo, DbError, MotionDb};
+use morec_db::{ClipFilter, ClipId, ClipInfo, DbError, MotionDb};
+
+use morec_ops::OperationError;
 
 use super::progress::JobError;
 use crate::format::file_name;
@@ -28,6 +30,8 @@ const LOOKED_AT: usize = 2000;
 pub struct LabelFiles {
     pub paths: Vec<PathBuf>,
     pub samples: Vec<NewSample>,
+    /// Who is in clips of which that was not known.
+    pub people: BTreeMap<ClipId, String>,
     /// Doubts and omissions, in sentences.
     pub notes: Vec<String>,
     /// What they would change: added to what is there, or in place of the labels of the clips that they name.
@@ -106,8 +110,13 @@ pub fn read(db: &Path, paths: &[PathBuf]) -> Result<LabelFiles, JobError> {
         }
     }
     let resolved = resolve(annotations, &clips);
+    if let Some(why) = resolved.doubtful_unit() {
+        let why = OperationError::Settings(why);
+        return Err(JobError::of("Labels were not read", why));
+    }
     add(&mut absent, resolved.absent);
     notes.extend(resolved.notes);
+    notes.extend(db.misspelled(&resolved.samples).map_err(failed)?);
     if let Some(said) = said_absent(&db, &absent) {
         notes.insert(0, said);
     }
@@ -116,6 +125,7 @@ pub fn read(db: &Path, paths: &[PathBuf]) -> Result<LabelFiles, JobError> {
             by: BY.to_owned(),
             replace,
             dry_run: true,
+            people: resolved.people.clone(),
         };
         db.label(&resolved.samples, &options).map_err(failed)
     };
@@ -124,6 +134,7 @@ pub fn read(db: &Path, paths: &[PathBuf]) -> Result<LabelFiles, JobError> {
         added: preview(false)?,
         replaced: preview(true)?,
         samples: resolved.samples,
+        people: resolved.people,
         notes,
     })
 }

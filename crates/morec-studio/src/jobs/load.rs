@@ -4,6 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use morec::clip::Clip;
+use morec::diagnosis::errors_of_clip;
 use morec::features::{FeatureParams, RowLayout, bones_of_clip, rows_of_clip};
 use morec::kinematics::WorldPose;
 use morec::math::Vec3;
@@ -132,7 +133,8 @@ fn doubts(clip: &Clip, roles: &RoleMap, rest: &std::ops::Range<usize>) -> Vec<St
     let step = (clip.frames - first).div_ceil(FRAMES).max(1);
     let frames = (first..clip.frames).step_by(step);
     let poses: Vec<Vec<Vec3>> = frames.map(|at| WorldPose::of(clip, at).positions).collect();
-    let doubts = roles::check(&clip.skeleton, roles, &poses);
+    let mut doubts = roles::check(&clip.skeleton, roles, &poses);
+    doubts.extend(errors_of_clip(clip, roles, rest));
     // The command's remedy is a file; here it is a click.
     let here = |doubt: String| {
         doubt.replace(

@@ -20,6 +20,7 @@ pub mod teach;
 pub mod thesis;
 pub mod train;
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
@@ -56,6 +57,8 @@ pub enum JobOutcome {
     Written(String),
     /// An example, or clips that were named, lie in a database now.
     Made(example::MadeDatabase),
+    /// Classes that a new index still reports in what was marked as background.
+    Silent(BTreeSet<String>),
     Stopped(JobError),
 }
 

@@ -5,12 +5,13 @@ use std::path::{Path, PathBuf};
 use morec::TimeSpan;
 use morec::files::FileReader;
 use morec::formats::bvh;
+use morec::import::ImportOptions;
 use morec::live::Recording;
 use morec_db::labels::{LabelOptions, NewSample, SampleState};
 use morec_db::{BACKGROUND, ClipId, ClipUpdate, ImportOutcome, MotionDb};
 
 use super::progress::JobError;
-use crate::store::{BY, background};
+use crate::store::{BY, DbPlace, background};
 
 /// A stretch that was kept.
 #[derive(Debug, Clone)]
@@ -59,12 +60,12 @@ pub struct Lesson {
 }
 
 /// Keeps a lesson in the database at `db`; its file lies in `folder` for as long as that takes.
-pub fn teach(db: &Path, folder: &Path, lesson: &Lesson) -> Result<Taught, JobError> {
+pub fn teach(db: &DbPlace, folder: &Path, lesson: &Lesson) -> Result<Taught, JobError> {
     taught(db, folder, lesson).map_err(|why| JobError::Failed(format!("Not kept: {why}")))
 }
 
-fn taught(path: &Path, folder: &Path, lesson: &Lesson) -> Result<Taught, String> {
-    let mut db = MotionDb::open(path).map_err(|e| e.to_string())?;
+fn taught(place: &DbPlace, folder: &Path, lesson: &Lesson) -> Result<Taught, String> {
+    let mut db = place.open().map_err(|e| e.to_string())?;
     let name = free_name(&db, &lesson.name);
     let clip = lesson.recording.to_clip(&name).map_err(|e| e.to_string())?;
     let secs = clip.duration_secs();
@@ -77,12 +78,14 @@ fn taught(path: &Path, folder: &Path, lesson: &Lesson) -> Result<Taught, String>
         Some(Meaning::Background) => background(true),
         _ => ClipUpdate::default(),
     };
-    let report = db.import(
-        std::slice::from_ref(&file),
-        &FileReader::default(),
-        &about,
-        &(),
-    );
+    let reader = FileReader {
+        import: ImportOptions {
+            mapping: lesson.recording.mapping(&clip),
+            ..ImportOptions::default()
+        },
+        ..FileReader::default()
+    };
+    let report = db.import(std::slice::from_ref(&file), &reader, &about, &());
     // It is in the database, or it never was a clip.
     let _ = std::fs::remove_file(&file);
     let report = report.map_err(|e| e.to_string())?;

@@ -57,6 +57,9 @@ fn clips(ui: &mut Ui, state: &State, out: Out) {
     ScrollArea::vertical()
         .auto_shrink(false)
         .show_rows(ui, ROW, shown.len(), |ui, rows| {
+            let is_now = |place: &usize| store.snapshot.clips.get(*place).map(|c| c.id) == now;
+            let at = shown.iter().position(is_now);
+            widgets::keep_in_view(ui, "clips to label", at, rows.start, ROW);
             for &place in &shown[rows] {
                 let Some(clip) = store.snapshot.clips.get(place) else {
                     continue;

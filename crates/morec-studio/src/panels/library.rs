@@ -53,6 +53,7 @@ fn tools(ui: &mut Ui, state: &State, out: Out) {
     ui.horizontal(|ui| {
         let mut text = state.library.filter.clone();
         let edit = widgets::line(&mut text)
+            .id(crate::keys::search_field())
             .hint_text("Search names, people, tags …")
             .desired_width((ui.available_width() - 390.0).clamp(110.0, 280.0));
         let response = ui.add(edit);
@@ -61,6 +62,10 @@ fn tools(ui: &mut Ui, state: &State, out: Out) {
             info.current_text_value = Some(state.library.filter.clone());
             info
         });
+        let asked = ui.data_mut(|data| data.remove_temp::<bool>(crate::keys::search_field()));
+        if asked.is_some() {
+            response.request_focus();
+        }
         if response.has_focus() && ui.input(|i| i.key_pressed(Key::Escape)) {
             text.clear();
         }
@@ -145,6 +150,10 @@ fn table(ui: &mut Ui, state: &State, out: Out) {
         .id_salt(as_strips)
         .auto_shrink(false)
         .show_rows(ui, height, shown.len(), |ui, rows| {
+            let selected = state.library.selected.last();
+            let is_selected = |place: &usize| clips.get(*place).map(|c| &c.id) == selected;
+            let at = shown.iter().position(is_selected);
+            widgets::keep_in_view(ui, "clips", at, rows.start, height);
             for &place in &shown[rows] {
                 match clips.get(place) {
                     Some(clip) if as_strips => strip(ui, state, clip, out),

@@ -12,6 +12,7 @@ mod curves;
 mod cuts;
 mod details;
 mod deviation;
+mod discard;
 mod drop;
 mod groups;
 mod help;
@@ -68,6 +69,7 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
     path_field::show(ctx, state, out);
     undo::show(ctx, state, out);
     leave::show(ctx, state, out);
+    discard::show(ctx, state, out);
     drop::show(ctx, state);
     if state.store.is_none() {
         return empty(ctx, state, out);

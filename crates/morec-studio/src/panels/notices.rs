@@ -6,6 +6,7 @@ use super::Out;
 use crate::format;
 use crate::state::{Command, FileCommand, State};
 use crate::theme::Colours;
+use crate::unsaved::Leftover;
 
 /// Number of notices that are shown at once.
 const SHOWN: usize = 3;
@@ -73,6 +74,18 @@ fn unsaved(ctx: &Context, state: &State, out: Out) {
     });
 }
 
+/// What is in a database that was left.
+pub fn contents(left: &Leftover) -> String {
+    match left.contents {
+        Some((clips, labels)) => format!(
+            "{} and {}",
+            format::count(clips as usize, "clip"),
+            format::count(labels as usize, "label")
+        ),
+        None => "it cannot be read".to_owned(),
+    }
+}
+
 /// Databases that earlier runs left without saving them.
 fn leftovers(ctx: &Context, state: &State, out: Out) {
     if state.leftovers.is_empty() {
@@ -83,17 +96,13 @@ fn leftovers(ctx: &Context, state: &State, out: Out) {
         for (at, left) in state.leftovers.iter().enumerate().take(SHOWN) {
             let when = left.changed_secs.map(format::utc).unwrap_or_default();
             let what = match left.contents {
-                Some((clips, labels)) => format!(
-                    "{} and {}, last changed {when}",
-                    format::count(clips as usize, "clip"),
-                    format::count(labels as usize, "label")
-                ),
-                None => "it cannot be read".to_owned(),
+                Some(_) => format!("{}, last changed {when}", contents(left)),
+                None => contents(left),
             };
             let text = format!("A database was left without being saved: {what}.");
             line(ui, c.warn, &text, |ui| {
-                if ui.button("Discard it").clicked() {
-                    out.push(Command::File(FileCommand::DiscardLeftover(at)));
+                if ui.button("Discard it …").clicked() {
+                    out.push(Command::File(FileCommand::AskDiscard(Some(at))));
                 }
                 if ui.button("Open it").clicked() {
                     out.push(Command::File(FileCommand::OpenLeftover(at)));

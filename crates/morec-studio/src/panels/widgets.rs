@@ -142,6 +142,20 @@ pub fn train_again(ui: &mut Ui, out: Out) {
     });
 }
 
+/// Scrolls a list to row `at` once that is another than before; `first` is the row that is drawn first, `height` that of each.
+pub fn keep_in_view(ui: &Ui, list: &str, at: Option<usize>, first: usize, height: f32) {
+    let id = egui::Id::new(("in view", list));
+    let before = ui.data(|data| data.get_temp::<Option<usize>>(id));
+    ui.data_mut(|data| data.insert_temp(id, at));
+    let Some(at) = at.filter(|_| before != Some(at)) else {
+        return;
+    };
+    let pitch = height + ui.spacing().item_spacing.y;
+    let top = ui.max_rect().top() + (at as f32 - first as f32) * pitch;
+    let row = Rect::from_min_size(egui::pos2(ui.max_rect().left(), top), Vec2::splat(height));
+    ui.scroll_to_rect(row, None);
+}
+
 /// A field of one line, which keeps the keyboard when Enter is pressed: what is typed next is text, and no key of the window.
 pub fn line(text: &mut String) -> TextEdit<'_> {
     TextEdit::singleline(text).return_key(None)

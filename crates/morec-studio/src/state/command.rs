@@ -120,8 +120,10 @@ pub enum FileCommand {
     Typing(Option<String>),
     /// Closes the window, after a question if there is something to save.
     Close,
-    /// Opens, or removes, the database of this place that an earlier run left.
+    /// Opens the database of this place that an earlier run left.
     OpenLeftover(usize),
+    /// Asks whether it shall be removed for good; the next does so, if that was asked.
+    AskDiscard(Option<usize>),
     DiscardLeftover(usize),
     /// The answers to the question whether the database shall be saved before it is left.
     LeaveSaving,
@@ -157,6 +159,8 @@ pub enum LibraryCommand {
     },
     /// Selects the clips of the list from the first that is selected to this one.
     SelectTo(ClipId),
+    /// Shows and selects the clip so many rows below (above, negative) the one that is shown.
+    Step(i64),
     /// Shows a clip.
     Open(ClipId),
     /// Shows a stretch of a clip of this name, in a loop.

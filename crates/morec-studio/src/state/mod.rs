@@ -20,6 +20,8 @@ mod train;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::time::{SystemTime, UNIX_EPOCH};
 
 use morec::eval::ClipDetection;
 use morec::roles::{Role, RoleMap};
@@ -116,6 +118,8 @@ pub struct State {
     unsaved: PathBuf,
     /// Databases that runs before left without saving them.
     pub leftovers: Vec<Leftover>,
+    /// The place of the one that may be removed for good, while it is asked.
+    pub discarding: Option<usize>,
     /// What waits for an answer whether the database shall be saved.
     pub leaving: Option<FileCommand>,
     /// True once the window may close.
@@ -127,6 +131,22 @@ pub struct State {
     reopening: Option<ClipId>,
     /// The database of the last session.
     pub last: Option<PathBuf>,
+    /// The name under which this window's steps are written down.
+    signature: String,
+}
+
+/// A name that no other window has, of now or of another day: each takes back its own steps unasked, and no others.
+fn signature() -> String {
+    static WINDOWS: AtomicU32 = AtomicU32::new(0);
+    let number = WINDOWS.fetch_add(1, Ordering::Relaxed);
+    let since = SystemTime::now().duration_since(UNIX_EPOCH);
+    let secs = since.map_or(0, |since| since.as_secs().cast_signed());
+    let process = std::process::id();
+    let opened = crate::format::utc(secs);
+    match number {
+        0 => format!("the window of {opened} ({process})"),
+        n => format!("the window of {opened} ({process}, {n})"),
+    }
 }
 
 /// Decoded clips, the ones used last; others are decoded again when they are looked at.
@@ -214,12 +234,14 @@ impl State {
             folder: None,
             unsaved,
             leftovers: Vec::new(),
+            discarding: None,
             leaving: None,
             closing: false,
             typed: None,
             seen_version: 0,
             reopening: None,
             last: None,
+            signature: signature(),
         }
     }
 
@@ -324,6 +346,7 @@ impl State {
         self.show_keys
             || self.undo_asks
             || self.leaving.is_some()
+            || self.discarding.is_some()
             || self.typed.is_some()
             || self.label_import.is_some()
             || self.classes.choosing.is_some()

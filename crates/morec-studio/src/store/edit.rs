@@ -1,5 +1,6 @@
 //! Edits of the database as values: what the window may change, each one step of the history.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use morec::roles::RoleMap;
@@ -18,6 +19,7 @@ pub enum Edit {
     LabelFiles {
         paths: Vec<PathBuf>,
         samples: Vec<NewSample>,
+        people: BTreeMap<ClipId, String>,
         replace: bool,
     },
     /// Classes that whole clips show, and people in them.
@@ -114,12 +116,16 @@ impl Edit {
                 })
             }
             Edit::LabelFiles {
-                samples, replace, ..
+                samples,
+                people,
+                replace,
+                ..
             } => {
                 let options = LabelOptions {
                     by: BY.to_owned(),
                     replace: *replace,
                     dry_run: false,
+                    people: people.clone(),
                 };
                 let counts = db.label(samples, &options)?.counts;
                 Ok(crate::format::changed_labels(&counts))

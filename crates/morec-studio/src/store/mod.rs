@@ -5,13 +5,14 @@
 
 mod edit;
 mod message;
+mod place;
 mod snapshot;
 #[cfg(test)]
 mod tests;
 mod worker;
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender};
 
@@ -19,13 +20,14 @@ use morec_db::DbError;
 
 pub use edit::{BY, Edit, background};
 pub use message::{StoreMessage, Wake};
+pub use place::DbPlace;
 pub use snapshot::{Snapshot, UNLIKELY};
 pub use worker::sentence;
 use worker::{Reply, Request};
 
 /// An open database.
 pub struct Store {
-    path: PathBuf,
+    place: DbPlace,
     /// True if it lies in a temporary folder, to be saved elsewhere.
     pub temporary: bool,
     requests: Sender<Request>,
@@ -39,11 +41,11 @@ pub struct Store {
 
 impl Store {
     /// Opens a database, or makes one where there is none.
-    pub fn open(path: &Path, temporary: bool, wake: Wake) -> Result<Self, DbError> {
-        let (db, snapshot) = worker::open(path)?;
+    pub fn open(place: DbPlace, temporary: bool, wake: Wake) -> Result<Self, DbError> {
+        let (db, snapshot) = worker::open(&place)?;
         let (requests, replies) = worker::start(db, snapshot.clone(), wake)?;
         Ok(Self {
-            path: path.to_owned(),
+            place,
             temporary,
             requests,
             replies,
@@ -59,7 +61,10 @@ impl Store {
         let (requests, _) = std::sync::mpsc::channel();
         let (_, replies) = std::sync::mpsc::channel();
         Self {
-            path: PathBuf::from("measured.mdb"),
+            place: DbPlace {
+                path: Path::new("measured.mdb").to_owned(),
+                signature: String::new(),
+            },
             temporary: false,
             requests,
             replies,
@@ -70,7 +75,12 @@ impl Store {
     }
 
     pub fn path(&self) -> &Path {
-        &self.path
+        &self.place.path
+    }
+
+    /// For jobs that write.
+    pub fn place(&self) -> DbPlace {
+        self.place.clone()
     }
 
     /// Sends an edit to the database.

@@ -1,14 +1,13 @@
 //! The thread that owns the database.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::Duration;
 
 use morec_db::{DbError, MotionDb};
 
-use super::{Edit, Snapshot, StoreMessage, Wake};
+use super::{DbPlace, Edit, Snapshot, StoreMessage, Wake};
 
 /// Interval between looks at whether another program changed the database.
 const LOOK: Duration = Duration::from_secs(1);
@@ -33,11 +32,12 @@ pub struct Reply {
     pub answers: bool,
 }
 
-pub fn open(path: &Path) -> Result<(MotionDb, Arc<Snapshot>), DbError> {
-    let db = match path.exists() {
-        true => MotionDb::open(path)?,
-        false => MotionDb::create(path)?,
+pub fn open(place: &DbPlace) -> Result<(MotionDb, Arc<Snapshot>), DbError> {
+    let mut db = match place.path.exists() {
+        true => MotionDb::open(&place.path)?,
+        false => MotionDb::create(&place.path)?,
     };
+    db.set_program(&place.signature);
     let snapshot = Arc::new(Snapshot::read(&db)?);
     Ok((db, snapshot))
 }

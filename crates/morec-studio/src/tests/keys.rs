@@ -202,3 +202,35 @@ fn escape_gives_up_what_was_typed() {
     assert_eq!(person.written(), before);
     assert!(person.state().classes.renaming.is_none());
 }
+
+#[test]
+fn clips_are_looked_through_searched_and_labelled_by_keys_alone() {
+    let (_folder, mut person) = library(0);
+    person.key(Key::ArrowDown);
+    person.settle();
+    person.key(Key::ArrowDown);
+    person.settle();
+    person.presses(Key::Num1);
+    person.settle();
+    let shown = person.state().player.motion.as_ref().unwrap().id.0;
+    assert_eq!(person.labels().len(), 1);
+    assert_eq!(person.labels()[0].0, shown);
+    person.key(Key::ArrowUp);
+    person.settle();
+    assert_ne!(person.state().player.motion.as_ref().unwrap().id.0, shown);
+    // In the list of labelling, too, where a key without a selection labels no clip as a whole.
+    person.key_with(Key::Num2, Modifiers::COMMAND);
+    person.settle();
+    person.key(Key::ArrowDown);
+    person.settle();
+    assert_eq!(person.state().player.motion.as_ref().unwrap().id.0, shown);
+    person.presses(Key::Num2);
+    person.settle();
+    assert_eq!(person.labels().len(), 1);
+    // From anywhere into the search.
+    person.key_with(Key::F, Modifiers::COMMAND);
+    person.frames(3);
+    person.window.event(egui::Event::Text("ben".to_owned()));
+    person.frames(3);
+    assert!(person.offers("ben_1") && !person.offers("ada_1"));
+}

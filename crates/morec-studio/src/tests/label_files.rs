@@ -151,3 +151,46 @@ fn clips_and_a_table_beside_them_become_an_index_after_few_clicks_and_keys() {
     eprintln!("{} clicks and keys from clips and a table", person.actions);
     assert!(person.actions <= AT_MOST, "{}", person.actions);
 }
+
+#[test]
+fn people_of_a_table_come_with_its_labels() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("moves.mdb");
+    let files = clips_of(folder.path());
+    let mut db = MotionDb::create(&path).unwrap();
+    let about = morec_db::ClipUpdate::default();
+    db.import(&files, &morec::files::FileReader::default(), &about, &())
+        .unwrap();
+    drop(db);
+    let text = std::fs::read_to_string(table(folder.path())).unwrap();
+    let mut lines = text
+        .lines()
+        .map(|line| match line.split_once('\t').unwrap().0 {
+            "clip" => format!("{line}\tperson\n"),
+            clip => format!("{line}\t{}\n", clip.split_once('_').unwrap().0),
+        });
+    let labels = folder.path().join("by.tsv");
+    std::fs::write(&labels, lines.by_ref().collect::<String>()).unwrap();
+    let mut person = Person::before(&[path]);
+    person.drops(&[&labels]);
+    assert!(person.sees_part("3 people of clips"));
+    person.click("Apply");
+    person.settle();
+    let store = person.state().store.as_ref().unwrap();
+    let people = store
+        .snapshot
+        .clips
+        .iter()
+        .map(|c| c.subject.clone().unwrap_or_default());
+    assert_eq!(people.collect::<Vec<_>>(), ["ada", "ben", "cleo"]);
+    // Whole seconds in columns of frames are refused.
+    let whole = folder.path().join("whole.tsv");
+    std::fs::write(
+        &whole,
+        "clip\tclass\tstart\tstop\nada_1\twave\t3\t5\nben_1\twave\t7\t9\n",
+    )
+    .unwrap();
+    person.drops(&[&whole]);
+    assert!(person.state().label_import.is_none());
+    assert!(person.sees_part("probably the unit is another one"));
+}

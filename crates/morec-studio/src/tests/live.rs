@@ -479,3 +479,98 @@ fn a_clip_as_a_source_is_sought_and_sped_up() {
         .collect();
     assert!(times.windows(2).all(|pair| pair[0] < pair[1]));
 }
+
+/// A right hand that opens and closes, metres: wrist, then each finger from base to tip, in the order of MediaPipe.
+fn hand(secs: f64) -> Vec<[f64; 3]> {
+    let bend = 0.4 + 0.35 * (4.0 * secs).sin();
+    let way = [0.1 * (3.0 * secs).sin(), 1.2, 0.02 * secs.cos()];
+    let mut points = vec![way];
+    for finger in 0..5 {
+        let start = if finger == 0 { 0.03 } else { 0.09 };
+        let mut at = [
+            way[0] + (2.5 - f64::from(finger)) * 0.02,
+            way[1],
+            way[2] + start,
+        ];
+        for joint in 1..=4 {
+            points.push(at);
+            let turned = bend * f64::from(joint);
+            at = [
+                at[0],
+                at[1] - 0.026 * turned.sin(),
+                at[2] + 0.026 * turned.cos(),
+            ];
+        }
+    }
+    points
+}
+
+#[test]
+fn a_hand_is_seen_marked_kept_with_its_roles_and_spoils_no_training() {
+    use std::io::Write;
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), 2)]);
+    person.goes_to(Panel::Live);
+    let choice = Choice::Network("json+tcp://127.0.0.1:0".to_owned());
+    person.command(Command::Live(LiveCommand::Choose(choice)));
+    person.click("Start");
+    let name = person.state().live.run.as_ref().unwrap().name.clone();
+    let mut stream = std::net::TcpStream::connect(name.trim_start_matches("json+tcp://")).unwrap();
+    for frame in 0..90 {
+        let secs = f64::from(frame) / 30.0;
+        let line = serde_json::json!({"t": secs, "hand": "right", "points": hand(secs)});
+        writeln!(stream, "{line}").unwrap();
+    }
+    let begun = std::time::Instant::now();
+    let came = |person: &Person| {
+        let watched = person.state().live.run.as_ref().unwrap().watched();
+        watched.map_or(0, |w| w.frames.len())
+    };
+    while came(&person) < 90 && begun.elapsed().as_secs() < 60 {
+        person.frames(1);
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    person.frames(2);
+    // It is drawn, in the middle of the picture and large enough to be seen.
+    let watched = person.state().live.run.as_ref().unwrap().watched().unwrap();
+    assert!(!watched.body.limbs.is_empty());
+    let camera = &person.state().camera;
+    let wrist = watched.pose.positions[watched.body.hips.unwrap()];
+    assert!(
+        (camera.target - wrist).norm() < 0.2,
+        "{:?} {wrist:?}",
+        camera.target
+    );
+    assert!(camera.distance < 1.5, "{}", camera.distance);
+    // What it did last is marked by a key, and kept as a hand.
+    person.key(Key::Num5);
+    person.settle();
+    assert!(
+        !person.sees_part("nothing has moved yet"),
+        "{}",
+        person.state().said
+    );
+    let marked = person
+        .labels()
+        .into_iter()
+        .filter(|l| l.1.starts_with("gesture"));
+    let clip = morec_db::ClipId(marked.map(|l| l.0).next().unwrap());
+    let db = MotionDb::open(&folder.path().join("moves.mdb")).unwrap();
+    let roles = db.clip(clip).unwrap().roles;
+    assert_eq!(
+        roles
+            .played()
+            .filter(|(role, _)| !role.is_of_body())
+            .count(),
+        20
+    );
+    // Training sets it aside, by its name, and goes on with the bodies.
+    assert!(
+        person.state().train.index.is_some(),
+        "{:?}",
+        person.state().notices
+    );
+    let notes = &person.state().train.report.as_ref().unwrap().notes;
+    let said = "share no bone with the others and are set aside: gesture";
+    assert!(notes.iter().any(|note| note.contains(said)), "{notes:?}");
+}

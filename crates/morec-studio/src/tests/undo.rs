@@ -112,3 +112,33 @@ fn the_last_index_comes_back_with_the_database() {
     let person = Person::before(&[path]);
     assert!(person.state().train.is_stale(), "and so it is said");
 }
+
+#[test]
+fn a_second_window_and_a_later_session_take_back_only_their_own_steps_unasked() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = made(folder.path(), 0);
+    let mut first = Person::before(std::slice::from_ref(&path));
+    let mut second = Person::before(std::slice::from_ref(&path));
+    first.click("ada_1");
+    first.settle();
+    first.key(Key::Num1);
+    first.settle();
+    while second.labels().is_empty() {
+        second.frames(1);
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    second.key_with(Key::Z, Modifiers::COMMAND);
+    second.settle();
+    assert_eq!(second.labels().len(), 1, "not unasked");
+    assert!(second.sees_part("The last change was made by the window of"));
+    second.click("Cancel");
+    drop(first);
+    // Nor does a session of another day.
+    let mut later = Person::before(std::slice::from_ref(&path));
+    later.key_with(Key::Z, Modifiers::COMMAND);
+    later.settle();
+    assert_eq!(later.labels().len(), 1);
+    later.click("Take it back");
+    later.settle();
+    assert!(later.labels().is_empty());
+}

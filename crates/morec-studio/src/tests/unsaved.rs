@@ -146,8 +146,12 @@ fn what_a_run_that_was_killed_left_is_offered_by_the_next() {
     assert_eq!(person.labels().len(), 1);
     assert!(person.sees_part("Not saved yet"));
     assert!(!person.sees_part("left without being saved"));
+    // The label is of another window, which is asked about first.
     let edit = Edit::Undo(None);
     person.command(Command::Edit(edit));
+    assert!(person.sees_part("The last change was made by the window of"));
+    person.click("Take it back");
+    person.settle();
     assert!(!person.sees_part("Not saved yet"), "nothing is done now");
     drop(person);
     assert!(std::fs::read_dir(unsaved.path()).unwrap().next().is_none());
@@ -159,8 +163,20 @@ fn what_was_left_can_be_discarded() {
     let unsaved = person.unsaved.clone();
     drop(person);
     let mut person = Person::again(&[], Arc::clone(&unsaved));
-    person.click("Discard it");
+    // One click asks, and is no answer.
+    person.click("Discard it …");
     person.settle();
+    assert!(person.sees_part("left without being saved"));
+    assert!(person.sees("Remove the database for good?"));
+    person.key(egui::Key::Escape);
+    person.settle();
+    assert!(!person.sees("Remove the database for good?"));
+    let kept = person.unsaved_files().len();
+    person.click("Discard it …");
+    person.frames(2);
+    person.click("Remove it");
+    person.settle();
+    assert_eq!(person.unsaved_files().len(), kept - 1);
     assert!(!person.sees_part("left without being saved"));
     drop(person);
     assert!(std::fs::read_dir(unsaved.path()).unwrap().next().is_none());

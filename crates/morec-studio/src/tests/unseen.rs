@@ -11,7 +11,7 @@ use crate::state::{Command, Panel};
 /// Actions of each run, unless `MOREC_ACTIONS` says how many.
 const ACTIONS: usize = 220;
 /// Keys as they lie on a keyboard, those of shortcuts and of texts.
-const KEYS: [Key; 29] = [
+const KEYS: [Key; 31] = [
     Key::B,
     Key::Num1,
     Key::Num2,
@@ -41,6 +41,8 @@ const KEYS: [Key; 29] = [
     Key::Escape,
     Key::Space,
     Key::Num0,
+    Key::ArrowUp,
+    Key::ArrowDown,
 ];
 /// What is clicked, where it is there. Buttons that say what they change are not in it.
 const CLICKED: [&str; 22] = [
@@ -168,10 +170,25 @@ impl Model {
         }
         match seen.panel {
             _ if seen.covered && key != Key::Enter && key != Key::Space => BTreeSet::new(),
-            Panel::Library => self.chosen.clone(),
+            Panel::Library => {
+                let chosen = self.chosen.clone();
+                if matches!(key, Key::ArrowUp | Key::ArrowDown) {
+                    self.chosen = self.selected();
+                }
+                chosen
+            }
             Panel::Label | Panel::Classes => shown.into_iter().collect(),
             Panel::Train | Panel::Live => BTreeSet::new(),
         }
+    }
+
+    /// Names of the clips that the list shows as selected.
+    fn selected(&self) -> BTreeSet<String> {
+        let state = self.person.state();
+        let store = state.store.as_ref().unwrap();
+        let selected = state.library.selected.iter();
+        let names = selected.filter_map(|id| Some(store.snapshot.clip(*id)?.name.clone()));
+        names.collect()
     }
 
     fn click(&mut self, seen: &Seen) -> BTreeSet<String> {
@@ -196,15 +213,14 @@ impl Model {
         }
         self.person.wait(0.6);
         // A click beside a menu or a window closes it or does nothing.
-        let state = self.person.state();
         if is_row && how < 2 && !seen.covered {
-            let store = state.store.as_ref().unwrap();
-            let selected = state.library.selected.iter();
-            let names = selected.filter_map(|id| Some(store.snapshot.clip(*id)?.name.clone()));
-            let names: BTreeSet<String> = names.collect();
+            let names = self.selected();
+            // A clip that the same click has renamed was seen under its name of before.
+            let hidden = names.iter().filter(|name| name.ends_with("_1"));
+            let hidden: Vec<&String> = hidden.filter(|name| !seen.rows.contains(*name)).collect();
             assert!(
-                names.is_subset(&seen.rows),
-                "{names:?} are selected, not all of them seen"
+                hidden.is_empty(),
+                "{hidden:?} are selected and were not seen"
             );
             self.chosen = names;
         } else if name.starts_with("Show ") && !seen.covered {

@@ -178,6 +178,20 @@ impl Finding {
         }
     }
 
+    /// Severity and sentence of the finding in a file: which way is up was inferred and can be given, and nothing is sent.
+    pub fn of_file(&self) -> (Severity, String) {
+        let text = match self {
+            Finding::UpIsNotY { .. } => {
+                "the body lies for most of the clip; if it stands, say which way is up with --up AXIS"
+            }
+            Finding::UpsideDown { .. } => {
+                "the head is below the feet for most of the clip; if nobody stands on the hands, say which way is up with --up AXIS"
+            }
+            finding => return (finding.severity(), finding.to_string()),
+        };
+        (Severity::Warning, text.to_owned())
+    }
+
     /// A few words for a status line.
     pub fn label(&self) -> &'static str {
         use Finding::*;

@@ -328,5 +328,18 @@ pub fn diagnose_clip(clip: &Clip, roles: &RoleMap, rest: &Span) -> Diagnosis {
     diagnoser.diagnosis()
 }
 
+/// Errors among the findings of [`diagnose_clip`], in sentences: what spoils training and recognition, such as exchanged sides. None of a
+/// clip without a body. O(frames · roles).
+pub fn errors_of_clip(clip: &Clip, roles: &RoleMap, rest: &Span) -> Vec<String> {
+    // That no frame shows a body is said of it elsewhere.
+    if clip.frames == 0 || roles.missing().count() >= Role::BODY_COUNT {
+        return Vec::new();
+    }
+    let findings = diagnose_clip(clip, roles, rest).findings();
+    let said = findings.iter().map(Finding::of_file);
+    let errors = said.filter(|(severity, _)| *severity == Severity::Error);
+    errors.map(|(_, text)| text).collect()
+}
+
 #[cfg(test)]
 mod tests;

@@ -25,6 +25,7 @@
 //! # }
 //! ```
 
+mod doubt;
 mod found;
 mod lengths;
 mod mark;
@@ -38,6 +39,7 @@ use crate::TimeSpan;
 use crate::clip::Span;
 use crate::formats::Warning;
 
+pub use doubt::{doubtful_unit, misspelled, said_absent};
 pub use found::{FOUND_HEADER, FoundLine, FoundRow, FoundTable, ReportedAt, read_detections};
 pub use lengths::{ClassLengths, class_lengths};
 pub use mark::Mark;

@@ -17,6 +17,25 @@ pub fn hint(name: &str, known: &[String]) -> String {
     if known.is_empty() {
         return "; there is none".to_owned();
     }
+    let near = near(name, known);
+    if near.is_empty() {
+        let shown: Vec<&str> = known.iter().take(LISTED).map(String::as_str).collect();
+        let more = match known.len().saturating_sub(LISTED) {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        return format!("; there are {}{more}", shown.join(", "));
+    }
+    let offered: Vec<String> = near
+        .iter()
+        .take(OFFERED)
+        .map(|name| format!("`{name}`"))
+        .collect();
+    format!("; did you mean {}?", offered.join(" or "))
+}
+
+/// The names of `known` that are nearly `name`, the nearest first.
+pub(super) fn near<'k>(name: &str, known: &'k [String]) -> Vec<&'k String> {
     let wanted = name.to_lowercase();
     let mut near: Vec<(usize, bool, &String)> = known
         .iter()
@@ -29,20 +48,7 @@ pub fn hint(name: &str, known: &[String]) -> String {
         .filter(|(apart, part, _)| *part || *apart <= (wanted.chars().count() / 3).max(1))
         .collect();
     near.sort_by_key(|(apart, part, name)| (Reverse(*part && *apart < 2), *apart, *name));
-    if near.is_empty() {
-        let shown: Vec<&str> = known.iter().take(LISTED).map(String::as_str).collect();
-        let more = match known.len().saturating_sub(LISTED) {
-            0 => String::new(),
-            more => format!(" and {more} more"),
-        };
-        return format!("; there are {}{more}", shown.join(", "));
-    }
-    let offered: Vec<String> = near
-        .iter()
-        .take(OFFERED)
-        .map(|(_, _, name)| format!("`{name}`"))
-        .collect();
-    format!("; did you mean {}?", offered.join(" or "))
+    near.into_iter().map(|(_, _, name)| name).collect()
 }
 
 /// The first few of many names, and how many more there are.

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::{Extent, Label, Labels};
+use super::{Extent, Label, Labels, doubtful_unit, misspelled};
 use crate::TimeSpan;
 use crate::clip::Clip;
 use crate::eval::GroundTruth;
@@ -50,6 +50,8 @@ pub struct Resolved {
     pub samples: Vec<Sample>,
     /// Clips that the table names and that are not there, with the number of their rows.
     pub absent: BTreeMap<String, usize>,
+    /// Number of labels that were cut or left out at the end of their clips.
+    pub beyond: usize,
     /// Labels that were cut, left out, or overlap another.
     pub warnings: Vec<Warning>,
 }
@@ -121,6 +123,7 @@ impl Resolved {
         let half_frame = 0.5 / length.rate_hz;
         let mut span = length.span(&row.extent);
         let mut warn = |text: String| {
+            self.beyond += 1;
             self.warnings
                 .push(Warning::new(Place::Line(row.line), text))
         };
@@ -184,6 +187,21 @@ impl Resolved {
             }
         }
         self.warnings.extend(warnings);
+    }
+
+    /// Reason why the table's times are probably not in the unit that its columns say; see [`doubtful_unit`].
+    pub fn doubtful_unit(&self) -> Option<String> {
+        let parts = self.samples.iter().filter(|s| !s.whole_clip);
+        doubtful_unit(parts.map(|s| s.span.duration_secs()), self.beyond)
+    }
+
+    /// Questions about classes that are probably misspelled; see [`misspelled`].
+    pub fn misspelled(&self) -> Vec<String> {
+        let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+        for sample in &self.samples {
+            *counts.entry(&sample.class).or_default() += 1;
+        }
+        misspelled(&counts)
     }
 
     /// The classes of the samples, in order.

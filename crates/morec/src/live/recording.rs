@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use crate::clip::Clip;
 use crate::resample::usual_step;
+use crate::roles::mapping::Mapping;
 
 use super::{Frame, Rig};
 use tree::RecordedJoints;
@@ -126,6 +127,21 @@ impl Recording {
         // The last frame counts, even where it lies a little before its place on the grid.
         let count = (secs * rate_hz + 0.5).floor() as usize + 1;
         Ok(tree.clip(&self.frames, name, rate_hz, count))
+    }
+
+    /// Which joints of `clip`, made by [`to_clip`](Self::to_clip), play which roles, for reading its file again: names alone do not say
+    /// it of a hand. `None` where the source says the skeleton, whose names are its own.
+    pub fn mapping(&self, clip: &Clip) -> Option<Mapping> {
+        let joints = self.rig.skeleton.joints();
+        let flat = joints.len() > 1 && joints.iter().all(|joint| joint.parent.is_none());
+        let is_there = |name: &&str| clip.skeleton.find(name).is_some();
+        let lines = self.rig.roles.played().filter_map(|(role, _)| {
+            let joint = Some(tree::name_of(role)).filter(is_there)?;
+            Some(format!("{}\t{joint}\n", role.name()))
+        });
+        let lines: String = lines.collect();
+        let mapping = Mapping::read(lines.as_bytes()).ok();
+        mapping.filter(|_| flat && !lines.is_empty())
     }
 }
 

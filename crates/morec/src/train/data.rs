@@ -2,7 +2,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::labels::{ClipLength, Label, Labels, People, Resolved, Sample, hint, some_of};
+use crate::features::BoneSet;
+use crate::labels::{
+    ClipLength, Label, Labels, People, Resolved, Sample, hint, said_absent, some_of,
+};
 use crate::roles::Role;
 
 use super::{StreamKind, TrainClip};
@@ -56,6 +59,9 @@ pub enum DataError {
         "no sample to learn from: no label names any of these clips (labels name clips by file stem)"
     )]
     NoSample,
+    /// Times that are probably in another unit.
+    #[error("labels: {0}")]
+    Unit(String),
 }
 
 impl TrainingMaterial<'_> {
@@ -63,7 +69,7 @@ impl TrainingMaterial<'_> {
     /// background and unknown clips are not used.
     ///
     /// # Errors
-    /// Two clips of one name, a class without a sample, no sample at all.
+    /// Two clips of one name, a class without a sample, no sample at all, times that are probably in another unit.
     pub fn sort_out(&self, clips: Vec<TrainClip>) -> Result<TrainingData, DataError> {
         let mut labels = self.labels.clone();
         let wanted = |row: &Label| self.classes.is_empty() || self.classes.contains(&row.class);
@@ -71,8 +77,12 @@ impl TrainingMaterial<'_> {
         if let Some(people) = self.people {
             labels.add_people(people);
         }
-        let resolved = labels.resolve(&lengths(&clips)?);
-        let mut notes = notes(&resolved);
+        let lengths = lengths(&clips)?;
+        let resolved = labels.resolve(&lengths);
+        if let Some(why) = resolved.doubtful_unit() {
+            return Err(DataError::Unit(why));
+        }
+        let mut notes = notes(&resolved, &lengths);
         let clips = self.with_people(clips, &resolved.samples);
         let teaches = |clip: &TrainClip| {
             clip.source == StreamKind::Labelled && !self.unknown.contains(&clip.name)
@@ -82,7 +92,17 @@ impl TrainingMaterial<'_> {
             .filter(|clip| teaches(clip))
             .map(|clip| clip.name.clone())
             .collect();
-        let samples = resolved.samples.into_iter();
+        let strangers = strangers(&clips, &teaching, &resolved.samples);
+        if !strangers.is_empty() {
+            notes.push(format!(
+                "{} labelled clips share no bone with the others and are set aside: {}",
+                strangers.len(),
+                some_of(&strangers)
+            ));
+        }
+        let (aside, samples): (Vec<_>, Vec<_>) =
+            (resolved.samples.into_iter()).partition(|s| strangers.contains(&s.clip));
+        let samples = samples.into_iter();
         let (samples, ignored): (Vec<_>, Vec<_>) =
             samples.partition(|s| teaching.contains(&s.clip));
         if !ignored.is_empty() {
@@ -93,7 +113,8 @@ impl TrainingMaterial<'_> {
                 some_of(clips)
             ));
         }
-        let classes = self.learned(&samples)?;
+        let aside: BTreeSet<&String> = aside.iter().map(|s| &s.class).collect();
+        let classes = self.learned(&samples, &aside)?;
         let unknown = clips.iter().filter(|c| self.unknown.contains(&c.name));
         let unknown = unknown.cloned().map(|clip| TrainClip {
             source: StreamKind::Labelled,
@@ -105,7 +126,9 @@ impl TrainingMaterial<'_> {
             clip.source != StreamKind::Labelled || with_samples.contains(clip.name.as_str())
         });
         let unused = unused.into_iter().map(|clip| clip.name);
-        let unused: Vec<String> = unused.filter(|name| !self.unknown.contains(name)).collect();
+        let unused =
+            unused.filter(|name| !self.unknown.contains(name) && !strangers.contains(name));
+        let unused: Vec<String> = unused.collect();
         if !unused.is_empty() {
             notes.push(format!(
                 "{} clips hold no sample of the classes and are not used (if they hold none, name them as background): {}",
@@ -139,10 +162,18 @@ impl TrainingMaterial<'_> {
         clips
     }
 
-    /// The classes to learn: those asked for, or all that samples show, by name.
-    fn learned(&self, samples: &[Sample]) -> Result<Vec<String>, DataError> {
+    /// The classes to learn: those asked for, or all that samples show, by name. Classes of samples that were set `aside` are not missed.
+    fn learned(
+        &self,
+        samples: &[Sample],
+        aside: &BTreeSet<&String>,
+    ) -> Result<Vec<String>, DataError> {
         let present: BTreeSet<&String> = samples.iter().map(|s| &s.class).collect();
-        if let Some(class) = self.classes.iter().find(|c| !present.contains(c)) {
+        if let Some(class) = self
+            .classes
+            .iter()
+            .find(|c| !present.contains(c) && !aside.contains(c))
+        {
             let known: BTreeSet<&String> = self.labels.rows.iter().map(|r| &r.class).collect();
             let known: Vec<String> = known.into_iter().cloned().collect();
             return Err(DataError::NoSampleOf {
@@ -153,9 +184,53 @@ impl TrainingMaterial<'_> {
         match (samples.is_empty(), self.classes.is_empty()) {
             (true, _) => Err(DataError::NoSample),
             (_, true) => Ok(present.into_iter().cloned().collect()),
-            _ => Ok(self.classes.to_vec()),
+            _ => Ok((self.classes.iter().filter(|c| present.contains(c)).cloned()).collect()),
         }
     }
+}
+
+/// The labelled clips that share no bone with those that hold the most labels, going by their roles: one recording of a hand among
+/// bodies would leave nothing to learn from.
+fn strangers(
+    clips: &[TrainClip],
+    teaching: &BTreeSet<String>,
+    samples: &[Sample],
+) -> BTreeSet<String> {
+    let mut labels: BTreeMap<&str, usize> = BTreeMap::new();
+    for sample in samples.iter().filter(|s| teaching.contains(&s.clip)) {
+        *labels.entry(&sample.clip).or_default() += 1;
+    }
+    let taught = clips.iter().filter_map(|clip| {
+        let count = labels.get(clip.name.as_str())?;
+        Some((clip, BoneSet::of_roles(&clip.roles), *count))
+    });
+    let taught: Vec<_> = taught.collect();
+    let common = taught
+        .iter()
+        .map(|(_, bones, _)| *bones)
+        .reduce(BoneSet::and);
+    if common.is_none_or(|common| !common.is_empty()) {
+        return BTreeSet::new();
+    }
+    // The bones of most labels, then whatever shares some with them.
+    let mut by_bones: Vec<(BoneSet, usize)> = Vec::new();
+    for (_, bones, count) in taught.iter().filter(|(_, bones, _)| !bones.is_empty()) {
+        match by_bones.iter_mut().find(|(of, _)| of == bones) {
+            Some((_, all)) => *all += count,
+            None => by_bones.push((*bones, *count)),
+        }
+    }
+    let Some((mut kept, _)) = by_bones.into_iter().max_by_key(|(_, count)| *count) else {
+        return BTreeSet::new();
+    };
+    let mut strangers = BTreeSet::new();
+    for (clip, bones, _) in taught {
+        match kept.and(bones).is_empty() {
+            true => drop(strangers.insert(clip.name.clone())),
+            false => kept = kept.and(bones),
+        }
+    }
+    strangers
 }
 
 /// Lengths of clips, by name.
@@ -171,16 +246,19 @@ fn lengths(clips: &[TrainClip]) -> Result<BTreeMap<String, ClipLength>, DataErro
 }
 
 /// What of labels was cut or left out.
-fn notes(resolved: &Resolved) -> Vec<String> {
+fn notes(resolved: &Resolved, clips: &BTreeMap<String, ClipLength>) -> Vec<String> {
     let warnings = resolved.warnings.iter();
     let mut notes: Vec<String> = warnings.map(|w| format!("labels, {w}")).collect();
     if !resolved.absent.is_empty() {
-        notes.push(format!(
-            "{} labels are of clips that are not there: {}",
-            resolved.absent.values().sum::<usize>(),
-            some_of(resolved.absent.keys())
-        ));
+        let known: Vec<String> = clips.keys().cloned().collect();
+        notes.push(said_absent(&resolved.absent, &known));
     }
+    notes.extend(
+        resolved
+            .misspelled()
+            .into_iter()
+            .map(|asked| format!("labels: {asked}")),
+    );
     notes
 }
 

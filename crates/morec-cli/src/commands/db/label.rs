@@ -126,6 +126,12 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     for note in &resolved.notes {
         eprintln!("morec: {note}");
     }
+    if let Some(why) = resolved.doubtful_unit().filter(|_| args.class.is_none()) {
+        bail!("nothing was changed: {why}");
+    }
+    for asked in db.misspelled(&resolved.samples)? {
+        eprintln!("morec: {asked}");
+    }
     for (clip, count) in resolved.absent {
         *absent.entry(clip).or_default() += count;
     }
@@ -137,6 +143,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         by: args.by.clone(),
         replace: args.replace,
         dry_run: args.dry_run,
+        people: resolved.people,
     };
     let done = db.label(&samples, &options)?;
     if args.json {
@@ -203,6 +210,9 @@ fn said(counts: &Added, args: &Args) -> String {
             "{} proposals of groups withdrawn",
             counts.withdrawn
         ));
+    }
+    if counts.people > 0 {
+        parts.push(format!("{} clips given their person", counts.people));
     }
     let would = if args.dry_run {
         "nothing was changed; it would be: "

@@ -7,7 +7,7 @@ use anyhow::{Result, bail};
 use morec::TimeSpan;
 use morec::cluster::{PairCounts, adjusted_rand_index};
 use morec::features::Rows;
-use morec::labels::{ClipLength, some_of};
+use morec::labels::{ClipLength, said_absent};
 use morec_db::ClipId;
 use morec_ops::{GroupSettings, largest_first};
 use serde::Serialize;
@@ -114,12 +114,12 @@ pub fn labelled(
     for warning in labels.warnings.iter().chain(&resolved.warnings) {
         eprintln!("morec: {}: {warning}", path.display());
     }
+    if let Some(why) = resolved.doubtful_unit() {
+        bail!("{}: {why}", path.display());
+    }
     if !resolved.absent.is_empty() {
-        let (rows, names) = (
-            resolved.absent.values().sum::<usize>(),
-            some_of(resolved.absent.keys()),
-        );
-        eprintln!("morec: {rows} labels are of clips that are not there: {names}");
+        let known: Vec<String> = clips.keys().cloned().collect();
+        eprintln!("morec: {}", said_absent(&resolved.absent, &known));
     }
     let wanted = |class: &String| classes.is_empty() || classes.contains(class);
     let samples: Vec<GroupedSample> = resolved

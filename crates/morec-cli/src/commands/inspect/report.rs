@@ -228,7 +228,7 @@ impl ClipReport {
             writeln!(out, "  note       {note}")?;
         }
         for finding in self.findings() {
-            let (severity, text) = of_file(finding);
+            let (severity, text) = finding.of_file();
             writeln!(out, "  {severity:<10} {text}")?;
         }
         Ok(())
@@ -278,7 +278,7 @@ impl ClipReport {
             writeln!(out, "  note: {note}")?;
         }
         for finding in self.findings() {
-            let (severity, text) = of_file(finding);
+            let (severity, text) = finding.of_file();
             writeln!(out, "  {severity}: {text}")?;
         }
         Ok(())
@@ -396,20 +396,6 @@ fn depth_first(joints: &[JointReport]) -> Vec<usize> {
         left.extend(&children[j]);
     }
     order
-}
-
-/// A finding as it is said of a file: which way is up was inferred and can be given, and nothing is sent.
-fn of_file(finding: &Finding) -> (String, String) {
-    let text = match finding {
-        Finding::UpIsNotY { .. } => {
-            "the body lies for most of the clip; if it stands, say which way is up with --up AXIS"
-        }
-        Finding::UpsideDown { .. } => {
-            "the head is below the feet for most of the clip; if nobody stands on the hands, say which way is up with --up AXIS"
-        }
-        finding => return (finding.severity().to_string(), finding.to_string()),
-    };
-    ("warning".to_owned(), text.to_owned())
 }
 
 /// Half-open, as spans are everywhere; the first ten.

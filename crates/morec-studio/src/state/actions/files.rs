@@ -15,7 +15,7 @@ use crate::state::{
     Ask, Classes, FileCommand, Library, Live, Motions, Player, State, TimelineState, Train,
     TypedPath,
 };
-use crate::store::Store;
+use crate::store::{DbPlace, Store};
 use crate::unsaved::{self, Leftover, OwnFolder};
 
 const MAKING: &str = "Making an example";
@@ -40,7 +40,11 @@ impl State {
     }
 
     pub(in crate::state) fn open_store(&mut self, path: &Path, temporary: bool) {
-        match Store::open(path, temporary, self.wake.clone()) {
+        let place = DbPlace {
+            path: path.to_owned(),
+            signature: self.signature.clone(),
+        };
+        match Store::open(place, temporary, self.wake.clone()) {
             Ok(store) => {
                 let first = store.snapshot.clips.first().map(|c| c.id);
                 self.forget();
@@ -233,8 +237,9 @@ impl State {
             FileCommand::LeaveDiscarding => self.leave(),
             FileCommand::Stay => self.leaving = None,
             FileCommand::OpenLeftover(at) => self.open_leftover(at),
+            FileCommand::AskDiscard(at) => self.discarding = at,
             FileCommand::DiscardLeftover(at) => {
-                if at < self.leftovers.len() {
+                if self.discarding.take() == Some(at) && at < self.leftovers.len() {
                     self.leftovers.remove(at).folder.remove();
                 }
             }
@@ -293,8 +298,8 @@ impl State {
             self.open_clips(&paths);
             return;
         };
-        let db = store.path().to_owned();
-        let line = ShownCommand::new("morec db import").word(&db);
+        let db = store.place();
+        let line = ShownCommand::new("morec db import").word(&db.path);
         self.show_line(paths.iter().fold(line, ShownCommand::word));
         self.jobs.start(
             "Importing clips",

@@ -11,8 +11,8 @@ use crate::store::Edit;
 impl State {
     pub(in crate::state) fn propose(&mut self) {
         let Some(store) = &self.store else { return };
-        let db = store.path().to_owned();
-        let line = ShownCommand::new("morec db propose").word(&db);
+        let db = store.place();
+        let line = ShownCommand::new("morec db propose").word(&db.path);
         self.show_line(line.settings(&ProposeSettings::default()));
         self.jobs.start(
             "Looking for more",

@@ -47,6 +47,7 @@ impl State {
         self.edit(Edit::LabelFiles {
             paths: files.paths,
             samples: files.samples,
+            people: files.people,
             replace,
         });
     }

@@ -301,8 +301,8 @@ impl State {
 
     fn cut(&mut self, method: CutMethod) {
         let Some(store) = &self.store else { return };
-        let db = store.path().to_owned();
-        let line = ShownCommand::new("morec cut").word(&db);
+        let db = store.place();
+        let line = ShownCommand::new("morec cut").word(&db.path);
         self.show_line(line.settings(&CutSettings::from(method)));
         self.jobs.start(
             "Cutting clips",

@@ -2,7 +2,7 @@
 
 use morec_db::ClipId;
 
-use crate::state::{LibraryCommand, State};
+use crate::state::{LibraryCommand, Panel, State};
 use crate::store::Edit;
 
 impl State {
@@ -25,6 +25,7 @@ impl State {
                 self.library.chosen = !self.library.selected.is_empty();
             }
             LibraryCommand::SelectTo(clip) => self.select_to(clip),
+            LibraryCommand::Step(by) => self.step(by),
             LibraryCommand::Open(clip) => self.open_clip(clip, None),
             LibraryCommand::GoTo(of) => {
                 self.open_clip(of.clip, Some((of.span.start_secs, of.span.stop_secs)));
@@ -55,6 +56,28 @@ impl State {
             "{} selected",
             crate::format::count(self.library.selected.len(), "clip")
         ));
+    }
+
+    fn step(&mut self, by: i64) {
+        let Some(store) = &self.store else { return };
+        let clips = &store.snapshot.clips;
+        let shown = self.library.shown().iter().filter_map(|&at| clips.get(at));
+        let shown: Vec<ClipId> = shown.map(|clip| clip.id).collect();
+        let from = match self.panel {
+            // The clip that was asked for may still be read.
+            Panel::Library => self.library.selected.last().copied(),
+            _ => self.player.motion.as_ref().map(|motion| motion.id),
+        };
+        let from = from.and_then(|from| shown.iter().position(|id| *id == from));
+        let last = shown.len().saturating_sub(1);
+        let to = match from {
+            Some(from) => from.saturating_add_signed(by as isize).min(last),
+            None => 0,
+        };
+        if let Some(&clip) = shown.get(to) {
+            self.open_clip(clip, None);
+            self.library.chosen = self.panel == Panel::Library;
+        }
     }
 
     /// Uses the clips that somebody has selected as background, or no longer if all of them are.

@@ -14,6 +14,9 @@ use crate::state::{LiveCommand, State};
 /// Name of the job that keeps what was marked.
 pub(in crate::state) const TEACHING: &str = "Keeping what was marked";
 
+/// A hand with its fingers stretched reaches so far from its middle, metres.
+const HAND_HALF_M: f64 = 0.12;
+
 /// Name of the job that tries settings on the recorded minutes.
 const TRYING: &str = "Trying the settings";
 
@@ -135,6 +138,7 @@ impl State {
         self.live.range = None;
         self.live.resensed = None;
         self.live.looking.until_secs = None;
+        self.live.framed = None;
         self.player.playing = false;
     }
 
@@ -173,6 +177,9 @@ impl State {
                 *live.counts.entry(name).or_default() += 1;
             }
         }
+        let watched = run.watched().filter(|w| !w.body.limbs.is_empty());
+        let new = watched.filter(|w| live.framed != Some(w.actor));
+        let seen = new.map(|w| (w.actor, w.body.is_hand));
         if let Some(left) = &mut live.countdown {
             *left -= dt;
             if *left <= 0.0 {
@@ -181,6 +188,10 @@ impl State {
                     .watched()
                     .and_then(|w| Some(Recording::new(w.rig.as_ref()?)));
             }
+        }
+        if let Some((actor, is_hand)) = seen {
+            self.live.framed = Some(actor);
+            self.stand_off(is_hand.then_some(HAND_HALF_M));
         }
     }
 

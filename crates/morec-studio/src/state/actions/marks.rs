@@ -1,5 +1,6 @@
 //! Marking: a stretch of the stream becomes a sample or background, a take becomes a clip.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use morec::TimeSpan;
@@ -8,19 +9,25 @@ use morec_db::BACKGROUND;
 
 use super::lines::ShownCommand;
 use super::live::TEACHING;
-use crate::jobs::JobOutcome;
 use crate::jobs::teach::{Lesson, Meaning, Taught, teach};
+use crate::jobs::{JobOutcome, JobProgress, recognise};
 use crate::state::State;
-use crate::state::live::{LiveMark, labelled_there};
-use crate::store::Store;
+use crate::state::live::{LiveDetection, LiveMark, SilenceWanted, labelled_there};
+use crate::store::{DbPlace, Store};
 
 /// Margin kept before and after a marked stretch, seconds.
 const AROUND_SECS: f64 = 0.7;
+/// Most that is kept around background, seconds.
+const AROUND_BACKGROUND_SECS: f64 = 1.5;
+/// A detection that was reported so long ago is what somebody means by none of these, seconds.
+const FRESH_SECS: f64 = 8.0;
+/// The new index is tried on so much before and after what it shall be silent on, seconds.
+const LISTENED_SECS: (f64, f64) = (6.0, 2.0);
 
 impl State {
     /// Keeps the selected stretch, or the last motion, as a sample of a class or as background, and trains anew.
     pub(in crate::state) fn mark(&mut self, meaning: Meaning) {
-        let Some(store) = self.store.as_ref().map(|s| s.path().to_owned()) else {
+        let Some(store) = self.store.as_ref().map(Store::place) else {
             return;
         };
         let Some(run) = &self.live.run else {
@@ -32,8 +39,19 @@ impl State {
             return;
         }
         let Some((actor, stretch)) = run.watched().and_then(|watched| {
-            let (start, stop) = self.live.range.or_else(|| watched.last_motion())?;
-            Some((watched.actor, TimeSpan::new(start, stop)))
+            let asked = self
+                .live
+                .range
+                .map(|(start, stop)| TimeSpan::new(start, stop));
+            let moved = || {
+                let (start, stop) = watched.last_motion()?;
+                Some(TimeSpan::new(start, stop))
+            };
+            let stretch = match meaning {
+                Meaning::Class(_) => asked.or_else(moved),
+                Meaning::Background => asked.or_else(|| self.false_alarm(watched.actor, moved())),
+            };
+            Some((watched.actor, stretch?))
         }) else {
             self.say("nothing has moved yet that could be marked");
             return;
@@ -51,7 +69,7 @@ impl State {
                 line.map(|line| line.with("--name", &lesson.name))
             }
             Meaning::Background => {
-                let line = self.record_line(&store);
+                let line = self.record_line(&store.path);
                 line.map(|line| line.with("--tag", BACKGROUND))
             }
         };
@@ -62,28 +80,125 @@ impl State {
             .iter()
             .any(|s| s.snapshot.accepted().next().is_some());
         self.live.retrain = labelled || meaning != Meaning::Background;
-        self.live.marks.push(LiveMark::new(actor, stretch, meaning));
+        let mark = LiveMark::new(actor, stretch, meaning.clone());
+        self.live.marks.push(mark);
         self.live.range = None;
         self.live.teaching = true;
+        self.live.checked = match meaning {
+            Meaning::Background => self.silence_wanted(stretch),
+            Meaning::Class(_) => None,
+        };
         self.keep(store, lesson);
     }
 
     /// What a stretch becomes in the database; `None` if the stream no longer has it.
     fn lesson(&self, stretch: TimeSpan, meaning: &Meaning) -> Option<Lesson> {
-        // What came before and after background may be a motion of a class.
-        let around = match meaning {
-            Meaning::Class(_) => AROUND_SECS,
-            Meaning::Background => 0.0,
-        };
         let watched = self.live.run.as_ref()?.watched()?;
-        let (recording, origin) =
-            watched.cut_out(stretch.start_secs - around, stretch.stop_secs + around)?;
+        let around = match meaning {
+            Meaning::Class(_) => TimeSpan::new(
+                stretch.start_secs - AROUND_SECS,
+                stretch.stop_secs + AROUND_SECS,
+            ),
+            Meaning::Background => self.around_background(watched.actor, stretch),
+        };
+        let (recording, origin) = watched.cut_out(around.start_secs, around.stop_secs)?;
         Some(Lesson {
             recording,
             name: meaning.name().replace(' ', "_"),
             meaning: Some(meaning.clone()),
             extent: stretch.map(|secs| secs - origin),
         })
+    }
+
+    /// The detection that came last, with the movement that it was found in; without a fresh one the last movement.
+    fn false_alarm(&self, actor: PerformerId, moved: Option<TimeSpan>) -> Option<TimeSpan> {
+        let run = self.live.run.as_ref()?;
+        let fresh =
+            |d: &&LiveDetection| d.actor == actor && run.now_secs - d.reported_secs < FRESH_SECS;
+        let last = run.seen.iter().rev().find(fresh).map(|d| d.span);
+        Some(match (last, moved) {
+            (Some(found), Some(moved)) if found.overlap_secs(moved) > 0.0 => TimeSpan::new(
+                found.start_secs.min(moved.start_secs),
+                found.stop_secs.max(moved.stop_secs),
+            ),
+            (Some(found), _) => found,
+            (None, moved) => moved?,
+        })
+    }
+
+    /// A stretch of background with what came before and after it, as far as that is nothing of a class: what is reported of a motion
+    /// is decided by what is around it, too.
+    fn around_background(&self, actor: PerformerId, stretch: TimeSpan) -> TimeSpan {
+        let Some(run) = &self.live.run else {
+            return stretch;
+        };
+        let (mut start, mut stop) = (
+            stretch.start_secs - AROUND_BACKGROUND_SECS,
+            stretch.stop_secs + AROUND_BACKGROUND_SECS,
+        );
+        let detections = run.seen.iter().filter(|d| d.actor == actor).map(|d| d.span);
+        let marks = self.live.marks.iter().filter(|mark| mark.actor == actor);
+        let marks = marks.filter(|mark| mark.meaning != Meaning::Background);
+        let mut others: Vec<TimeSpan> = detections.chain(marks.map(|mark| mark.span)).collect();
+        if let (Some(store), Some((clip, at))) = (&self.store, run.moment(stretch.start_secs)) {
+            let samples = store.snapshot.samples_of(clip).iter();
+            let on_stream = |secs: f64| secs - at + stretch.start_secs;
+            others.extend(samples.map(|s| s.span().map(on_stream)));
+        }
+        for other in others
+            .iter()
+            .filter(|other| other.overlap_secs(stretch) <= 0.0)
+        {
+            if other.stop_secs <= stretch.start_secs {
+                start = start.max(other.stop_secs);
+            } else {
+                stop = stop.min(other.start_secs);
+            }
+        }
+        TimeSpan::new(start, stop)
+    }
+
+    /// The poses by which it is seen whether the next index is silent on a stretch.
+    fn silence_wanted(&self, stretch: TimeSpan) -> Option<SilenceWanted> {
+        let watched = self.live.run.as_ref()?.watched()?;
+        let mut poses = watched.key_poses();
+        poses.retain(|(secs, _)| (secs - stretch.stop_secs) < LISTENED_SECS.1);
+        poses.retain(|(secs, _)| (stretch.start_secs - secs) < LISTENED_SECS.0);
+        Some(SilenceWanted { stretch, poses })
+    }
+
+    /// Looks whether the new index is silent on what was marked as background last.
+    pub(super) fn check_silence(&mut self) {
+        // An index that was under way before the mark was kept says nothing of it.
+        if self.live.teaching || self.live.retrain {
+            return;
+        }
+        let (Some(wanted), Some(model)) = (self.live.checked.take(), self.live.model()) else {
+            return;
+        };
+        let job = move |_: &JobProgress| {
+            let found = recognise::poses(&model, &wanted.poses)?;
+            let there = found
+                .iter()
+                .filter(|d| d.span.overlap_secs(wanted.stretch) > 0.0);
+            let classes = there.map(|d| model.class_name(d.class).to_owned());
+            Ok(classes.collect::<BTreeSet<String>>())
+        };
+        let outcome = JobOutcome::Silent;
+        self.jobs
+            .start("Checking the background", false, &self.wake, outcome, job);
+    }
+
+    /// Says whether the false alarm is gone.
+    pub(in crate::state) fn silent(&mut self, reported: &BTreeSet<String>) {
+        if reported.is_empty() {
+            return self.say("the new index reports nothing there");
+        }
+        let classes: Vec<&str> = reported.iter().map(String::as_str).collect();
+        self.complain(format!(
+            "The new index still reports {} there: mark it again when it comes, or give that class more labels",
+            classes.join(", ")
+        ));
     }
 
     /// Reason why a stretch cannot be marked so: the same motion would teach a class and be background too.
@@ -126,7 +241,7 @@ impl State {
         Some(line.with("-o", db))
     }
 
-    fn keep(&mut self, db: std::path::PathBuf, lesson: Lesson) {
+    fn keep(&mut self, db: DbPlace, lesson: Lesson) {
         let folder = self.scratch();
         self.jobs
             .start(TEACHING, false, &self.wake, JobOutcome::Taught, move |_| {
@@ -184,7 +299,7 @@ impl State {
         let Some(recording) = self.live.take.take() else {
             return;
         };
-        let Some(store) = self.store.as_ref().map(|s| s.path().to_owned()) else {
+        let Some(store) = self.store.as_ref().map(Store::place) else {
             return;
         };
         let lesson = Lesson {
@@ -193,7 +308,7 @@ impl State {
             extent: TimeSpan::new(0.0, 0.0),
             name: "take".to_owned(),
         };
-        let line = self.record_line(&store);
+        let line = self.record_line(&store.path);
         self.show_line(line);
         self.keep(store, lesson);
     }

@@ -148,6 +148,7 @@ impl State {
             }
             JobOutcome::Recognised((clip, found)) => self.detections = Some((clip, found)),
             JobOutcome::Resensed(found) => self.take_resensed(found),
+            JobOutcome::Silent(reported) => self.silent(&reported),
             JobOutcome::Taught(taught) => {
                 self.taught(&taught);
                 self.reload();

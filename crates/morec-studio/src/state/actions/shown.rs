@@ -75,6 +75,11 @@ impl State {
             true => None,
             false => extent(&motion.pose(0.0)).map(|(_, half)| half),
         };
+        self.stand_off(half);
+    }
+
+    /// Puts the camera so far off that what reaches `half` metres from its middle is seen whole; `None`: a person.
+    pub(super) fn stand_off(&mut self, half: Option<f64>) {
         if let Some(half) = half {
             self.camera.distance = Camera::distance_of(half);
         } else if self.fitted {

@@ -174,6 +174,7 @@ impl State {
             store.keep_last_index(self.train.bytes.clone());
         }
         self.live.follow_index(self.train.index.as_ref());
+        self.check_silence();
         if self.panel != Panel::Live
             && let Some(motion) = self.player.motion.clone()
         {

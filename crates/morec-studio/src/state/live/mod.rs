@@ -10,6 +10,8 @@ mod tracked;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use morec::TimeSpan;
+use morec::features::KeyPose;
 use morec::index::MotionIndex;
 use morec::live::{Detection, Model, PerformerId, Recording};
 use morec::math::Vec3;
@@ -20,7 +22,7 @@ pub use feed::{ClipFeed, Feed, ThreadFeed};
 
 pub use looking::{Looking, SPANS};
 pub use marked::{LiveMark, labelled_there};
-pub use run::Run;
+pub use run::{LiveDetection, Run};
 
 /// While seconds are counted down, the window is drawn so often, seconds.
 const COUNTED_SECS: f64 = 0.1;
@@ -39,6 +41,13 @@ pub enum Choice {
 pub struct Resensed {
     pub settings: RecognizeSettings,
     pub found: Vec<Detection>,
+}
+
+/// A stretch that was marked as background, and the poses around it, with their times.
+#[derive(Debug, Clone)]
+pub struct SilenceWanted {
+    pub stretch: TimeSpan,
+    pub poses: Vec<(f64, KeyPose)>,
 }
 
 /// The live panel's own state.
@@ -64,6 +73,8 @@ pub struct Live {
     pub(super) trying: Option<RecognizeSettings>,
     /// Something that was marked is being kept.
     pub teaching: bool,
+    /// What the next index shall be silent on.
+    pub(super) checked: Option<SilenceWanted>,
     /// The index is to be trained anew once the mark is in the database.
     pub(super) retrain: bool,
     /// Seconds until a take begins.
@@ -72,6 +83,8 @@ pub struct Live {
     pub take: Option<Recording>,
     /// Number of detections of each class.
     pub counts: BTreeMap<String, usize>,
+    /// The performer for whom the camera stands as far off as it does.
+    pub(super) framed: Option<PerformerId>,
 }
 
 impl Default for Live {
@@ -89,10 +102,12 @@ impl Default for Live {
             resensed: None,
             trying: None,
             teaching: false,
+            checked: None,
             retrain: false,
             countdown: None,
             take: None,
             counts: BTreeMap::new(),
+            framed: None,
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use std::collections::VecDeque;
 
+use morec::features::{Hand, Profile};
 use morec::live::{Frame, Rig};
 use morec::roles::Role;
 
@@ -17,7 +18,8 @@ const LENGTH_SECS: (f64, f64) = (0.3, 5.0);
 /// Speeds are taken over so long: from frame to frame a tracker's noise alone is as fast as a hand.
 const OVER_SECS: f64 = 0.1;
 
-/// The fastest of hands, feet and head against the hips, over the last tenth of a second.
+/// The fastest of hands, feet and head against the hips, over the last tenth of a second; of hands without a body, of the wrist and the
+/// fingertips.
 pub fn speed(frames: &VecDeque<Frame>, frame: &Frame, rig: &Rig) -> f32 {
     const ENDS: [Role; 5] = [
         Role::LeftHand,
@@ -28,19 +30,34 @@ pub fn speed(frames: &VecDeque<Frame>, frame: &Frame, rig: &Rig) -> f32 {
     ];
     let old = frame.time_secs - OVER_SECS;
     let before = frames.iter().rev().find(|f| f.time_secs <= old);
-    let (Some(hips), Some(last)) = (rig.roles.joint(Role::Hips), before) else {
-        return 0.0;
+    let Some(last) = before else { return 0.0 };
+    let hips = rig.roles.joint(Role::Hips);
+    let ends: Vec<Role> = match rig.roles.profile() {
+        Profile::Hand | Profile::Hands => Hand::BOTH.into_iter().flat_map(ends_of).collect(),
+        _ => ENDS.to_vec(),
     };
     let dt = frame.time_secs - last.time_secs;
     let place = |frame: &Frame, joint: usize| {
-        Some(frame.pose.positions.get(joint)? - frame.pose.positions.get(hips)?)
+        let at = *frame.pose.positions.get(joint)?;
+        // Without hips, places are those in the room.
+        match hips {
+            Some(hips) => Some(at - frame.pose.positions.get(hips)?),
+            None => Some(at),
+        }
     };
-    let speeds = ENDS.iter().filter_map(|role| {
+    let speeds = ends.iter().filter_map(|role| {
         let joint = rig.roles.joint(*role)?;
         let moved = (place(frame, joint)? - place(last, joint)?).norm() / dt;
         moved.is_finite().then_some(moved as f32)
     });
     speeds.fold(0.0, f32::max)
+}
+
+/// What moves of a hand: its wrist and the tips of its fingers.
+fn ends_of(hand: Hand) -> Vec<Role> {
+    let points = hand.points();
+    let tips = points.fingers.iter().map(|finger| finger[finger.len() - 1]);
+    tips.chain([points.wrist]).collect()
 }
 
 /// The last stretch of movement before now, rests at its ends left out.

@@ -13,6 +13,7 @@ use morec::math::Vec3;
 
 use super::moved;
 use crate::body::Body;
+use crate::jobs::load::extent;
 
 /// Length of the stream that is kept for looking back, seconds.
 pub const KEPT_SECS: f64 = 300.0;
@@ -112,6 +113,9 @@ impl LivePerformer {
     }
 
     pub fn centre(&self) -> Option<Vec3> {
+        if self.body.is_hand {
+            return Some(extent(&self.pose)?.0);
+        }
         let at = self.body.centre(&self.pose)?;
         Some(Vec3::new(
             at.x,
@@ -125,7 +129,9 @@ impl LivePerformer {
         let heights = self.pose.positions.iter().map(|p| p.y);
         let lowest = heights.filter(|y| y.is_finite()).fold(f64::MAX, f64::min);
         // A jump leaves the floor where it is.
-        if lowest < f64::MAX {
+        if lowest < f64::MAX && self.body.is_hand {
+            lowest
+        } else if lowest < f64::MAX {
             lowest.min(0.05)
         } else {
             0.0

@@ -191,6 +191,12 @@ fn above(role: Role) -> Option<Role> {
     })
 }
 
+/// The name of a joint of the clip of a stream of roles.
+pub(super) fn name_of(role: Role) -> &'static str {
+    let body = NAMES.iter().find(|(of, _)| *of == role);
+    body.map_or_else(|| role.name(), |(_, name)| name)
+}
+
 fn is_place(place: &Vec3) -> bool {
     place.iter().all(|c| c.is_finite())
 }

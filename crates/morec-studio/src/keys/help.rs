@@ -1,0 +1,109 @@
+//! The page of keys.
+
+/// Entries of the page of keys: area, keys, effect.
+pub const HELP: &[(&str, &str, &str)] = &[
+    (
+        "Anywhere",
+        "Ctrl 1 … 5",
+        "Library, Label, Classes, Train, Live",
+    ),
+    ("Anywhere", "Ctrl Z, Ctrl Shift Z", "undo, redo"),
+    (
+        "Anywhere",
+        "Ctrl O, Ctrl I",
+        "open a database, import clips",
+    ),
+    ("Anywhere", "Ctrl T", "train"),
+    ("Anywhere", "Ctrl H, F1", "history, this page"),
+    ("Library", "Ctrl A", "select all clips of the list"),
+    ("Library", "Ctrl F", "search clips"),
+    (
+        "Library, labels",
+        "Up, Down",
+        "the clip above, below in the list",
+    ),
+    (
+        "Library",
+        "1 … 9",
+        "the clips that you have selected, as a whole, show this class",
+    ),
+    (
+        "Library",
+        "B",
+        "use the selected clips as background, or no longer",
+    ),
+    ("Playing", "Space", "play, stop"),
+    (
+        "Playing",
+        "J  K  L",
+        "backwards, stop, forwards; again is faster",
+    ),
+    ("Playing", "Left Right  , .", "a frame back, a frame on"),
+    ("Playing", "Shift Left Right", "a second back, a second on"),
+    ("Playing", "Home, End", "to the beginning, to the end"),
+    ("Playing", "O", "loop the selected stretch or label"),
+    ("Playing", "I", "stay inside the segment between the cuts"),
+    ("Labels", "1 … 9 held", "label what passes while playing"),
+    (
+        "Labels",
+        "1 … 9 tapped",
+        "count repetitions: each tap ends one and begins the next",
+    ),
+    (
+        "Labels",
+        "1 … 9, selected",
+        "label the selected stretch, or change the selected label's class",
+    ),
+    ("Labels", "Escape", "end the selection"),
+    (
+        "Labels, live",
+        "Q, W",
+        "like 1 … 9, for any class; W chooses it by the beginning of its name",
+    ),
+    ("Labels", "S, M", "split at the playhead, merge"),
+    (
+        "Labels",
+        "[  ]",
+        "start, stop of the selected label to the playhead",
+    ),
+    (
+        "Labels",
+        "Ctrl Left Right",
+        "move the selected label by a frame",
+    ),
+    ("Labels", "Alt Left Right", "move its start by a frame"),
+    ("Labels", "Alt Shift Left Right", "move its stop by a frame"),
+    ("Labels", "Delete", "remove the selected labels"),
+    ("Labels", "Tab, Enter", "go to a label, select it"),
+    (
+        "Proposals",
+        "A, R",
+        "accept, reject; the next doubtful one is shown",
+    ),
+    ("Proposals", "N", "the next doubtful one"),
+    (
+        "Searching",
+        "F, C",
+        "more like the selection, the nearest beside the performer",
+    ),
+    ("Cuts", "X", "cut at the playhead"),
+    (
+        "Cuts",
+        "Ctrl Left Right  [ ]",
+        "move the selected cut by a frame, to the playhead",
+    ),
+    ("Cuts", "Delete", "remove the selected cut"),
+    ("Timeline", "+  −  0", "zoom in, zoom out, the whole clip"),
+    (
+        "Live",
+        "1 … 9",
+        "the last motion, or the selected stretch, was this class",
+    ),
+    ("Live", "0", "it was none of the classes: background"),
+    ("Live", "Space, R", "start or stop, record a take"),
+    (
+        "Live",
+        "Left Right, End",
+        "look back in the last minutes, look on, to the present",
+    ),
+];

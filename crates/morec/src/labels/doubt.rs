@@ -1,0 +1,143 @@
+//! Tables that are probably not meant as they are read: seconds in columns of frames, misspelled names.
+
+use std::collections::BTreeMap;
+
+use super::names::{hint, near, some_of};
+
+/// Labels of which half are shorter are no motions, seconds.
+const SHORTEST_SECS: f64 = 0.2;
+/// A class of so few labels may be another one misspelled.
+const FEW: usize = 2;
+/// That other one has so many times as many labels.
+const TIMES_MORE: usize = 5;
+/// Near names are looked for of so many clips.
+const HINTED: usize = 5;
+
+/// Reason why the times of a table are probably not in the unit that its columns say; `None` if they may be. `secs` are the lengths of
+/// the labels that lie in their clips, whole clips aside, `beyond` the number of labels that were cut or left out at the end of theirs.
+pub fn doubtful_unit(secs: impl IntoIterator<Item = f64>, beyond: usize) -> Option<String> {
+    let mut secs: Vec<f64> = secs.into_iter().collect();
+    secs.sort_by(f64::total_cmp);
+    let all = secs.len().max(beyond);
+    if beyond > 0 && 2 * beyond > all {
+        return Some(format!(
+            "{beyond} of {all} labels run over the end of their clips: probably the unit is another one. Frames belong in the columns \
+             `start` and `stop`, seconds in `start_secs` and `stop_secs`"
+        ));
+    }
+    let median = *secs.get(secs.len() / 2)?;
+    (median < SHORTEST_SECS).then(|| {
+        format!(
+            "half of {} labels last {median:.2} s or less, which no motion does: probably the unit is another one. Seconds belong in \
+             the columns `start_secs` and `stop_secs`, frames in `start` and `stop`",
+            secs.len()
+        )
+    })
+}
+
+/// Labels of clips that are not there, in a sentence, with the clips of `known` that may be meant.
+pub fn said_absent(absent: &BTreeMap<String, usize>, known: &[String]) -> String {
+    let rows: usize = absent.values().sum();
+    let near = absent.keys().take(HINTED).filter_map(|name| {
+        let near = near(name, known);
+        Some(format!("for `{name}` did you mean `{}`?", near.first()?))
+    });
+    let near: Vec<String> = near.collect();
+    let asked = match near.is_empty() {
+        true => String::new(),
+        false => format!("; {}", near.join(" ")),
+    };
+    let names = some_of(absent.keys());
+    format!("{rows} labels are of clips that are not there: {names}{asked}")
+}
+
+/// Questions about classes of few labels whose names are nearly those of classes of many, given the number of labels of each.
+pub fn misspelled(counts: &BTreeMap<&str, usize>) -> Vec<String> {
+    let often = |than: usize| {
+        let often = counts.iter().filter(move |(_, n)| **n >= TIMES_MORE * than);
+        often
+            .map(|(name, _)| (*name).to_owned())
+            .collect::<Vec<_>>()
+    };
+    let few = counts
+        .iter()
+        .filter(|(_, count)| (1..=FEW).contains(*count));
+    few.filter_map(|(name, count)| {
+        let meant = often(*count);
+        let meant = meant.iter().find(|other| is_slip(name, other))?;
+        let labels = if *count == 1 { "label" } else { "labels" };
+        let known = hint(name, std::slice::from_ref(meant));
+        Some(format!("the class {name} has {count} {labels}{known}"))
+    })
+    .collect()
+}
+
+/// True if one letter is missing, too many, another or swapped with its neighbour; numbers and endings such as `_l` and `_r`
+/// are what distinguishes classes.
+fn is_slip(name: &str, other: &str) -> bool {
+    let (name, other) = (name.to_lowercase(), other.to_lowercase());
+    let digits = |text: &str| {
+        text.chars()
+            .filter(char::is_ascii_digit)
+            .collect::<String>()
+    };
+    let stem = |text: &str| {
+        let last = text.char_indices().next_back();
+        last.map_or(String::new(), |(at, _)| text[..at].to_owned())
+    };
+    let same_length = name.chars().count() == other.chars().count();
+    let ending = same_length && stem(&name) == stem(&other);
+    name.chars().count() > 2
+        && digits(&name) == digits(&other)
+        && !(ending && name != other)
+        && strsim::damerau_levenshtein(&name, &other) <= 1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn seconds_in_columns_of_frames_are_doubted_and_so_are_frames_in_columns_of_seconds() {
+        assert!(
+            doubtful_unit([0.07, 0.03, 0.1], 0)
+                .unwrap()
+                .contains("0.07 s or less")
+        );
+        assert!(doubtful_unit([1.0, 0.1, 0.9], 0).is_none());
+        assert!(
+            doubtful_unit([2.0], 5)
+                .unwrap()
+                .contains("5 of 5 labels run over")
+        );
+        assert!(doubtful_unit([2.0, 1.0, 3.0], 1).is_none());
+        assert!(doubtful_unit([], 0).is_none());
+    }
+
+    #[test]
+    fn a_rare_class_that_is_nearly_a_frequent_one_is_asked_about() {
+        let counts = [
+            ("clap", 40),
+            ("calp", 1),
+            ("wave_l", 1),
+            ("wave_r", 9),
+            ("kick 1", 1),
+            ("kick 2", 9),
+        ];
+        let asked = misspelled(&counts.into());
+        assert_eq!(asked, ["the class calp has 1 label; did you mean `clap`?"]);
+        assert!(misspelled(&[("Clap", 1), ("clap", 5)].into())[0].contains("`clap`"));
+        assert!(misspelled(&[("clap", 3), ("calp", 3)].into()).is_empty());
+    }
+
+    #[test]
+    fn a_clip_that_is_not_there_is_asked_about() {
+        let known = ["take_1", "take_2", "walk"].map(str::to_owned);
+        let said = said_absent(&[("takee_1".to_owned(), 3)].into(), &known);
+        assert_eq!(
+            said,
+            "3 labels are of clips that are not there: takee_1; for `takee_1` did you mean `take_1`?"
+        );
+        assert!(!said_absent(&[("elsewhere".to_owned(), 1)].into(), &known).contains('?'));
+    }
+}
