@@ -24,6 +24,8 @@ pub struct ResolvedLabels {
     pub people: BTreeMap<ClipId, String>,
     /// Number of labels that were cut or left out at the end of their clips.
     pub beyond: usize,
+    /// Number of those that were left out.
+    pub left_out: usize,
     /// Labels that lie behind the end of their clip, wholly or in part, and people who are not those that are known, in
     /// sentences.
     pub notes: Vec<String>,
@@ -33,7 +35,8 @@ impl ResolvedLabels {
     /// Reason why the times are probably not in the unit that the file says; see [`doubtful_unit`].
     pub fn doubtful_unit(&self) -> Option<String> {
         let parts = self.samples.iter().filter(|s| !s.whole_clip);
-        doubtful_unit(parts.map(|s| s.stop_secs - s.start_secs), self.beyond)
+        let secs = parts.map(|s| s.stop_secs - s.start_secs);
+        doubtful_unit(secs, self.beyond, self.left_out)
     }
 
     /// Notes who is in a clip, as a file says.
@@ -94,6 +97,7 @@ pub fn resolve(annotations: Vec<Annotation>, clips: &[ClipInfo]) -> ResolvedLabe
         let extent = extent(&a, clip, &mut resolved.notes);
         resolved.beyond += resolved.notes.len() - noted;
         let Some((start_secs, stop_secs)) = extent else {
+            resolved.left_out += 1;
             continue;
         };
         resolved.samples.push(NewSample {

@@ -14,12 +14,17 @@ const TIMES_MORE: usize = 5;
 const HINTED: usize = 5;
 
 /// Reason why the times of a table are probably not in the unit that its columns say; `None` if they may be. `secs` are the lengths of
-/// the labels that lie in their clips, whole clips aside, `beyond` the number of labels that were cut or left out at the end of theirs.
-pub fn doubtful_unit(secs: impl IntoIterator<Item = f64>, beyond: usize) -> Option<String> {
+/// the labels that lie in their clips, whole clips aside, `beyond` the number of labels that were cut or left out at the
+/// end of theirs, `left_out` the number of the latter.
+pub fn doubtful_unit(
+    secs: impl IntoIterator<Item = f64>,
+    beyond: usize,
+    left_out: usize,
+) -> Option<String> {
     let mut secs: Vec<f64> = secs.into_iter().collect();
     secs.sort_by(f64::total_cmp);
-    let all = secs.len().max(beyond);
-    if beyond > 0 && 2 * beyond > all {
+    let all = secs.len() + left_out;
+    if 2 * beyond > all {
         return Some(format!(
             "{beyond} of {all} labels run over the end of their clips: probably the unit is another one. Frames belong in the columns \
              `start` and `stop`, seconds in `start_secs` and `stop_secs`"
@@ -99,19 +104,14 @@ mod tests {
 
     #[test]
     fn seconds_in_columns_of_frames_are_doubted_and_so_are_frames_in_columns_of_seconds() {
-        assert!(
-            doubtful_unit([0.07, 0.03, 0.1], 0)
-                .unwrap()
-                .contains("0.07 s or less")
-        );
-        assert!(doubtful_unit([1.0, 0.1, 0.9], 0).is_none());
-        assert!(
-            doubtful_unit([2.0], 5)
-                .unwrap()
-                .contains("5 of 5 labels run over")
-        );
-        assert!(doubtful_unit([2.0, 1.0, 3.0], 1).is_none());
-        assert!(doubtful_unit([], 0).is_none());
+        let short = doubtful_unit([0.07, 0.03, 0.1], 0, 0).unwrap();
+        assert!(short.contains("0.07 s or less"));
+        assert!(doubtful_unit([1.0, 0.1, 0.9], 0, 0).is_none());
+        let late = doubtful_unit([2.0], 5, 5).unwrap();
+        assert!(late.contains("5 of 6 labels run over"));
+        assert!(doubtful_unit([2.0, 1.0, 3.0], 1, 0).is_none());
+        assert!(doubtful_unit([2.0; 6], 4, 4).is_none(), "4 of 10");
+        assert!(doubtful_unit([], 0, 0).is_none());
     }
 
     #[test]

@@ -52,6 +52,8 @@ pub struct Resolved {
     pub absent: BTreeMap<String, usize>,
     /// Number of labels that were cut or left out at the end of their clips.
     pub beyond: usize,
+    /// Number of those that were left out.
+    pub left_out: usize,
     /// Labels that were cut, left out, or overlap another.
     pub warnings: Vec<Warning>,
 }
@@ -132,6 +134,7 @@ impl Resolved {
             length.frames
         );
         if length.frames == 0 || span.start_secs >= duration_secs {
+            self.left_out += 1;
             return warn(format!(
                 "the label starts at {:.3} s but {end}; left out",
                 span.start_secs
@@ -192,7 +195,8 @@ impl Resolved {
     /// Reason why the table's times are probably not in the unit that its columns say; see [`doubtful_unit`].
     pub fn doubtful_unit(&self) -> Option<String> {
         let parts = self.samples.iter().filter(|s| !s.whole_clip);
-        doubtful_unit(parts.map(|s| s.span.duration_secs()), self.beyond)
+        let secs = parts.map(|s| s.span.duration_secs());
+        doubtful_unit(secs, self.beyond, self.left_out)
     }
 
     /// Questions about classes that are probably misspelled; see [`misspelled`].
