@@ -217,6 +217,7 @@ fn replace(dry_run: bool) -> LabelOptions {
         by: "me".into(),
         replace: true,
         dry_run,
+        people: Default::default(),
     }
 }
 

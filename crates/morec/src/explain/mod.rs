@@ -184,11 +184,7 @@ impl<'a> ComparedStream<'a> {
         self.rows.iter().for_each(|row| body.push(row));
         let mut comparison = Comparison::new(look);
         let columns = BodyTrack::columns(self.model.bones);
-        let extents = match look.flows {
-            true => vec![ticks.clone()],
-            false => grown_of(&body, ticks).to_vec(),
-        };
-        let judged = extents.into_iter().map(|extent| {
+        let judged = grown_of(&body, ticks).into_iter().map(|extent| {
             let segment = segment_of(&body, extent, &columns);
             comparison.judge(segment.values())
         });

@@ -78,8 +78,6 @@ pub struct LookWords {
     pub operating: Vec<OperatingPoint>,
     /// Matches farther than this are no candidates.
     pub reach: f32,
-    /// True if matches are judged, not their growths.
-    pub flows: bool,
     /// Median score of the taught samples.
     pub own_score: f32,
     /// The performer that is expected.

@@ -45,7 +45,6 @@ pub(super) fn manifest(model: &TemplateModel, index: &MotionIndex) -> Manifest {
             bound: look.bound,
             operating: look.operating.clone(),
             reach: look.reach,
-            flows: look.flows,
             own_score: look.own_score,
             performer: look.performer,
         }),
@@ -303,7 +302,6 @@ fn look(manifest: &Manifest, tables: &Tables) -> Result<Option<SecondLook>, Inde
         bound,
         operating,
         reach,
-        flows,
         own_score,
         performer,
     } = words.clone();
@@ -317,7 +315,6 @@ fn look(manifest: &Manifest, tables: &Tables) -> Result<Option<SecondLook>, Inde
         bound,
         operating,
         reach,
-        flows,
         own_score,
         performer,
         step,

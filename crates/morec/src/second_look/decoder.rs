@@ -8,8 +8,6 @@ use crate::templates::{Calibration, PerformerKind, TemplateModel};
 use super::LOOK_COLUMNS;
 use super::body::BodyTrack;
 use super::comparison::{Comparison, Judged, median_of};
-#[cfg(doc)]
-use super::model::SecondLook;
 use super::segment::{Extent, Grown, LONG, SEGMENT_ROWS, SHORT, grow, write_segment};
 
 /// Share of the shorter of two extents beyond which only the better one is reported.
@@ -84,8 +82,6 @@ pub struct LookDecoder {
     columns: Vec<usize>,
     bound: f32,
     reach: f32,
-    /// See [`SecondLook::flows`].
-    flows: bool,
     calibration: Option<Calibration>,
     performer: PerformerScores,
     /// The last two ticks' distances of each class.
@@ -150,7 +146,6 @@ impl LookDecoder {
             columns,
             bound: look.bound,
             reach: look.reach,
-            flows: look.flows,
             calibration: model.calibration,
             performer: PerformerScores {
                 performer: look.performer,
@@ -246,11 +241,6 @@ impl LookDecoder {
         let mut k = 0;
         while k < self.open.len() {
             let OpenMatch { matched, is_judged } = self.open[k];
-            if self.flows {
-                self.judge(matched);
-                self.open.swap_remove(k);
-                continue;
-            }
             if !is_judged && let Grown::To(extent) = grow(&self.body, matched, SHORT, known, ended)
             {
                 self.judge(extent);
@@ -319,7 +309,7 @@ impl LookDecoder {
             slow_ticks = if slow(tick) { slow_ticks + 1 } else { 0 };
             slow_ticks >= GOES_ON_TICKS
         });
-        if !self.flows && !rests {
+        if !rests {
             return true;
         }
         let [before, last] = &self.near;

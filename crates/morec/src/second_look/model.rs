@@ -38,9 +38,6 @@ pub struct SecondLook {
     pub operating: Vec<OperatingPoint>,
     /// Matches farther than this are no candidates.
     pub reach: f32,
-    /// True if the taught motions are parts of a longer flow, whose pace does not fall where they begin and end: the matches
-    /// themselves are judged, not their growths.
-    pub flows: bool,
     /// Median score of the taught samples, each among the others.
     pub own_score: f32,
     /// The performer that is expected.

@@ -41,6 +41,24 @@ const ATLAS_PACE: f32 = 0.15;
 /// Samples that are judged among the others at most.
 const MOST_JUDGED: usize = 200;
 
+/// True if the taught motions begin and end where their pace falls. Where they are parts of a flow, as signals or steps that follow each
+/// other without rest, growing a match to the motion around it reaches into its neighbours: matches decide there.
+pub fn are_apart(
+    set: &TrainSet,
+    samples: &[TrainSample],
+    bones: BoneSet,
+    params: &TrainParams,
+) -> bool {
+    let tracks = Tracks::new(set, bones, params);
+    let mut shares = tracks.each(samples, |track, sample| {
+        in_common(&grown_of(track, &sample.ticks)[0], &sample.ticks)
+    });
+    shares.sort_by(f32::total_cmp);
+    shares
+        .get(shares.len() / 2)
+        .is_some_and(|share| *share >= FLOW_SHARE)
+}
+
 /// A taught sample judged among the others.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OwnSample {
@@ -63,13 +81,8 @@ pub fn learn(
     if samples.is_empty() {
         return None;
     }
-    let tracks = Tracks {
-        set,
-        bones,
-        params,
-        columns: BodyTrack::columns(bones),
-    };
-    let (flows, segments) = tracks.of_samples(samples);
+    let tracks = Tracks::new(set, bones, params);
+    let segments = tracks.of_samples(samples);
     let dim = tracks.columns.len();
     let first: Vec<TrainSample> = segments
         .iter()
@@ -102,7 +115,6 @@ pub fn learn(
         bound: BOUND_OF_FEW,
         operating: Vec::new(),
         reach: REACH,
-        flows,
         own_score: 0.0,
         performer: PerformerKind::Auto,
         step: None,
@@ -150,7 +162,16 @@ struct Tracks<'a> {
     columns: Vec<usize>,
 }
 
-impl Tracks<'_> {
+impl<'a> Tracks<'a> {
+    fn new(set: &'a TrainSet, bones: BoneSet, params: &'a TrainParams) -> Self {
+        Self {
+            set,
+            bones,
+            params,
+            columns: BodyTrack::columns(bones),
+        }
+    }
+
     fn of_stream(&self, stream: usize) -> BodyTrack {
         let rows = &self.set.streams[stream].rows;
         let mut track = BodyTrack::new(self.bones, &self.params.features, rows.len());
@@ -158,52 +179,41 @@ impl Tracks<'_> {
         track
     }
 
-    /// Whether the samples are parts of a flow, and the segments of each: the motion within its label, and where motions are apart
-    /// its growths too, as a stream's are judged.
-    fn of_samples<'s>(
+    /// What `of_sample` makes of each sample and the track of its stream, in the order of the samples.
+    fn each<T: Send>(
         &self,
-        samples: &'s [TrainSample],
-    ) -> (bool, Vec<(&'s TrainSample, Vec<Rows>)>) {
+        samples: &[TrainSample],
+        of_sample: impl Fn(&BodyTrack, &TrainSample) -> T + Sync,
+    ) -> Vec<T> {
         let mut by_stream = BTreeMap::<usize, Vec<(usize, &TrainSample)>>::new();
         for (place, sample) in samples.iter().enumerate() {
-            by_stream
-                .entry(sample.stream)
-                .or_default()
-                .push((place, sample));
+            let of_stream = by_stream.entry(sample.stream).or_default();
+            of_stream.push((place, sample));
         }
-        let of_stream = |(stream, samples): (&usize, &Vec<(usize, &'s TrainSample)>)| {
+        let of_stream = |(stream, samples): (&usize, &Vec<(usize, &TrainSample)>)| {
             let track = self.of_stream(*stream);
-            let spans = |sample: &TrainSample| {
-                let grown = grown_of(&track, &sample.ticks);
-                let share = in_common(&grown[0], &sample.ticks);
-                let pace: Vec<f32> = sample.ticks.clone().map(|t| track.pace(t as i64)).collect();
-                let span = sample_span(&pace);
-                let start = sample.ticks.start;
-                let [short, long] = grown;
-                let mut spans = vec![start + span.start..start + span.end, short, long];
-                spans.dedup();
-                let rows = spans
-                    .into_iter()
-                    .map(|ticks| segment_of(&track, ticks, &self.columns));
-                (share, rows.collect())
-            };
-            let of_sample =
-                |(place, sample): &(usize, &'s TrainSample)| (*place, *sample, spans(sample));
-            samples.iter().map(of_sample).collect::<Vec<_>>()
+            let made = samples.iter();
+            let made = made.map(|(place, sample)| (*place, of_sample(&track, sample)));
+            made.collect::<Vec<_>>()
         };
-        let mut cut: Vec<(usize, &TrainSample, (f32, Vec<Rows>))> =
-            by_stream.par_iter().flat_map_iter(of_stream).collect();
-        cut.sort_by_key(|(place, ..)| *place);
-        let mut shares: Vec<f32> = cut.iter().map(|(.., (share, _))| *share).collect();
-        shares.sort_by(f32::total_cmp);
-        let flows = shares[shares.len() / 2] < FLOW_SHARE;
-        let kept = |(_, sample, (_, mut rows)): (usize, &'s TrainSample, (f32, Vec<Rows>))| {
-            if flows {
-                rows.truncate(1);
-            }
-            (sample, rows)
-        };
-        (flows, cut.into_iter().map(kept).collect())
+        let mut made: Vec<(usize, T)> = by_stream.par_iter().flat_map_iter(of_stream).collect();
+        made.sort_by_key(|(place, _)| *place);
+        made.into_iter().map(|(_, made)| made).collect()
+    }
+
+    /// The segments of each sample: the motion within its label, and its growths, as a stream's are judged.
+    fn of_samples<'s>(&self, samples: &'s [TrainSample]) -> Vec<(&'s TrainSample, Vec<Rows>)> {
+        let segments = self.each(samples, |track, sample| {
+            let pace: Vec<f32> = sample.ticks.clone().map(|t| track.pace(t as i64)).collect();
+            let (span, start) = (sample_span(&pace), sample.ticks.start);
+            let [short, long] = grown_of(track, &sample.ticks);
+            let mut spans = vec![start + span.start..start + span.end, short, long];
+            spans.dedup();
+            let rows = spans.into_iter();
+            rows.map(|ticks| segment_of(track, ticks, &self.columns))
+                .collect()
+        });
+        samples.iter().zip(segments).collect()
     }
 
     /// Segments of everyday motion, drawn evenly from all that move; of what people really did.

@@ -122,7 +122,9 @@ pub fn train(
     let verified = verified.filter(|_| params.verify);
     let verifies = verified.is_some() && verifier::has_background(set, params);
     // The second look needs no gate of its own for strangers.
-    let judges_whole = params.judge_whole && Profile::of(bones) == Profile::Body;
+    let judges_whole = params.judge_whole
+        && Profile::of(bones) == Profile::Body
+        && second_look::are_apart(set, &taught, bones, params);
     let wide = wide_gate(set, &samples, params).filter(|_| !verifies && !judges_whole);
     let gates = TrainGates { plain, wide };
     let gate_of_verifier = verified.filter(|_| verifies).map(MatchGate::plain);
