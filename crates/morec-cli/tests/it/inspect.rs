@@ -1,3 +1,4 @@
+use morec::synth::SyntheticTake;
 use serde_json::Value;
 
 use crate::kit::{ARM_ASF, Folder, WAVE_AMC, WAVE_BVH, data};
@@ -275,37 +276,30 @@ fn what_is_no_human_body_is_told() {
     );
 }
 
-/// The clip as one sees it whose X points the other way: a recording in left-handed coordinates.
-fn mirrored(clip: &morec::clip::Clip) -> morec::clip::Clip {
-    use morec::math::{Quat, Vec3};
-    let image = |v: &Vec3| Vec3::new(-v.x, v.y, v.z);
-    let mut mirrored = clip.clone();
-    let mut joints = clip.skeleton.joints().to_vec();
-    for joint in &mut joints {
-        joint.offset = image(&joint.offset);
-        joint.tip = joint.tip.as_ref().map(image);
+/// A line of points as one sees it whose X points the other way, without the toes, from which the sides could be seen.
+fn mirrored(line: &str) -> String {
+    let mut line: serde_json::Value = serde_json::from_str(line).unwrap();
+    let points = line["positions"].as_object_mut().unwrap();
+    points.retain(|name, _| !name.contains("Toe"));
+    for place in points.values_mut() {
+        place[0] = (-place[0].as_f64().unwrap()).into();
     }
-    mirrored.skeleton = morec::clip::Skeleton::new(joints).unwrap();
-    for turned in &mut mirrored.rotations {
-        let about = turned.scaled_axis();
-        *turned = Quat::from_scaled_axis(Vec3::new(about.x, -about.y, -about.z));
-    }
-    for track in &mut mirrored.tracks {
-        track.positions.iter_mut().for_each(|p| *p = image(p));
-    }
-    mirrored
+    line.to_string() + "\n"
 }
 
 #[test]
 fn what_inspect_calls_an_error_is_said_wherever_the_clip_is_read() {
     let (folder, takes) = crate::db::studio(2);
+    let path = |take: &SyntheticTake, ending: &str| format!("clips/{}.{ending}", take.clip.name);
     for take in &takes {
-        let mut bytes = Vec::new();
-        morec::formats::bvh::write(&mirrored(&take.clip), &mut bytes).unwrap();
-        let file = folder.path().join(format!("clips/{}.bvh", take.clip.name));
-        std::fs::write(file, bytes).unwrap();
+        let (bvh, points) = (path(take, "bvh"), path(take, "jsonl"));
+        folder.morec(&["convert", &bvh, "-o", &points]).ok();
+        let points = folder.path().join(points);
+        let lines = std::fs::read_to_string(&points).unwrap();
+        std::fs::write(points, lines.lines().map(mirrored).collect::<String>()).unwrap();
+        std::fs::remove_file(folder.path().join(bvh)).unwrap();
     }
-    let clip = format!("clips/{}.bvh", takes[0].clip.name);
+    let clip = path(&takes[0], "jsonl");
     let inspected = folder.morec(&["inspect", &clip]).ok();
     let error = "left and right are exchanged or one axis points the wrong way";
     assert!(

@@ -54,6 +54,12 @@ const GESTURES: [(&str, Perform); 4] = [
     ("stretch", idle_gestures::stretch_out),
 ];
 
+/// True of the name of a clip of everyday gestures.
+pub fn shows_gestures(clip: &str) -> bool {
+    let content = clip.strip_prefix("everyday_").unwrap_or_default();
+    GESTURES.iter().any(|(name, _)| content.starts_with(name))
+}
+
 /// The library: clips of everyday motion by several people at 60 Hz, about 24 minutes in all. Each is named
 /// `everyday_<content>_<person>`. The same seed gives the same clips on every platform.
 pub fn everyday(seed: u64) -> Vec<Clip> {

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::classes::ClassId;
 use crate::features::{BoneSet, Profile, RowLayout, Rows};
+use crate::synth::shows_gestures;
 use crate::templates::{
     Activities, Metric, PackedSymmetric, ReferenceRows, STEP_TICKS, squared_distance, windows_of,
 };
@@ -147,7 +148,10 @@ fn others(
     own: &OwnWindows<'_>,
 ) -> Rows {
     let (mut real, mut made) = (Vec::new(), Vec::new());
-    for (ticks, stream) in set.background(STEP_TICKS) {
+    // A greeting that goes on is what an activity of waving is: such gestures say how near gestures may come.
+    let background = set.background(STEP_TICKS);
+    let background = background.filter(|(_, stream)| !shows_gestures(&stream.name));
+    for (ticks, stream) in background {
         let named = stream.source == StreamKind::Background;
         let into = match stream.source {
             StreamKind::Everyday => &mut made,

@@ -1,4 +1,4 @@
-//! Classes taught with the same motion: the report says so, since neither would be reported.
+//! Classes taught with the same motion: the report says which is taken for which.
 
 use morec::Trainer;
 use morec::import::{ImportOptions, Take, normalize};
@@ -31,7 +31,7 @@ fn notes(renamed: impl Fn(usize, &str) -> String) -> Vec<String> {
         .labels(&labels)
         .train_with_report(&takes)
         .unwrap();
-    let alike = |note: &String| note.contains("much the same motion");
+    let alike = |note: &String| note.contains("taken for another class");
     report.notes.into_iter().filter(alike).collect()
 }
 

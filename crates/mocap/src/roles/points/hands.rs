@@ -318,9 +318,6 @@ fn split(name: &str) -> Vec<String> {
     parts
 }
 
-/// Fingers bend backwards, too, by some 20°: so little, as a sine, says no side.
-const MOST_BACKWARD: f64 = 0.36;
-
 /// Tells a left hand from a right one: fingers curl towards the palm, which lies on one side of index-to-little × forward in a right hand
 /// and on the other in a left one.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -341,9 +338,8 @@ impl SideVotes {
             };
             // A right palm faces against its normal.
             let out = palm.normal.dot(&(tip - base));
-            let backward = MOST_BACKWARD * (tip - base).norm();
-            self.to_right += (-out - backward).max(0.0);
-            self.to_left += (out - backward).max(0.0);
+            self.to_right += (-out).max(0.0);
+            self.to_left += out.max(0.0);
         }
     }
 

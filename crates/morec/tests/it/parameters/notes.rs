@@ -52,6 +52,10 @@ pub const NOTES: &[(&str, &str)] = &[
         "used where there is no background at all",
     ),
     (
+        "judge_whole",
+        "sessions, one teacher, F1 of events 0.727 instead of 0.602, the same person 0.897 instead of 0.853; actions without rest, one teacher, 0.963 instead of 0.904. Its constants and where they were chosen are in [the method](method.md) and [trials](trials.md#the-second-look)",
+    ),
+    (
         "compact",
         "rows in signed bytes, one step for each column: a quarter of the size. Recognition uses the rows that the file holds",
     ),
