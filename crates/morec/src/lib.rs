@@ -138,8 +138,6 @@ pub mod live;
 #[cfg(feature = "live")]
 mod periodicity;
 #[cfg(feature = "live")]
-pub mod second_look;
-#[cfg(feature = "live")]
 pub mod templates;
 
 #[cfg(feature = "train")]

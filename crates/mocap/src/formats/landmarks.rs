@@ -143,7 +143,7 @@ pub fn read(
     let stamps = Stamps::of_values(times, None).numbered(numbers);
     let clock = Clock {
         given_hz: rate_hz,
-        stated_hz: rate_in(&document),
+        stated_hz: rate_in(&document, children(&document)),
         assumed_hz: ASSUMED_HZ,
     };
     let timed = TimedPoints {

@@ -1,8 +1,10 @@
 //! From the times of frames to a fixed rate, and points at these times to clips.
 
 mod ordered;
+mod schedule;
 
 use self::ordered::{OrderedFrames, rounded};
+pub(super) use self::schedule::{BetweenFrames, Schedule};
 use super::points::{Point, PointTable, UNSEEN};
 use super::{Limits, Loaded, ParseError, Place, Warning};
 use crate::clip::Span;
@@ -119,35 +121,6 @@ impl TimedPoints {
 pub(super) fn rate_not_used() -> Warning {
     let text = "its keys stand at times, not frames; the rate given is not used";
     Warning::new(Place::File, text)
-}
-
-/// A fixed rate, and where its frames lie among those of the file.
-pub(super) struct Schedule {
-    pub(super) rate_hz: f64,
-    /// For each frame what it is made of; `None` if frames stay as they are.
-    pub(super) places: Option<Vec<BetweenFrames>>,
-}
-
-/// A frame between two of a file.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct BetweenFrames {
-    pub(super) before: usize,
-    pub(super) after: usize,
-    /// How far it lies from the one before to the one after, 0 to 1.
-    pub(super) t: f64,
-    /// False if the two are too far apart to know what is between them.
-    pub(super) known: bool,
-}
-
-impl BetweenFrames {
-    fn at(frame: usize) -> Self {
-        Self {
-            before: frame,
-            after: frame,
-            t: 0.0,
-            known: true,
-        }
-    }
 }
 
 impl Schedule {

@@ -159,7 +159,7 @@ pub enum LibraryCommand {
     },
     /// Selects the clips of the list from the first that is selected to this one.
     SelectTo(ClipId),
-    /// Shows and selects the clip so many rows below (above, negative) the one that is shown.
+    /// Shows and selects the clip this many rows below the one that is shown, above it where negative.
     Step(i64),
     /// Shows a clip.
     Open(ClipId),

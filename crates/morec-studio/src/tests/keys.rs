@@ -11,9 +11,12 @@ fn library(labelled: usize) -> (tempfile::TempDir, Person) {
     (folder, person)
 }
 
+/// Clip, class, start and stop of a label.
+pub type WrittenLabel = (i64, String, i64, i64);
+
 impl Person {
     /// Names and tags of clips, and all labels: what keys must leave alone.
-    pub fn written(&self) -> (Vec<(String, Vec<String>)>, Vec<(i64, String, i64, i64)>) {
+    pub fn written(&self) -> (Vec<(String, Vec<String>)>, Vec<WrittenLabel>) {
         let store = self.state().store.as_ref().unwrap();
         let clips = store.snapshot.clips.iter();
         let clips = clips.map(|c| (c.name.clone(), c.tags.clone()));

@@ -3,8 +3,9 @@
 use super::cross;
 use super::gram::Distances;
 use super::machines::{Machines, MacroClasses, Plane};
+use super::params::SigmaRule;
 use super::params::TreeParams;
-use super::sigma::{SigmaRule, algorithm4, of_sides, quantile};
+use super::sigma::{algorithm4, of_sides, quantile};
 
 /// A trained branch that does not know its place in the tree yet.
 #[derive(Debug, Clone, PartialEq)]

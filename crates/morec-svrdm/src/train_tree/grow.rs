@@ -11,9 +11,9 @@ use super::branch::{Space, TrainedBranch, one_width, train};
 use super::cross::WidthOutcome;
 use super::cross_params::CrossParams;
 use super::machines::MacroClasses;
+use super::params::SigmaRule;
 use super::params::TreeParams;
 use super::partition::{function_products, partition};
-use super::sigma::SigmaRule;
 
 /// A sample of a class as the tree sees it.
 #[derive(Debug, Clone, PartialEq)]

@@ -27,13 +27,12 @@ pub use cross_params::{CrossParams, Multiples};
 pub use gram::Distances;
 pub use grow::{BranchReport, FeatureSample, GrowError, Grown, grow};
 pub use machines::{Machines, MacroClasses, Plane};
-pub use params::TreeParams;
-pub use partition::{PartitionParams, Split};
+pub use params::{Algorithm4, MachineParams, PartitionParams, SigmaRule, Sweep, TreeParams};
+pub use partition::Split;
 pub use qp::{Solver, Stop};
 pub use reduce::centroid_factor;
-pub use sigma::{Algorithm4, Estimate, SigmaRule, Sweep, algorithm4};
+pub use sigma::{Estimate, algorithm4};
 pub use signs::{SignRule, SignVector, sign_vector};
-pub use svrm::MachineParams;
 
 #[cfg(test)]
 use {

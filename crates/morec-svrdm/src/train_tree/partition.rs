@@ -1,39 +1,13 @@
 //! Classes in two macro-classes that lie apart (thesis, Alg. 6).
 
 use nalgebra::{DMatrix, DVector};
-use serde::{Deserialize, Serialize};
 
 use crate::svrdm::kernel::Gaussian;
 use mocap::rng::Rng;
 
-use super::TreeParams;
 use super::gram::Distances;
+use super::params::{PartitionParams, TreeParams};
 use super::svrm::svrm;
-
-/// Parameters of the partition of classes.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct PartitionParams {
-    /// Up to this many classes every split is tried (at most 20).
-    pub exact_up_to: usize,
-    /// Beyond, clustering starts this often from chance.
-    pub restarts: usize,
-    /// Seed of that chance.
-    pub seed: u64,
-    /// True if the functions `h_j` are brought to length 1 first. As printed they are not, and with narrow kernels a
-    /// class of many samples has a long one.
-    pub unit_length: bool,
-}
-
-impl Default for PartitionParams {
-    fn default() -> Self {
-        Self {
-            exact_up_to: 12,
-            restarts: 20,
-            seed: 1,
-            unit_length: false,
-        }
-    }
-}
 
 /// A split of classes into two.
 #[derive(Debug, Clone, PartialEq)]

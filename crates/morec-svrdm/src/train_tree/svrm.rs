@@ -2,32 +2,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::TreeParams;
-use super::qp::{BoxQp, Solution, Stop};
-
-/// The parameters of a machine (thesis, §4.5).
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct MachineParams {
-    /// `T`: what a machine should say of its own samples at least.
-    pub own: f64,
-    /// `t`: what it may say of the other side's at most.
-    pub other: f64,
-    /// `C`: the penalty for samples that miss it.
-    pub penalty: f64,
-    /// When the optimiser stops.
-    pub stop: Stop,
-}
-
-impl Default for MachineParams {
-    fn default() -> Self {
-        Self {
-            own: 1.0,
-            other: 0.4,
-            penalty: 10.0,
-            stop: Stop::default(),
-        }
-    }
-}
+use super::params::{MachineParams, TreeParams};
+use super::qp::{BoxQp, Solution};
 
 /// A coefficient this near to 0 or to `C` is taken to be there.
 const AT_BOUND: f64 = 1e-6;

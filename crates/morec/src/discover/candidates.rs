@@ -191,7 +191,7 @@ impl Movement {
 /// Root of the summed squares of the directions' changes a second.
 fn speed(rows: &Rows, layout: RowLayout, tick_hz: f64) -> Vec<f64> {
     let at = |tick: usize| -> f64 {
-        let (before, after) = (&rows.row(tick - 1)[..], &rows.row(tick + 1)[..]);
+        let (before, after) = (rows.row(tick - 1), rows.row(tick + 1));
         let squares = layout
             .directions()
             .map(|k| f64::from(after[k] - before[k]).powi(2));

@@ -20,7 +20,9 @@ use crate::features::{RowLayout, Rows, all_bones_of_clip, rows_of_clip};
 use crate::labels::Mark;
 use crate::live::{Detection, Model};
 use crate::roles::RoleMap;
-use crate::second_look::{BodyTrack, Comparison, Judged, SecondLook, grown_of, segment_of};
+use crate::templates::second_look::{
+    BodyTrack, Comparison, Judged, SecondLook, grown_of, segment_of,
+};
 use crate::templates::{
     Activities, Nearest, OperatingPoint, PerformerKind, PerformerLevel, StrangerGate,
     TemplateModel, Trace,

@@ -70,7 +70,7 @@ pub struct Manifest {
 /// The second look without its tables.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct LookWords {
-    /// See [`SecondLook::scale`](crate::second_look::SecondLook::scale).
+    /// See [`SecondLook::scale`](crate::templates::second_look::SecondLook::scale).
     pub scale: f32,
     /// Scores above this are reported.
     pub bound: f32,

@@ -8,7 +8,7 @@
 use std::collections::BTreeMap;
 
 use crate::features::{RowLayout, Rows};
-use crate::second_look::{BodyTrack, SecondLook};
+use crate::templates::second_look::{BodyTrack, SecondLook};
 use crate::templates::{
     Activities, Exemplars, HeldPoses, PackedSymmetric, ReferenceRows, SHAPE_ROWS, TemplateModel,
     TemplateSample, Verifier,

@@ -8,9 +8,9 @@ use super::names::{hint, near, some_of};
 const SHORTEST_SECS: f64 = 0.2;
 /// A class of so few labels may be another one misspelled.
 const FEW: usize = 2;
-/// That other one has so many times as many labels.
+/// The other one has this many times its labels.
 const TIMES_MORE: usize = 5;
-/// Near names are looked for of so many clips.
+/// Near names are looked for among this many clips.
 const HINTED: usize = 5;
 
 /// Reason why the times of a table are probably not in the unit that its columns say; `None` if they may be. `secs` are the lengths of

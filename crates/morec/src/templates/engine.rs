@@ -2,7 +2,7 @@
 
 use crate::decode::{Candidate, Decoder, TickDetection};
 use crate::features::RowLayout;
-use crate::second_look::LookDecoder;
+use crate::templates::second_look::LookDecoder;
 
 use super::activities::ActivityDetector;
 use super::class_matches::{ClassMatches, MatchReplay};

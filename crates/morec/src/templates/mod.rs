@@ -2,6 +2,7 @@
 
 mod activities;
 mod bank;
+mod bytes;
 mod class_matcher;
 mod class_matches;
 mod compact;
@@ -16,6 +17,7 @@ mod model;
 mod operating;
 mod performer;
 mod reference;
+pub mod second_look;
 mod spread_norm;
 mod stretches;
 mod trace;
@@ -28,7 +30,7 @@ pub(crate) use activities::{STEP_TICKS, windows_of};
 pub use bank::{Match, PartialMatch, TemplateBank};
 pub use class_matcher::ClassMatcher;
 pub use class_matches::{ClassMatches, ClassMatchesError};
-pub(crate) use compact::{snapped, steps};
+
 pub use dot::AT_ONCE;
 pub use early::{EarlyDetectionParams, OngoingMatch};
 pub use engine::TemplateEngine;

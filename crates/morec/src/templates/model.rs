@@ -4,7 +4,7 @@ use crate::classes::{ClassId, ClassInfo};
 use crate::decode::{CandidatePolicy, DecodeParams};
 use crate::features::{BoneSet, FeatureParams, RowLayout, Rows};
 use crate::math::portable;
-use crate::second_look::SecondLook;
+use crate::templates::second_look::SecondLook;
 
 use super::{
     Activities, Calibration, Evidence, Exemplars, HeldPoses, OperatingPoint, PackedSymmetric,

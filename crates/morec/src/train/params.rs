@@ -85,7 +85,7 @@ pub struct TrainParams {
     pub compact: bool,
     /// Bounds of the score above which a candidate is accepted.
     pub bar_range: (f64, f64),
-    /// True if whole motions are judged, of bodies: see [`SecondLook`](crate::second_look::SecondLook).
+    /// True if whole motions are judged, of bodies: see [`SecondLook`](crate::templates::second_look::SecondLook).
     #[serde(default)]
     pub judge_whole: bool,
     /// True if classes that go on are recognised as activities.

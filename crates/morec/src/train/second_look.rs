@@ -9,7 +9,9 @@ use crate::classes::ClassId;
 use crate::features::{BoneSet, Rows};
 use crate::math::portable;
 use crate::rng::Rng;
-use crate::second_look::{BodyTrack, Comparison, SecondLook, grown_of, sample_span, segment_of};
+use crate::templates::second_look::{
+    BodyTrack, Comparison, SecondLook, grown_of, sample_span, segment_of,
+};
 use crate::templates::{
     ALARM_RATES, OperatingPoint, PackedSymmetric, PerformerKind, TemplateEngine, TemplateModel,
     TemplateModelError,

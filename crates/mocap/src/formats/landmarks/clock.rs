@@ -2,7 +2,6 @@
 
 use serde_json::Value;
 
-use super::children;
 use crate::formats::cells::clock;
 
 /// The time of a frame in seconds, as far as the name of its field says the unit.
@@ -58,8 +57,11 @@ pub(super) fn number_of(frame: &Value) -> Option<f64> {
     fields.iter().find_map(number)
 }
 
-/// The rate in a field of the document, or of one within it, whatever it is called.
-pub(super) fn rate_in(document: &Value) -> Option<f64> {
+/// The rate in a field of the document, or of one of its `children`, whatever it is called.
+pub(super) fn rate_in<'v>(
+    document: &'v Value,
+    mut children: impl Iterator<Item = &'v Value>,
+) -> Option<f64> {
     const KEYS: [&str; 16] = [
         "fps",
         "framerate",
@@ -87,5 +89,5 @@ pub(super) fn rate_in(document: &Value) -> Option<f64> {
         };
         value.as_object()?.iter().find_map(rate)
     };
-    found(document).or_else(|| children(document).find_map(found))
+    found(document).or_else(|| children.find_map(found))
 }

@@ -1,12 +1,12 @@
 //! Which columns are a point's x, y and z, by the rows above them.
 
+use super::axis_labels::{axis_number, is_mark, prefix, suffix};
 use super::glued::{axis_glued, prefix_glued, suffix_glued, unit_of, without_unit};
 use super::layout::{ColumnLayout, TableLine};
 use super::quantities::{self, is_other, is_other_unit, is_plate, is_position, unit_in};
 use super::rates::{counts, rate_above, rises_evenly};
 use crate::formats::cells::{Decimal, number};
 use crate::formats::points::metres_of;
-use crate::math::Axis;
 
 /// The layout of a table whose header names its columns, in one row or several.
 pub(super) fn layout(rows: &[TableLine]) -> Option<ColumnLayout> {
@@ -330,40 +330,6 @@ fn in_brackets(label: &str) -> Option<(String, usize)> {
     };
     let name = name.trim_end_matches(is_mark);
     (!name.is_empty() && !is_time(name) && !is_frame(name, 1)).then(|| (name.to_owned(), axis))
-}
-
-pub(super) fn is_mark(c: char) -> bool {
-    matches!(c, '_' | '.' | ' ' | '-' | ':' | '/' | '|')
-}
-
-pub(super) fn axis_number(letter: char) -> Option<usize> {
-    Axis::from_letter(letter).map(Axis::index)
-}
-
-/// `hips_x`, `Hips.X`, `Hips Tx`, `HipsX`, `12x`.
-pub(super) fn suffix(label: &str) -> Option<(&str, usize)> {
-    let last = label.chars().next_back()?;
-    let axis = axis_number(last)?;
-    let rest = &label[..label.len() - 1];
-    let before = rest.chars().next_back()?;
-    if is_mark(before) {
-        return Some((rest, axis));
-    }
-    // A letter for the kind of channel: T for translation; `Rx` and `Qx` are none of ours.
-    let channel = rest.strip_suffix(['T', 't', 'P', 'p']);
-    if let Some(name) = channel.filter(|name| name.ends_with(is_mark)) {
-        return Some((name, axis));
-    }
-    let joined = last.is_uppercase() && before.is_lowercase() || before.is_ascii_digit();
-    joined.then_some((rest, axis))
-}
-
-/// `x_hips`, `X hips`, `x12`.
-pub(super) fn prefix(label: &str) -> Option<(&str, usize)> {
-    let axis = axis_number(label.chars().next()?)?;
-    let rest = &label[1..];
-    let next = rest.chars().next()?;
-    (is_mark(next) || next.is_ascii_digit()).then(|| (rest.trim_start_matches(is_mark), axis))
 }
 
 /// The label of x in whose place this one has w: `hips_w`, `W Element`.

@@ -1,6 +1,6 @@
 //! Labels without a mark between a point's name, its axis and its unit.
 
-use super::columns::{axis_number, is_mark, prefix, suffix};
+use super::axis_labels::{axis_number, is_mark, prefix, suffix};
 use super::quantities::{self, is_other, is_other_unit, unit_in};
 use crate::formats::points::metres_of;
 

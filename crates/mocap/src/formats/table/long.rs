@@ -10,7 +10,7 @@ use crate::math::Vec3;
 
 /// Columns of the long form.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Columns {
+pub(super) struct LongColumns {
     /// The row that names them.
     header: usize,
     name: usize,
@@ -65,7 +65,7 @@ pub(super) fn columns(
     header: usize,
     (_, cells): &TableLine,
     below: &[TableLine],
-) -> Option<Columns> {
+) -> Option<LongColumns> {
     let lower: Vec<String> = cells.iter().map(|cell| cell.to_ascii_lowercase()).collect();
     let find = |is: &dyn Fn(&str) -> bool| lower.iter().position(|cell| is(cell));
     let axis = |axis: &str| {
@@ -112,7 +112,7 @@ pub(super) fn columns(
     let time = time.or_else(|| Some((unnamed?, None)));
     let parts = lower.iter().enumerate();
     let parts = parts.filter(|(at, cell)| *at != name && PARTS.contains(&cell.as_str()));
-    (time.is_some() || frame.is_some()).then_some(Columns {
+    (time.is_some() || frame.is_some()).then_some(LongColumns {
         header,
         name,
         person,
@@ -157,7 +157,7 @@ const PEOPLE: [&str; 19] = [
 
 /// TableFrames in the order in which they appear.
 pub(super) fn frames(
-    columns: &Columns,
+    columns: &LongColumns,
     rows: &[TableLine],
     limits: &Limits,
 ) -> Result<TableFrames, ParseError> {
@@ -238,7 +238,7 @@ pub(super) fn frames(
     Ok((points, stamps, layout))
 }
 
-impl Columns {
+impl LongColumns {
     /// What the point of a row is part of.
     fn part<'a>(&self, cells: &[&'a str]) -> Vec<&'a str> {
         let cell = |column: &usize| cells.get(*column).copied().unwrap_or_default();

@@ -6,6 +6,7 @@
 //! - The long form: a row for each joint of each frame.
 //! - Numbers alone, if there are as many columns as a known set of landmarks needs, or a point on each line.
 
+mod axis_labels;
 mod brackets;
 mod columns;
 mod glued;
@@ -161,7 +162,7 @@ pub(super) fn looks_so(head: &[u8]) -> bool {
 
 enum TableHeader {
     Wide(ColumnLayout),
-    Long(long::Columns),
+    Long(long::LongColumns),
 }
 
 fn header(rows: &[TableLine]) -> Option<TableHeader> {
@@ -286,7 +287,7 @@ pub(super) fn what_it_is(head: &[u8]) -> Option<String> {
     }
     let is_number = |cell: &&str| cell.is_empty() || number(cell, Decimal::Either).is_some();
     let numbers =
-        |(_, cells): &TableLine| cells.len() == first.len() && cells.iter().all(|c| is_number(&c));
+        |(_, cells): &TableLine| cells.len() == first.len() && cells.iter().all(&is_number);
     let whole = &cells[..cells.len().saturating_sub(1)];
     (whole.len() >= LEAST_ROWS && first.len() >= LEAST_NUMBERS && whole.iter().all(numbers)).then(|| {
         format!(

@@ -132,7 +132,7 @@ const QUANTITIES: [&str; 13] = [
 pub(super) fn names_other(name: &str) -> bool {
     let lower = name.to_lowercase();
     let glued = |end: &&str| lower.ends_with(*end) && lower.len() > end.len();
-    QUANTITIES.iter().any(|end| glued(&end)) && !lower.ends_with("triangle")
+    QUANTITIES.iter().any(glued) && !lower.ends_with("triangle")
 }
 
 /// True if a row above the names is a title of angles, speeds or loads, `Joint Angle`.

@@ -76,9 +76,9 @@ pub(super) fn rate_above(header: &[TableLine]) -> Option<f64> {
             _ => letters.contains(*key),
         };
         let rate = match () {
-            () if RATE.iter().any(|key| is_key(&key)) => value,
-            () if STEP.iter().any(|key| is_key(&key)) && letters.contains("ms") => 1e3 / value,
-            () if STEP.iter().any(|key| is_key(&key)) => 1.0 / value,
+            () if RATE.iter().any(&is_key) => value,
+            () if STEP.iter().any(&is_key) && letters.contains("ms") => 1e3 / value,
+            () if STEP.iter().any(is_key) => 1.0 / value,
             () => return None,
         };
         (rate > 0.0 && rate < 1e5).then_some(rate)

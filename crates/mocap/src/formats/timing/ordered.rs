@@ -1,6 +1,6 @@
 //! Frames put in order by their times or numbers.
 
-use super::{BetweenFrames, Schedule};
+use super::schedule::{BetweenFrames, Schedule};
 use crate::formats::points::SHORT_GAP_SECS;
 use crate::resample::usual_step;
 

@@ -2,11 +2,12 @@
 
 use crate::classes::ClassInfo;
 use crate::pca::Pca;
-use crate::svrdm::{Directions, FeatureExtraction, Gram, Profiles, SvrdmModel, SvrdmParams};
+use crate::svrdm::{Directions, FeatureExtraction, Gram, Profiles, SvrdmModel};
 use crate::train::TrainError;
 use morec_svrdm::train_tree::{BranchReport, FeatureSample, SignVector, grow, sign_vector};
 
-use super::{SvrdmTrainParams, ThesisSample};
+use super::SvrdmTrainParams;
+use super::sample::{ThesisSample, described};
 
 /// A model and how it came about.
 #[derive(Debug, Clone)]
@@ -99,17 +100,4 @@ pub fn fit(
         branches: grown.branches,
         signs,
     })
-}
-
-/// A sample with its `AᵀA` and directions; `None` if it does not move at all.
-pub(super) fn described<'s>(
-    sample: &'s ThesisSample,
-    dim: usize,
-    stages: &SvrdmParams,
-) -> Option<(&'s ThesisSample, Gram, Directions)> {
-    let gram = Gram::of_rows(sample.rows.values(), dim, stages.chunk_frames);
-    let mut directions = Directions::new(stages.eigenvectors, dim);
-    directions
-        .find(&gram, stages.centring)
-        .then_some((sample, gram, directions))
 }

@@ -13,18 +13,7 @@ use crate::pivots::{PivotMap, PivotSet, pose_rows_of_clip};
 use crate::train::{LabelSet, StreamKind, TrainClip, TrainError};
 
 use super::SvrdmOptions;
-use super::fit::described;
-
-/// A sample cut out of its clip.
-#[derive(Debug, Clone)]
-pub struct ThesisSample {
-    /// Its class.
-    pub class: ClassId,
-    /// Number of the person who shows it: the clip where nobody is named.
-    pub group: usize,
-    /// Its reduced rows, `frames × r`.
-    pub rows: Rows,
-}
+use super::sample::{ThesisSample, described};
 
 /// A stream that holds stretches which are none of the classes.
 #[derive(Debug, Clone)]

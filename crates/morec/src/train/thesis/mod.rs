@@ -6,11 +6,12 @@ mod fit;
 mod material;
 mod options;
 mod report;
+mod sample;
 mod thresholds;
 
 pub use details::SvrdmReport;
-pub use material::ThesisSample;
 pub use options::{Pivots, SvrdmOptions, SvrdmTrainParams, ThresholdRule};
+pub use sample::ThesisSample;
 pub use thresholds::Estimated;
 
 use crate::progress::Progress;

@@ -2,12 +2,10 @@
 
 use crate::classes::ClassId;
 use crate::features::{BoneSet, Rows};
-use crate::templates::{
-    OperatingPoint, PackedSymmetric, PerformerKind, snapped, steps, threshold_at,
-};
+use crate::templates::bytes::{snapped, steps};
+use crate::templates::{OperatingPoint, PackedSymmetric, PerformerKind, threshold_at};
 
 use super::body::BodyTrack;
-use super::comparison::Comparison;
 use super::segment::SEGMENT_ROWS;
 
 /// Taught segments, their metric, and the bound of the score.
@@ -45,9 +43,6 @@ pub struct SecondLook {
     /// If rows are whole multiples of a step, column by column: the steps. Files then hold bytes.
     pub step: Option<Vec<f32>>,
 }
-
-/// Samples that the scale is measured on at most.
-const MEASURED: usize = 96;
 
 impl SecondLook {
     /// Checks that all parts fit together, for an index over `bones` of `classes` classes.
@@ -130,30 +125,6 @@ impl SecondLook {
         };
         look.scale = look.measured_scale();
         look
-    }
-
-    /// `s_T` of the samples: the median over samples of the median distance from other classes, each at its nearest sample; 0 of one class.
-    /// Of many samples evenly spaced ones count. O(samples² · rows · band · d).
-    pub fn measured_scale(&self) -> f32 {
-        let mut comparison = Comparison::new(self);
-        let mut medians = Vec::new();
-        let count = self.classes.len();
-        for k in 0..count.min(MEASURED) {
-            let sample = k * count / count.min(MEASURED);
-            let distances = comparison.distances(self.segment(sample));
-            let mut nearest = std::collections::BTreeMap::<ClassId, f32>::new();
-            for (class, distance) in self.classes.iter().zip(distances) {
-                if *class != self.classes[sample] {
-                    let least = nearest.entry(*class).or_insert(f32::MAX);
-                    *least = least.min(distance);
-                }
-            }
-            let mut others: Vec<f32> = nearest.into_values().collect();
-            if !others.is_empty() {
-                medians.push(super::comparison::median_of(&mut others));
-            }
-        }
-        super::comparison::median_of(&mut medians)
     }
 
     /// Rows of one sample.

@@ -5,6 +5,7 @@ use std::ops::Range;
 use crate::features::Rows;
 
 use super::body::BodyTrack;
+use super::extent::LookExtent;
 use super::{LOOK_COLUMNS, body};
 
 /// Rows of a segment, whatever its length.
@@ -13,28 +14,6 @@ pub const SEGMENT_ROWS: usize = 32;
 const SHORTEST_TICKS: i64 = 8;
 /// Columns of the places, of which half of the segment's mean is taken off: what remains is where the motion is performed.
 const PLACES: usize = 3 * body::POINTS;
-
-/// A stretch of a stream in ticks, half-open.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Extent {
-    /// First tick.
-    pub start: i64,
-    /// One past the last.
-    pub stop: i64,
-}
-
-impl Extent {
-    /// Ticks in it.
-    #[allow(clippy::len_without_is_empty)]
-    pub fn len(self) -> i64 {
-        self.stop - self.start
-    }
-
-    /// Ticks in both.
-    pub fn shared(self, other: Self) -> i64 {
-        (self.stop.min(other.stop) - self.start.max(other.start)).max(0)
-    }
-}
 
 /// How far an extent grows: while the pace exceeds a share of its mean over the match, at most this many ticks.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -56,9 +35,9 @@ pub const LONG: Growth = Growth {
 
 /// The end of a growth, if it is known yet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Grown {
+pub enum GrownExtent {
     /// This is the extent.
-    To(Extent),
+    To(LookExtent),
     /// The motion still goes on.
     GoesOn,
 }
@@ -66,9 +45,15 @@ pub enum Grown {
 /// The whole motion around a match: both ends go out while the pace exceeds the growth's share of its mean over the match, then in
 /// while it is below it. The pace is taken as known up to `known` ticks; at the end of a stream that is all of it, and nothing goes on.
 /// O(match + reach).
-pub fn grow(body: &BodyTrack, matched: Extent, growth: Growth, known: i64, ended: bool) -> Grown {
+pub fn grow(
+    body: &BodyTrack,
+    matched: LookExtent,
+    growth: Growth,
+    known: i64,
+    ended: bool,
+) -> GrownExtent {
     let level = growth.share * body.mean_pace(matched);
-    let Extent {
+    let LookExtent {
         mut start,
         mut stop,
     } = matched;
@@ -86,7 +71,7 @@ pub fn grow(body: &BodyTrack, matched: Extent, growth: Growth, known: i64, ended
         if stop >= last {
             match ended {
                 true => break,
-                false => return Grown::GoesOn,
+                false => return GrownExtent::GoesOn,
             }
         }
         if body.pace(stop) <= level {
@@ -100,12 +85,12 @@ pub fn grow(body: &BodyTrack, matched: Extent, growth: Growth, known: i64, ended
     while stop > start + SHORTEST_TICKS && body.pace(stop - 1) < level {
         stop -= 1;
     }
-    Grown::To(Extent { start, stop })
+    GrownExtent::To(LookExtent { start, stop })
 }
 
 /// Writes the rows of an extent to `out`, of [`SEGMENT_ROWS`] × [`LOOK_COLUMNS`] values: half of the mean off the places, resampled
 /// linearly. O(extent).
-pub fn write_segment(body: &BodyTrack, extent: Extent, out: &mut [f32]) {
+pub fn write_segment(body: &BodyTrack, extent: LookExtent, out: &mut [f32]) {
     let count = extent.len().max(1);
     let mut row = [0.0f32; LOOK_COLUMNS];
     let mut mean = [0.0f32; PLACES];
@@ -138,7 +123,7 @@ pub fn write_segment(body: &BodyTrack, extent: Extent, out: &mut [f32]) {
 /// The rows of `ticks` in the `columns` of a model.
 pub fn segment_of(body: &BodyTrack, ticks: Range<usize>, columns: &[usize]) -> Rows {
     let mut full = vec![0.0; SEGMENT_ROWS * LOOK_COLUMNS];
-    let extent = Extent {
+    let extent = LookExtent {
         start: ticks.start as i64,
         stop: ticks.end as i64,
     };
@@ -181,14 +166,14 @@ pub fn sample_span(pace: &[f32]) -> Range<usize> {
 /// The growths of `ticks` in a stream that is known to its end: the short one, and the long one.
 #[cfg(feature = "train")]
 pub fn grown_of(body: &BodyTrack, ticks: &Range<usize>) -> [Range<usize>; 2] {
-    let matched = Extent {
+    let matched = LookExtent {
         start: ticks.start as i64,
         stop: ticks.end as i64,
     };
     [SHORT, LONG].map(
         |growth| match grow(body, matched, growth, body.ticks(), true) {
-            Grown::To(extent) => extent.start as usize..extent.stop as usize,
-            Grown::GoesOn => ticks.clone(),
+            GrownExtent::To(extent) => extent.start as usize..extent.stop as usize,
+            GrownExtent::GoesOn => ticks.clone(),
         },
     )
 }

@@ -35,9 +35,9 @@ pub struct Judged {
     pub score: f32,
 }
 
-/// Segments after the metric, each with its spread.
+/// MappedSegments after the metric, each with its spread.
 #[derive(Debug, Clone, Default)]
-struct Segments {
+struct MappedSegments {
     /// [`SEGMENT`] values each.
     values: Vec<f32>,
     spreads: Vec<f32>,
@@ -49,8 +49,8 @@ struct Segments {
 pub struct Comparison {
     metric: Metric,
     classes: Vec<ClassId>,
-    samples: Segments,
-    atlas: Segments,
+    samples: MappedSegments,
+    atlas: MappedSegments,
     typical_spread: f32,
     scale: f32,
     has_scale: bool,
@@ -64,11 +64,11 @@ impl Comparison {
     /// Maps the segments of `model`. O(samples · d²).
     pub fn new(model: &SecondLook) -> Self {
         let metric = Metric::new(&model.ridged, &model.total);
-        let samples = Segments::mapped(&metric, &model.segments);
+        let samples = MappedSegments::mapped(&metric, &model.segments);
         Self {
             classes: model.classes.clone(),
             typical_spread: median_of(&mut samples.spreads.clone()).max(1e-6),
-            atlas: Segments::mapped(&metric, &model.atlas),
+            atlas: MappedSegments::mapped(&metric, &model.atlas),
             samples,
             scale: model.scale,
             has_scale: model.scale > 0.0,
@@ -155,7 +155,7 @@ impl Comparison {
 
     /// `D / max(0.05, (V_T + V_S) / 2 V₀)^0.85`, or anything from `most` on if it is not below. What the segment has of noise beyond the
     /// sample's is taken off `V_S`, and off `D`, of which at most half.
-    fn distance(&self, of: &Segments, place: usize, spread: f32, most: f32) -> f32 {
+    fn distance(&self, of: &MappedSegments, place: usize, spread: f32, most: f32) -> f32 {
         let noise = (self.noise - of.noises[place]).max(0.0);
         let moved = (spread - noise).max(0.0);
         let spreads = (of.spreads[place] + moved) / (2.0 * self.typical_spread);
@@ -192,7 +192,36 @@ fn noise_of(segment: &[f32]) -> f32 {
     median_of(&mut squares)
 }
 
-impl Segments {
+/// Samples that the scale is measured on at most.
+const MEASURED: usize = 96;
+
+impl SecondLook {
+    /// `s_T` of the samples: the median over samples of the median distance from other classes, each at its nearest sample; 0 of one class.
+    /// Of many samples evenly spaced ones count. O(samples² · rows · band · d).
+    pub fn measured_scale(&self) -> f32 {
+        let mut comparison = Comparison::new(self);
+        let mut medians = Vec::new();
+        let count = self.classes.len();
+        for k in 0..count.min(MEASURED) {
+            let sample = k * count / count.min(MEASURED);
+            let distances = comparison.distances(self.segment(sample));
+            let mut nearest = std::collections::BTreeMap::<ClassId, f32>::new();
+            for (class, distance) in self.classes.iter().zip(distances) {
+                if *class != self.classes[sample] {
+                    let least = nearest.entry(*class).or_insert(f32::MAX);
+                    *least = least.min(distance);
+                }
+            }
+            let mut others: Vec<f32> = nearest.into_values().collect();
+            if !others.is_empty() {
+                medians.push(median_of(&mut others));
+            }
+        }
+        median_of(&mut medians)
+    }
+}
+
+impl MappedSegments {
     fn mapped(metric: &Metric, rows: &Rows) -> Self {
         let dim = metric.dim();
         let mapped = metric.apply_all(rows);

@@ -8,7 +8,8 @@ use crate::templates::{Calibration, PerformerKind, TemplateModel};
 use super::LOOK_COLUMNS;
 use super::body::BodyTrack;
 use super::comparison::{Comparison, Judged, median_of};
-use super::segment::{Extent, Grown, LONG, SEGMENT_ROWS, SHORT, grow, write_segment};
+use super::extent::LookExtent;
+use super::segment::{GrownExtent, LONG, SEGMENT_ROWS, SHORT, grow, write_segment};
 
 /// Share of the shorter of two extents beyond which only the better one is reported.
 const OVERLAP: f32 = 0.4;
@@ -32,14 +33,14 @@ const REMEMBERED: usize = 16;
 /// A motion that was judged, in ticks of the present stretch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Look {
-    extent: Extent,
+    extent: LookExtent,
     judged: Judged,
 }
 
 /// A match whose motion is not known to its end.
 #[derive(Debug, Clone, Copy)]
 struct OpenMatch {
-    matched: Extent,
+    matched: LookExtent,
     /// The short growth was judged.
     is_judged: bool,
 }
@@ -90,7 +91,7 @@ pub struct LookDecoder {
     waiting: Vec<Look>,
     judged: [Look; REMEMBERED],
     judgements: usize,
-    reported: [Extent; REMEMBERED],
+    reported: [LookExtent; REMEMBERED],
     reports: usize,
     full: Vec<f32>,
     segment: Vec<f32>,
@@ -120,7 +121,7 @@ impl Clone for LookDecoder {
     }
 }
 
-const NOWHERE: Extent = Extent {
+const NOWHERE: LookExtent = LookExtent {
     start: -1,
     stop: -1,
 };
@@ -223,7 +224,7 @@ impl LookDecoder {
         if near.distance >= self.reach || near.age < MIN_AGE_TICKS || self.open.len() == MOST_OPEN {
             return;
         }
-        let matched = Extent {
+        let matched = LookExtent {
             start: (tick - near.age as i64).max(self.body.first()),
             stop: tick + 1,
         };
@@ -241,22 +242,23 @@ impl LookDecoder {
         let mut k = 0;
         while k < self.open.len() {
             let OpenMatch { matched, is_judged } = self.open[k];
-            if !is_judged && let Grown::To(extent) = grow(&self.body, matched, SHORT, known, ended)
+            if !is_judged
+                && let GrownExtent::To(extent) = grow(&self.body, matched, SHORT, known, ended)
             {
                 self.judge(extent);
                 self.open[k].is_judged = true;
             }
             match grow(&self.body, matched, LONG, known, ended) {
-                Grown::To(extent) => {
+                GrownExtent::To(extent) => {
                     self.judge(extent);
                     self.open.swap_remove(k);
                 }
-                Grown::GoesOn => k += 1,
+                GrownExtent::GoesOn => k += 1,
             }
         }
     }
 
-    fn judge(&mut self, extent: Extent) {
+    fn judge(&mut self, extent: LookExtent) {
         if self.judged.iter().any(|look| look.extent == extent) {
             return;
         }
@@ -280,7 +282,7 @@ impl LookDecoder {
 
     /// Lets a look wait for its report, if no better one is in its place.
     fn offer(&mut self, look: Look) {
-        let rivals = |other: &Extent| {
+        let rivals = |other: &LookExtent| {
             let shorter = other.len().min(look.extent.len());
             other.shared(look.extent) as f32 > OVERLAP * shorter as f32
         };
@@ -297,7 +299,7 @@ impl LookDecoder {
     /// True while the look may be the beginning of a longer motion: its pace has not fallen yet, or a match that began before its end is
     /// still coming nearer.
     fn goes_on(&self, look: &Look) -> bool {
-        let Extent { stop, .. } = look.extent;
+        let LookExtent { stop, .. } = look.extent;
         let now = self.body.ticks();
         if now - stop >= LONG.ticks {
             return false;

@@ -8,7 +8,8 @@ use crate::roles::Role;
 
 use super::body::BodyTrack;
 use super::comparison::warped_rows;
-use super::segment::{Extent, Grown, LONG, SEGMENT_ROWS, SHORT, grow, sample_span};
+use super::extent::LookExtent;
+use super::segment::{GrownExtent, LONG, SEGMENT_ROWS, SHORT, grow, sample_span};
 use super::{LOOK_COLUMNS, segment_of};
 
 /// The recurrence as written, over a table of its own.
@@ -166,7 +167,7 @@ fn spans_and_growths_are_those_of_the_reference() {
     };
     let golden: serde_json::Value = serde_json::from_str(&text).unwrap();
     let number = |value: &serde_json::Value| value.as_i64().unwrap();
-    let extent = |value: &serde_json::Value| Extent {
+    let extent = |value: &serde_json::Value| LookExtent {
         start: number(&value[0]),
         stop: number(&value[1]),
     };
@@ -181,7 +182,11 @@ fn spans_and_growths_are_those_of_the_reference() {
         for look in case["looks"].as_array().unwrap() {
             for (growth, name) in [(SHORT, "short"), (LONG, "long")] {
                 let grown = grow(&track, extent(&look["match"]), growth, 0, true);
-                assert_eq!(grown, Grown::To(extent(&look[name]["extent"])), "{name}");
+                assert_eq!(
+                    grown,
+                    GrownExtent::To(extent(&look[name]["extent"])),
+                    "{name}"
+                );
             }
         }
     }

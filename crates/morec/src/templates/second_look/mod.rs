@@ -8,6 +8,7 @@
 mod body;
 mod comparison;
 mod decoder;
+mod extent;
 mod model;
 mod segment;
 #[cfg(test)]
@@ -19,7 +20,7 @@ pub use decoder::LookDecoder;
 pub use model::SecondLook;
 #[cfg(feature = "train")]
 pub(crate) use segment::grown_of;
-pub use segment::{Extent, SEGMENT_ROWS, sample_span, segment_of};
+pub use segment::{SEGMENT_ROWS, sample_span, segment_of};
 
 /// Values of a row of the second look over a whole body: [`body`] names the columns.
 pub const LOOK_COLUMNS: usize = 73;

@@ -17,7 +17,7 @@ use crate::features::{BONE_WEIGHTS, BoneSet, FeatureParams, RowLayout};
 use crate::math::portable;
 
 use super::LOOK_COLUMNS;
-use super::segment::Extent;
+use super::extent::LookExtent;
 
 /// Points that are placed: hands, elbows, feet, knees, left before right.
 pub const POINTS: usize = 8;
@@ -390,7 +390,7 @@ impl BodyTrack {
     }
 
     /// The mean pace over an extent.
-    pub(super) fn mean_pace(&self, extent: Extent) -> f32 {
+    pub(super) fn mean_pace(&self, extent: LookExtent) -> f32 {
         let sum: f32 = (extent.start..extent.stop).map(|t| self.pace(t)).sum();
         sum / (extent.stop - extent.start).max(1) as f32
     }
