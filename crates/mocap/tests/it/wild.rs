@@ -63,7 +63,6 @@ fn times_names_and_units_are_read_as_meant() {
         ("missing-as-9999-minus.csv", 14, 30.0, 16, "gaps"),
         ("missing-as-9999.csv", 14, 30.0, 16, "gaps"),
         ("bvh-one-row-short.bvh", 14, 30.0, 16, "interpolated"),
-        ("hand21-frame-first.txt", 14, 30.0, 20, ""),
         ("hand22-shrec17.txt", 14, 30.0, 20, ""),
         ("two-bodies-a-line.csv", 8, 30.0, 16, ""),
         ("two-bodies-a-line.txt", 14, 30.0, 16, ""),
@@ -106,11 +105,7 @@ fn what_is_no_motion_is_refused_by_what_it_is() {
 
 #[test]
 fn hands_of_gesture_sets_are_right_ones() {
-    for name in [
-        "hand21-frame-first.txt",
-        "hand22-shrec17.txt",
-        "leap-frames.json",
-    ] {
+    for name in ["hand22-shrec17.txt", "leap-frames.json"] {
         let takes = open(name).unwrap();
         let roles = &takes.takes[0].roles;
         assert!(roles.joint(Role::RightIndexTip).is_some(), "{name}");

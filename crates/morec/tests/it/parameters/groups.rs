@@ -123,7 +123,7 @@ fn svrdm() -> Vec<Group> {
         ),
         group!(
             "### Machines (`MachineParams`)",
-            "../../../../morec-svrdm/src/train_tree/svrm.rs",
+            "../../../../morec-svrdm/src/train_tree/params.rs",
             "MachineParams",
             "tree.machine.",
             tree,
@@ -131,7 +131,7 @@ fn svrdm() -> Vec<Group> {
         ),
         group!(
             "### Algorithm 4 (`Algorithm4`)",
-            "../../../../morec-svrdm/src/train_tree/sigma.rs",
+            "../../../../morec-svrdm/src/train_tree/params.rs",
             "Algorithm4",
             "tree.algorithm4.",
             tree,
@@ -139,7 +139,7 @@ fn svrdm() -> Vec<Group> {
         ),
         group!(
             "### Partition of classes (`PartitionParams`)",
-            "../../../../morec-svrdm/src/train_tree/partition.rs",
+            "../../../../morec-svrdm/src/train_tree/params.rs",
             "PartitionParams",
             "tree.partition.",
             tree,
