@@ -194,7 +194,7 @@ mod tests {
             ),
             (
                 r#"{"hand": "left", "points": [[0,0,0]]}"#,
-                "points: expected 20, 21, 25 or 26 points of a hand, found 1",
+                "points: expected 20, 21, 22, 25 or 26 points of a hand, found 1",
             ),
             (
                 r#"{"points": [[0,0,0], [0,1]]}"#,

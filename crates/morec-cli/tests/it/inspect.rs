@@ -1,4 +1,3 @@
-use morec::synth::SyntheticTake;
 use serde_json::Value;
 
 use crate::kit::{ARM_ASF, Folder, WAVE_AMC, WAVE_BVH, data};
@@ -274,69 +273,6 @@ fn what_is_no_human_body_is_told() {
         out.contains("hardly is a human body"),
         "an arm alone: {out}"
     );
-}
-
-/// A line of points as one sees it whose X points the other way, without the toes, from which the sides could be seen.
-fn mirrored(line: &str) -> String {
-    let mut line: serde_json::Value = serde_json::from_str(line).unwrap();
-    let points = line["positions"].as_object_mut().unwrap();
-    points.retain(|name, _| !name.contains("Toe"));
-    for place in points.values_mut() {
-        place[0] = (-place[0].as_f64().unwrap()).into();
-    }
-    line.to_string() + "\n"
-}
-
-#[test]
-fn what_inspect_calls_an_error_is_said_wherever_the_clip_is_read() {
-    let (folder, takes) = crate::db::studio(2);
-    let path = |take: &SyntheticTake, ending: &str| format!("clips/{}.{ending}", take.clip.name);
-    for take in &takes {
-        let (bvh, points) = (path(take, "bvh"), path(take, "jsonl"));
-        folder.morec(&["convert", &bvh, "-o", &points]).ok();
-        let points = folder.path().join(points);
-        let lines = std::fs::read_to_string(&points).unwrap();
-        std::fs::write(points, lines.lines().map(mirrored).collect::<String>()).unwrap();
-        std::fs::remove_file(folder.path().join(bvh)).unwrap();
-    }
-    let clip = path(&takes[0], "jsonl");
-    let inspected = folder.morec(&["inspect", &clip]).ok();
-    let error = "left and right are exchanged or one axis points the wrong way";
-    assert!(
-        inspected.contains("error: ") && inspected.contains(error),
-        "{inspected}"
-    );
-    let train = [
-        "train",
-        "--clips",
-        "clips",
-        "--labels",
-        "labels.tsv",
-        "--everyday",
-        "never",
-        "-o",
-        "x.index",
-    ];
-    for args in [
-        &train[..],
-        &["recognize", "x.index", &clip],
-        &["db", "import", "m.mdb", "clips"],
-        &["db", "label", "m.mdb", "labels.tsv"],
-        &[
-            "train",
-            "--db",
-            "m.mdb",
-            "--everyday",
-            "never",
-            "-o",
-            "y.index",
-        ],
-    ] {
-        let ran = folder.morec(args);
-        assert_eq!(ran.code, Some(0), "{ran:?}");
-        let quiet = args.contains(&"label");
-        assert!(quiet || ran.err.contains(error), "{args:?}: {}", ran.err);
-    }
 }
 
 #[test]

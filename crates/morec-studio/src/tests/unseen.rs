@@ -9,7 +9,7 @@ use super::{Person, made};
 use crate::state::{Command, Panel};
 
 /// Actions of each run, unless `MOREC_ACTIONS` says how many.
-const ACTIONS: usize = 220;
+const ACTIONS: usize = 80;
 /// Keys as they lie on a keyboard, those of shortcuts and of texts.
 const KEYS: [Key; 31] = [
     Key::B,
@@ -305,7 +305,7 @@ fn run(seed: u64, actions: usize) {
 fn whatever_is_pressed_and_clicked_writes_to_what_is_seen_and_chosen() {
     let given = std::env::var("MOREC_ACTIONS").ok();
     let actions = given.and_then(|text| text.parse().ok());
-    for seed in 1..=3 {
+    for seed in 1..=2 {
         run(seed, actions.unwrap_or(ACTIONS));
     }
 }

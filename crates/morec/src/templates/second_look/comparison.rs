@@ -54,6 +54,8 @@ pub struct Comparison {
     typical_spread: f32,
     scale: f32,
     has_scale: bool,
+    /// Scores from it down need not be exact.
+    bound: f32,
     mapped: Vec<f32>,
     segment: Vec<f32>,
     /// Of the segment.
@@ -72,6 +74,7 @@ impl Comparison {
             samples,
             scale: model.scale,
             has_scale: model.scale > 0.0,
+            bound: model.bound,
             mapped: vec![0.0; SEGMENT_ROWS * metric.dim()],
             segment: vec![0.0; SEGMENT],
             noise: 0.0,
@@ -115,12 +118,21 @@ impl Comparison {
     /// The score beside what other motion is at.
     fn against_atlas(&self, spread: f32, nearest: f32) -> f32 {
         let mut found = [f32::MAX; NEAREST_OF_ATLAS];
+        let least = match self.has_scale {
+            true => 2.0 * self.bound - portable::ln(f64::from(self.scale / nearest)) as f32,
+            false => self.bound,
+        };
+        let refused = nearest * portable::exp(f64::from(least)) as f32;
         for stretch in 0..self.atlas.spreads.len() {
             let most = found[NEAREST_OF_ATLAS - 1];
             let distance = self.distance(&self.atlas, stretch, spread, most);
             if distance < most {
                 found[NEAREST_OF_ATLAS - 1] = distance;
                 found.sort_unstable_by(f32::total_cmp);
+                // As near to so much other motion it is refused, whatever the rest is at.
+                if found[NEAREST_OF_ATLAS - 1] <= refused {
+                    break;
+                }
             }
         }
         let against = |of: f32| portable::ln(f64::from(of / nearest)) as f32;
