@@ -40,7 +40,7 @@ pub struct LoneStretch {
     pub nearest: Option<(usize, f64)>,
 }
 
-/// Result of [`discover`].
+/// Result of a discovery.
 #[derive(Debug, Clone, PartialEq, Default, serde::Serialize)]
 pub struct Discovery {
     /// Sets by what they explain, the greatest first.

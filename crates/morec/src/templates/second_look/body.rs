@@ -304,7 +304,7 @@ impl BodyTrack {
     }
 
     /// The body's pace at `tick`, leg lengths a second: mean speed of its three fastest points, smoothed by a Gaussian of two ticks with
-    /// the ends held. It changes until [`PACE_AHEAD`] ticks have followed.
+    /// the ends held. It changes until seven ticks have followed.
     pub fn pace(&self, tick: i64) -> f32 {
         self.at(tick).pace
     }

@@ -1,9 +1,9 @@
 //! The whole motion around a match, compared once with every taught sample.
 //!
 //! A subsequence match explains only a part of a motion: a push is found inside a serve. The second look takes each match as a
-//! candidate, finds the whole motion around it ([`segment`]), compares that segment from end to end with the taught segments of
+//! candidate, finds the whole motion around it, compares that segment from end to end with the taught segments of
 //! all classes ([`Comparison`]), names it after the nearest one, and accepts it by one score with one bound ([`LookDecoder`]). The
-//! rows that are compared follow from feature rows alone ([`body`]): stored clips, databases and live streams give the same.
+//! rows that are compared follow from feature rows alone ([`BodyTrack`]): stored clips, databases and live streams give the same.
 
 mod body;
 mod comparison;
@@ -22,5 +22,5 @@ pub use model::SecondLook;
 pub(crate) use segment::grown_of;
 pub use segment::{SEGMENT_ROWS, sample_span, segment_of};
 
-/// Values of a row of the second look over a whole body: [`body`] names the columns.
+/// Values of a row of the second look over a whole body, see [`BodyTrack`].
 pub const LOOK_COLUMNS: usize = 73;
