@@ -23,13 +23,13 @@
 #define MOREC_EARLY_EVENTS 1
 
 /**
- * Anyone performs: what one or two people taught is recognised more generously from the first frame, not only once the
- * performer's motions show somebody unlike the teacher.
+ * Anyone performs: the bound of the score is never raised. For hands, tracked points and older indexes: more is accepted from the first
+ * frame, not only once the performer's motions show somebody unlike the teacher.
  */
 #define MOREC_PERFORMER_ANYONE 2
 
 /**
- * The person who taught performs: recognition stays as strict as it begins.
+ * The person who taught performs: the bound of the score is raised from the first frame by the scores of the teacher's samples.
  */
 #define MOREC_PERFORMER_TEACHER 4
 

@@ -20,11 +20,11 @@ use crate::words;
 /// Say what seems to be under way, too: starts, updates and cancellations beside the ends.
 pub const MOREC_EARLY_EVENTS: u32 = 1;
 
-/// Anyone performs: what one or two people taught is recognised more generously from the first frame, not only once the
-/// performer's motions show somebody unlike the teacher.
+/// Anyone performs: the bound of the score is never raised. For hands, tracked points and older indexes: more is accepted from the first
+/// frame, not only once the performer's motions show somebody unlike the teacher.
 pub const MOREC_PERFORMER_ANYONE: u32 = 2;
 
-/// The person who taught performs: recognition stays as strict as it begins.
+/// The person who taught performs: the bound of the score is raised from the first frame by the scores of the teacher's samples.
 pub const MOREC_PERFORMER_TEACHER: u32 = 4;
 
 /// Each repetition of an activity is an event of its own.

@@ -15,8 +15,8 @@ pub struct RecognizeSettings {
     /// as trained, usually 0.3]
     #[arg(long, value_name = "ALARMS")]
     pub sensitivity: Option<f64>,
-    /// Who performs what one or two people taught: auto is more generous once four recognised motions show a performer
-    /// unlike the teacher, anyone is so from the first frame, teacher never [default: auto]
+    /// Who performs: auto raises the bound of the score to half of the performer's recent scores, from the fourth report
+    /// on; teacher raises it from the first frame by the scores of the teacher's samples, anyone never raises it [default: auto]
     #[arg(long, value_parser = choices::<PerformerKind>([
         ("auto", "Whoever it is"),
         ("teacher", "The person who taught"),

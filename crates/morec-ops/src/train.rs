@@ -40,7 +40,7 @@ pub struct TrainSettings {
     /// Use of the unlabelled parts of labelled clips: motion that is none of the classes, or nothing to go by
     #[arg(long, value_enum, default_value = "background")]
     pub unlabelled: Unlabelled,
-    /// Synthetic everyday motion as background, too (not with --method svrdm); auto: if --background holds less than a
+    /// Everyday motion that is built in, synthetic and real, as background, too (not with --method svrdm); auto: if --background holds less than a
     /// minute
     #[arg(long, default_value = "always", value_parser = choices::<Everyday>([
         ("auto", "If the clips named as background hold less than a minute"),

@@ -32,7 +32,7 @@ const ANY_HZ: f64 = 60.0;
 /// Keys farther apart than this were set by hand; motion between them is sampled more finely.
 const SPARSE_SECS: f64 = 0.11;
 
-/// Keys that were reduced lie on some grid of many frames a second by chance: one of more than this many times what is stated is none.
+/// Reduced keys fit a fine grid by chance: a grid with more than this many times the stated frame rate is not accepted.
 const MOST_OF_STATED: f64 = 2.0;
 
 /// Sampling times of keys.

@@ -124,9 +124,9 @@ pub(super) fn rate_not_used() -> Warning {
 }
 
 impl Schedule {
-    /// The one rule for when frames are. A rate that the user gives holds. Else times are taken, else numbers of frames: put in order,
-    /// without those that repeat; frames that are left out are gaps, and irregular ones are interpolated. Without either, frames
-    /// follow each other at the rate that the file says or that is assumed. What was done is said once. O(n log n).
+    /// The one rule for the times of frames. A rate that the user gives has priority, then the file's times, then its frame numbers. Times
+    /// and numbers are sorted and repeated ones dropped; missing frames become gaps, irregular times are interpolated. Without times
+    /// and numbers the frames follow each other at the stated or assumed rate. Each repair is one warning. O(n log n).
     pub(super) fn of(stamps: &Stamps, clock: &Clock, warnings: &mut Vec<Warning>) -> Self {
         let usable = |rate: &f64| (1e-3..=1e5).contains(rate);
         let stated = clock.stated_hz.filter(usable);

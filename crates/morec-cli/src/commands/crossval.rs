@@ -94,8 +94,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let mut out = crate::console::stdout();
     if !args.json {
         // Where nobody reads any more, the report is written all the same.
-        let said = writeln!(out, "Left out: {divided}\n").and_then(|()| out.flush());
-        drop(said);
+        _ = writeln!(out, "Left out: {divided}\n").and_then(|()| out.flush());
     }
     let measures = settings.crossval(&of, &args.material.settings, &StageBar::new())?;
     let (tested, evaluation) = (&measures.tested, &measures.evaluation);

@@ -148,5 +148,6 @@ fn train_set(material: &ProposalData, columns: &[usize]) -> TrainSet {
     TrainSet {
         classes: material.classes.clone(),
         streams: by_clip.into_iter().map(stream).collect(),
+        ..TrainSet::default()
     }
 }

@@ -177,8 +177,9 @@ class Index:
         sensitivity : float, optional
             False alarms a minute that background motion may raise, as in training: 0.1 is strict, 1 is generous.
         performer : {"auto", "teacher", "anyone"}, optional
-            Who performs what one or two people taught: "auto" is more generous once four recognised motions show a performer
-            unlike the teacher, "anyone" is so from the first frame, "teacher" never. "auto" by default.
+            Who performs: "auto" raises the bound of the score to half of the performer's recent scores, from the fourth
+            report on; "teacher" raises it from the first frame by the scores of the teacher's samples, "anyone" never
+            raises it. "auto" by default.
         deviation : bool
             Whether to say how far off the nearest sample each motion was performed.
         progress : callable, optional

@@ -327,7 +327,7 @@ fn who_performs(ui: &mut Ui, state: &State, out: Out) {
         });
         widgets::named(&combo.response, WidgetType::ComboBox, "Performer", false);
         combo.response.on_hover_text(
-            "Motions of somebody else are accepted more generously. Whoever it is: once four motions show a performer unlike the teacher",
+            "The teacher must reach half of the scores of the samples; anybody else the bound. Otherwise the bound is raised by the performer's own recent scores",
         );
     });
 }

@@ -101,7 +101,7 @@ fn a_click_throws_out_marked_ones_are_split_off_and_all_is_taken_back() {
     person.click("Take back");
     person.frames(2);
     assert_eq!(instances(&person, 0), all);
-    assert!(!person.offers("Take back"));
+    assert!(!person.state().shelf.can_take_back());
     person.click("Not a motion: set 1");
     person.frames(2);
     assert!(!person.sees("Set 1"));

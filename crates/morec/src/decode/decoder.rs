@@ -4,6 +4,7 @@ use crate::classes::ClassId;
 
 use super::{
     Candidate, CandidatePolicy, ClassDistance, DecodeParams, FAR, MIN_AGE_TICKS, TickDetection,
+    copy_with_room,
 };
 
 /// Detections of a class within this many ticks count for [`DecodeParams::tail_spread`]: a second.
@@ -84,12 +85,6 @@ pub struct ScoredCandidate {
 
 impl Clone for Decoder {
     fn clone(&self) -> Self {
-        // A derived copy of a vector has room for what it holds only, and pushing must not allocate.
-        fn copy<T: Copy>(of: &Vec<T>) -> Vec<T> {
-            let mut copy = Vec::with_capacity(of.capacity());
-            copy.extend_from_slice(of);
-            copy
-        }
         Self {
             params: self.params.clone(),
             thresholds: self.thresholds.clone(),
@@ -97,9 +92,9 @@ impl Clone for Decoder {
             negatives: self.negatives.clone(),
             paths: self.paths.clone(),
             last: self.last.clone(),
-            chain: copy(&self.chain),
-            candidates: copy(&self.candidates),
-            found: copy(&self.found),
+            chain: copy_with_room(&self.chain),
+            candidates: copy_with_room(&self.candidates),
+            found: copy_with_room(&self.found),
             ..*self
         }
     }

@@ -95,5 +95,12 @@ pub struct Repetitions {
     pub period_secs: f64,
 }
 
+/// A copy of a vector that has as much room: a derived copy has room for what it holds only, and pushing must not allocate.
+pub(crate) fn copy_with_room<T: Copy>(of: &Vec<T>) -> Vec<T> {
+    let mut copy = Vec::with_capacity(of.capacity());
+    copy.extend_from_slice(of);
+    copy
+}
+
 /// A stretch of fewer ticks than this after its first is no motion.
 pub const MIN_AGE_TICKS: usize = 3;

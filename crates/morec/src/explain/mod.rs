@@ -91,6 +91,7 @@ pub fn explain(
         trace,
         found,
         open: None,
+        whole: WholeMotions::of(&model, &rows),
     };
     let reasons = sought.iter().map(|s| miss(s, stream.reason(s)));
     reasons.collect()
@@ -104,6 +105,43 @@ struct ComparedStream<'a> {
     found: &'a [Detection],
     /// The wider gate, where it was open at the sample.
     open: Option<&'a StrangerGate>,
+    /// What whole motions are judged by, where they are.
+    whole: Option<WholeMotions<'a>>,
+}
+
+/// A stream's body, and what the second look compares its segments with.
+struct WholeMotions<'a> {
+    look: &'a SecondLook,
+    body: BodyTrack,
+    columns: Vec<usize>,
+    comparison: Comparison,
+}
+
+impl<'a> WholeMotions<'a> {
+    fn of(model: &'a TemplateModel, rows: &Rows) -> Option<Self> {
+        let look = model.look.as_ref()?;
+        let mut body = BodyTrack::new(model.bones, &model.features, rows.len());
+        rows.iter().for_each(|row| body.push(row));
+        Some(Self {
+            look,
+            body,
+            columns: BodyTrack::columns(model.bones),
+            comparison: Comparison::new(look),
+        })
+    }
+
+    /// The motion around `ticks`, by the better of its two growths.
+    fn judge(&mut self, ticks: &Range<usize>) -> Judged {
+        let [short, long] = grown_of(&self.body, ticks).map(|extent| {
+            let segment = segment_of(&self.body, extent, &self.columns);
+            self.comparison.judge(segment.values())
+        });
+        if long.score > short.score {
+            long
+        } else {
+            short
+        }
+    }
 }
 
 impl<'a> ComparedStream<'a> {
@@ -142,8 +180,9 @@ impl<'a> ComparedStream<'a> {
                 None,
             );
         }
-        if let Some(look) = &self.model.look {
-            return self.as_a_whole(look, sought, (class, &ticks));
+        if let Some(whole) = &mut self.whole {
+            let (look, judged) = (whole.look, whole.judge(&ticks));
+            return self.as_a_whole((look, judged), sought, (class, &ticks));
         }
         self.open = self.open_gate(sought);
         let Some((_, any)) = self.best(&ticks, |t| self.trace.nearest(t, class)) else {
@@ -172,25 +211,14 @@ impl<'a> ComparedStream<'a> {
         (reason, None)
     }
 
-    /// What kept a motion from being reported that is judged as a whole: its own extent is judged.
+    /// What kept a motion from being reported that was `judged` as a whole.
     fn as_a_whole(
         &self,
-        look: &SecondLook,
+        (look, judged): (&SecondLook, Judged),
         sought: &Mark<&str>,
         (class, ticks): (ClassId, &Range<usize>),
     ) -> (Reason, Option<f64>) {
         let Some((_, any)) = self.best(ticks, |t| self.trace.nearest(t, class)) else {
-            return (Reason::NoMatch, None);
-        };
-        let mut body = BodyTrack::new(self.model.bones, &self.model.features, self.rows.len());
-        self.rows.iter().for_each(|row| body.push(row));
-        let mut comparison = Comparison::new(look);
-        let columns = BodyTrack::columns(self.model.bones);
-        let judged = grown_of(&body, ticks).into_iter().map(|extent| {
-            let segment = segment_of(&body, extent, &columns);
-            comparison.judge(segment.values())
-        });
-        let Some(judged) = judged.max_by(|a, b| a.score.total_cmp(&b.score)) else {
             return (Reason::NoMatch, None);
         };
         let Judged {

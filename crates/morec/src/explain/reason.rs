@@ -39,7 +39,7 @@ pub enum Reason {
         /// Distances below this are reported of such a performer.
         threshold: f32,
     },
-    /// As a whole it is not like the samples enough, or more like another class.
+    /// The whole motion is not similar enough to the samples, or more similar to another class.
     Whole {
         /// Its score, by the better of its extents.
         score: f32,
@@ -121,8 +121,8 @@ impl Reason {
             Self::Far { .. } => "not near enough",
             Self::Still { .. } => "hardly moves",
             Self::Unlike { .. } => "unlike the teacher",
-            Self::Whole { other: Some(_), .. } => "more like another class",
-            Self::Whole { other: None, .. } => "not like the samples enough",
+            Self::Whole { other: Some(_), .. } => "more similar to another class",
+            Self::Whole { other: None, .. } => "not similar enough to the samples",
             Self::Background { .. } => "background is nearer",
             Self::OtherClass { .. } => "another class is as near or nearer",
             Self::GoesOnUnlike { .. } => "goes on unlike the samples",
@@ -178,9 +178,9 @@ impl fmt::Display for Reason {
                 other,
             } => {
                 if let Some(other) = other {
-                    write!(f, "as a whole more like {other}: ")?;
+                    write!(f, "the whole motion is more similar to {other}: ")?;
                 } else {
-                    f.write_str("as a whole not like the samples enough: ")?;
+                    f.write_str("the whole motion is not similar enough to the samples: ")?;
                 }
                 write!(f, "score {score:.2}, reported above {bound:.2}")
             }

@@ -297,26 +297,18 @@ fn look(manifest: &Manifest, tables: &Tables) -> Result<Option<SecondLook>, Inde
     let rows = tables.pieces("look.rows", dim, &lengths, step.as_deref())?;
     let [segments, atlas] = two_tables("look.lengths", rows)?;
     let classes = tables.u32s("look.classes")?.into_iter();
-    let LookWords {
-        scale,
-        bound,
-        operating,
-        reach,
-        own_score,
-        performer,
-    } = words.clone();
     Ok(Some(SecondLook {
         classes: classes.map(class_id).collect::<Result<_, _>>()?,
         segments,
         atlas,
         ridged: symmetric(tables, "look.ridged", dim)?,
         total: symmetric(tables, "look.total", dim)?,
-        scale,
-        bound,
-        operating,
-        reach,
-        own_score,
-        performer,
+        scale: words.scale,
+        bound: words.bound,
+        operating: words.operating.clone(),
+        reach: words.reach,
+        own_score: words.own_score,
+        performer: words.performer,
         step,
     }))
 }

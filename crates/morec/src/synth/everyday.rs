@@ -1,6 +1,6 @@
 //! Everyday motion: what a recogniser has to keep silent at.
 //!
-//! Broad and random on purpose: walking, reaching, gesticulating, greeting and scratching of all sizes and speeds. None of it is one
+//! Broad and random on purpose: walking, reaching and gesticulating of all sizes and speeds. None of it is one
 //! of the demo's gesture classes, and what people choose as signals is left out: both arms raised alike, one arm
 //! held out by a standing body. A class that lay within the library would be refused together with it.
 
@@ -54,27 +54,27 @@ const GESTURES: [(&str, Perform); 4] = [
     ("stretch", idle_gestures::stretch_out),
 ];
 
-/// True of the name of a clip of everyday gestures.
-pub fn shows_gestures(clip: &str) -> bool {
-    let content = clip.strip_prefix("everyday_").unwrap_or_default();
-    GESTURES.iter().any(|(name, _)| content.starts_with(name))
-}
-
-/// The library: clips of everyday motion by several people at 60 Hz, about 24 minutes in all. Each is named
+/// The library: clips of everyday motion by several people at 60 Hz, about 17 minutes in all. Each is named
 /// `everyday_<content>_<person>`. The same seed gives the same clips on every platform.
 pub fn everyday(seed: u64) -> Vec<Clip> {
+    clips(seed, &CONTENTS, 0)
+}
+
+/// Gestures of everyday life by the same people, about 6 minutes: greeting, pointing, scratching, stretching.
+pub fn everyday_gestures(seed: u64) -> Vec<Clip> {
+    clips(seed, &GESTURES, PEOPLE * CONTENTS.len())
+}
+
+/// Each of `contents` by every person; the draws of the clips are numbered from `first`.
+fn clips(seed: u64, contents: &[(&str, Perform)], first: usize) -> Vec<Clip> {
     let people: Vec<Person> = (0..PEOPLE)
         .map(|number| Person::draw(seed ^ 0xe7e7, number))
         .collect();
     // Each clip draws from numbers of its own: it does not matter which thread makes it.
     let clip = |at: usize| {
-        let (of, at_of) = match at.checked_sub(PEOPLE * CONTENTS.len()) {
-            None => (CONTENTS.as_slice(), at),
-            Some(at) => (GESTURES.as_slice(), at),
-        };
-        let person = &people[at_of / of.len()];
-        let (content, perform) = of[at_of % of.len()];
-        let mut actor = Actor::new(person, Rng::for_part(seed, at as u64));
+        let person = &people[at / contents.len()];
+        let (content, perform) = contents[at % contents.len()];
+        let mut actor = Actor::new(person, Rng::for_part(seed, (first + at) as u64));
         actor.wait(0.4);
         let secs = match content {
             "talk" | "flail" | "greet" | "indicate" => ARMS_SECS,
@@ -89,7 +89,7 @@ pub fn everyday(seed: u64) -> Vec<Clip> {
         let name = format!("everyday_{content}_{}", person.name);
         film(actor, &name, RATE_HZ)
     };
-    let clips = 0..PEOPLE * (CONTENTS.len() + GESTURES.len());
+    let clips = 0..PEOPLE * contents.len();
     clips.into_par_iter().map(clip).collect()
 }
 

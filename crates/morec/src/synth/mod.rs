@@ -30,9 +30,7 @@ mod unknown;
 
 pub use crate::rng::Rng;
 pub use database::{DatabaseSpec, database};
-pub use everyday::everyday;
-#[cfg(feature = "train")]
-pub(crate) use everyday::shows_gestures;
+pub use everyday::{everyday, everyday_gestures};
 pub use living_room::{LivingRoom, living_room};
 pub use motion::{MotionKind, SyntheticMotion, all as motions, of_kind as motions_of};
 pub use person::Person;

@@ -4,7 +4,6 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::classes::ClassId;
 use crate::features::{BoneSet, Profile, RowLayout, Rows};
-use crate::synth::shows_gestures;
 use crate::templates::{
     Activities, Metric, PackedSymmetric, ReferenceRows, STEP_TICKS, squared_distance, windows_of,
 };
@@ -148,10 +147,7 @@ fn others(
     own: &OwnWindows<'_>,
 ) -> Rows {
     let (mut real, mut made) = (Vec::new(), Vec::new());
-    // A greeting that goes on is what an activity of waving is: such gestures say how near gestures may come.
-    let background = set.background(STEP_TICKS);
-    let background = background.filter(|(_, stream)| !shows_gestures(&stream.name));
-    for (ticks, stream) in background {
+    for (ticks, stream) in set.background(STEP_TICKS) {
         let named = stream.source == StreamKind::Background;
         let into = match stream.source {
             StreamKind::Everyday => &mut made,
@@ -236,6 +232,7 @@ mod tests {
                 stream(raise(5.0), Some(3)),
                 stream(swing(30.0, 0.1, 0.0), None),
             ],
+            ..TrainSet::default()
         };
         learn(&set, &set.samples(), BoneSet::BODY, params)
     }

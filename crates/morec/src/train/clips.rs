@@ -7,7 +7,7 @@ use crate::progress::Progress;
 use crate::templates::TemplateModel;
 
 use super::error::TrainError;
-use super::everyday::everyday_clips;
+use super::everyday::{everyday_clips, second_look_clips};
 use super::from_clips::{LabelSet, TrainClip, background_streams, build_train_set};
 use super::mirror::add_mirrored;
 use super::options::{ENOUGH_BACKGROUND_SECS, Everyday, TrainOptions};
@@ -35,8 +35,10 @@ pub fn train_clips(
     if adds_everyday(clips, options.everyday) {
         // Behind the clips; stretches of them that became background by themselves come last.
         let at = clips.len() - prepared.lacking.len();
-        let made = everyday_streams(prepared.bones, &prepared.features, progress);
-        prepared.set.streams.splice(at..at, made);
+        let EverydayStreams { usual, second_look } =
+            everyday_streams(prepared.bones, &prepared.features, progress);
+        prepared.set.streams.splice(at..at, usual);
+        prepared.set.everyday = second_look;
     }
     let (mirror, bones) = (options.mirror, prepared.bones);
     add_mirrored(&mut prepared.set, bones, mirror, &options.one_sided);
@@ -57,14 +59,21 @@ fn adds_everyday(clips: &[TrainClip], everyday: Everyday) -> bool {
     }
 }
 
+/// Rows of the everyday motion: of the usual clips, and of those for the second look.
+#[derive(Clone)]
+struct EverydayStreams {
+    usual: Vec<TrainStream>,
+    second_look: Vec<TrainStream>,
+}
+
 /// Rows of the everyday motion. Those made last are kept: they are the same for every index of the same bones and parameters, and
 /// making them takes as long as a small training does.
 fn everyday_streams(
     bones: BoneSet,
     params: &FeatureParams,
     progress: &dyn Progress,
-) -> Vec<TrainStream> {
-    static MADE: Mutex<Option<(BoneSet, FeatureParams, Vec<TrainStream>)>> = Mutex::new(None);
+) -> EverydayStreams {
+    static MADE: Mutex<Option<(BoneSet, FeatureParams, EverydayStreams)>> = Mutex::new(None);
     let kept = || MADE.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some((of, with, streams)) = &*kept()
         && (*of, with) == (bones, params)
@@ -72,7 +81,11 @@ fn everyday_streams(
         return streams.clone();
     }
     progress.report("everyday motion", 0, 0);
-    let streams = background_streams(&everyday_clips(), bones, params);
+    let streams_of = |clips: &[TrainClip]| background_streams(clips, bones, params);
+    let streams = EverydayStreams {
+        usual: streams_of(&everyday_clips()),
+        second_look: streams_of(&second_look_clips()),
+    };
     *kept() = Some((bones, params.clone(), streams.clone()));
     streams
 }

@@ -6,7 +6,7 @@ use crate::features::BoneSet;
 use crate::labels::{
     ClipLength, Label, Labels, People, Resolved, Sample, hint, said_absent, some_of,
 };
-use crate::roles::Role;
+use crate::roles::{Role, RoleMap};
 
 use super::{StreamKind, TrainClip};
 
@@ -202,7 +202,7 @@ fn strangers(
     }
     let taught = clips.iter().filter_map(|clip| {
         let count = labels.get(clip.name.as_str())?;
-        Some((clip, BoneSet::of_roles(&clip.roles), *count))
+        Some((clip, usable_bones(&clip.roles), *count))
     });
     let taught: Vec<_> = taught.collect();
     let common = taught
@@ -231,6 +231,19 @@ fn strangers(
         }
     }
     strangers
+}
+
+/// The bones that `roles` show. Without hips and shoulders a body has no heading, so that its bones do not count: a hand may have an arm.
+fn usable_bones(roles: &RoleMap) -> BoneSet {
+    let shown = BoneSet::of_roles(roles);
+    let has = |pair: [Role; 2]| pair.iter().all(|role| roles.joint(*role).is_some());
+    if has([Role::LeftThigh, Role::RightThigh]) || has([Role::LeftArm, Role::RightArm]) {
+        return shown;
+    }
+    let others = shown
+        .indices()
+        .filter(|bone| !BoneSet::BODY.contains(*bone));
+    others.fold(BoneSet::NONE, BoneSet::with)
 }
 
 /// Lengths of clips, by name.

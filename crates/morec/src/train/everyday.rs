@@ -26,11 +26,17 @@ const REAL: [(&str, &[u8]); 24] = built_in!(
     "cmu_pirouette" "cmu_zombie"
 );
 
-/// The clips of [`synth::everyday`], and the real ones.
+/// The clips of [`synth::everyday`].
 pub fn everyday_clips() -> Vec<TrainClip> {
-    let made = synth::everyday(EVERYDAY_SEED).into_iter().map(synthetic);
+    let made = synth::everyday(EVERYDAY_SEED).into_iter();
+    made.map(synthetic).collect()
+}
+
+/// Those of [`synth::everyday_gestures`], and the real ones: see [`TrainSet::everyday`](super::set::TrainSet::everyday).
+pub fn second_look_clips() -> Vec<TrainClip> {
+    let made = synth::everyday_gestures(EVERYDAY_SEED).into_iter();
     let real: Vec<TrainClip> = REAL.par_iter().filter_map(real).collect();
-    made.chain(real).collect()
+    made.map(synthetic).chain(real).collect()
 }
 
 /// True of the name of a real one.

@@ -175,6 +175,7 @@ pub fn build_train_set(
         set: TrainSet {
             classes: labelling.classes.to_vec(),
             streams,
+            everyday: Vec::new(),
         },
         bones,
         features: params.clone(),

@@ -274,12 +274,12 @@ fn own_note(own: &[OwnSample], classes: &[ClassInfo]) -> Option<String> {
     let mistakes = match taken.is_empty() {
         true => String::new(),
         false => format!(
-            "; taken for another class: {}. Teach more samples of these, or make one class of two that are alike",
+            "; taken for another class: {}. Teach more samples of these classes, or merge two that show the same motion",
             taken.join(", ")
         ),
     };
     Some(format!(
-        "each sample compared with the others: {right} of {} are named right{mistakes}",
+        "leave one out: {right} of {} samples are recognised as their class by the other samples{mistakes}",
         judged.len()
     ))
 }

@@ -174,8 +174,7 @@ impl<'a> Tracks<'a> {
         }
     }
 
-    fn of_stream(&self, stream: usize) -> BodyTrack {
-        let rows = &self.set.streams[stream].rows;
+    fn of_rows(&self, rows: &Rows) -> BodyTrack {
         let mut track = BodyTrack::new(self.bones, &self.params.features, rows.len());
         rows.iter().for_each(|row| track.push(row));
         track
@@ -193,7 +192,7 @@ impl<'a> Tracks<'a> {
             of_stream.push((place, sample));
         }
         let of_stream = |(stream, samples): (&usize, &Vec<(usize, &TrainSample)>)| {
-            let track = self.of_stream(*stream);
+            let track = self.of_rows(&self.set.streams[*stream].rows);
             let made = samples.iter();
             let made = made.map(|(place, sample)| (*place, of_sample(&track, sample)));
             made.collect::<Vec<_>>()
@@ -220,12 +219,10 @@ impl<'a> Tracks<'a> {
 
     /// Segments of everyday motion, drawn evenly from all that move; of what people really did.
     fn atlas(&self) -> Rows {
-        let everyday = self.set.streams.iter().enumerate();
-        let everyday =
-            everyday.filter(|(_, s)| s.source == StreamKind::Everyday && is_real(&s.name));
-        let everyday: Vec<usize> = everyday.map(|(place, _)| place).collect();
         let hz = self.params.features.tick_hz();
-        let tracks: Vec<BodyTrack> = everyday.par_iter().map(|s| self.of_stream(*s)).collect();
+        let everyday = self.set.everyday.par_iter();
+        let real = everyday.filter(|stream| is_real(&stream.name));
+        let tracks: Vec<BodyTrack> = real.map(|stream| self.of_rows(&stream.rows)).collect();
         let mut stretches = Vec::new();
         for (place, track) in tracks.iter().enumerate() {
             for secs in ATLAS_SECS {
@@ -303,10 +300,9 @@ impl Scores {
         set: &TrainSet,
         params: &TrainParams,
     ) -> Result<Self, TemplateModelError> {
-        let background = set
-            .streams
-            .iter()
-            .filter(|s| s.source != StreamKind::Labelled);
+        let streams = set.streams.iter();
+        let background = streams.filter(|s| s.source != StreamKind::Labelled);
+        let background = background.chain(&set.everyday);
         let background: Vec<&Rows> = background.map(|s| &s.rows).collect();
         // Margins over a bound of 0, for anyone, are scores.
         let look = model.look.as_ref().map(|look| SecondLook {

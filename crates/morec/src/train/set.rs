@@ -96,6 +96,9 @@ pub struct TrainSet {
     pub classes: Vec<String>,
     /// All streams.
     pub streams: Vec<TrainStream>,
+    /// Everyday gestures, and real everyday motion, for the second look alone: as background of a verifier they lower the score that is
+    /// asked for, because little of them comes near the classes.
+    pub everyday: Vec<TrainStream>,
 }
 
 /// A sample shorter than this many ticks is lengthened to it: three rows are no motion.

@@ -108,7 +108,8 @@ pub fn train(
     let samples = samples.into_iter().filter(has_templates).collect();
     let (samples, quiet) = moving(samples, &metric, params);
     let mut samples = templates_of(samples, set.classes.len(), params.max_templates);
-    let taught = samples.clone();
+    // Faster copies come behind them.
+    let taught = samples.len();
     let params = &of_profile(params, bones, &samples, &metric);
     let step = TrainingContext {
         set,
@@ -124,7 +125,7 @@ pub fn train(
     // The second look needs no gate of its own for strangers.
     let judges_whole = params.judge_whole
         && Profile::of(bones) == Profile::Body
-        && second_look::are_apart(set, &taught, bones, params);
+        && second_look::are_apart(set, &samples[..taught], bones, params);
     let wide = wide_gate(set, &samples, params).filter(|_| !verifies && !judges_whole);
     let gates = TrainGates { plain, wide };
     let gate_of_verifier = verified.filter(|_| verifies).map(MatchGate::plain);
@@ -166,7 +167,7 @@ pub fn train(
         }
     }
     let learned = match verifier {
-        None if judges_whole => second_look::learn(set, &taught, bones, params),
+        None if judges_whole => second_look::learn(set, &samples[..taught], bones, params),
         _ => None,
     };
     let (look, own) = learned.map_or((None, Vec::new()), |(look, own)| (Some(look), own));

@@ -1,6 +1,6 @@
 //! How documents of landmarks begin.
 
-/// True if text begins as such a document does.
+/// True if text begins like a document of landmarks.
 pub(in crate::formats) fn looks_so(head: &[u8]) -> bool {
     let contains = |word: &[u8]| {
         head.windows(word.len())
@@ -63,7 +63,7 @@ fn has_many_places(head: &[u8]) -> bool {
         .all(|axis| count(axis) >= LEAST)
 }
 
-/// Frames without a word: `[[[0.1, 0.9, 0.0], …`, `[[{"x": 0.1, …`, perhaps behind frames in which nobody is.
+/// True for a list of frames without field names, `[[[0.1, 0.9, 0.0], …` or `[[{"x": 0.1, …`. Empty frames may precede it.
 fn is_list_of_lists(text: &[u8]) -> bool {
     let marks = text.iter().filter(|b| !b.is_ascii_whitespace());
     let marks: Vec<u8> = marks.take(4000).copied().collect();

@@ -99,8 +99,8 @@ pub fn read(
     timed.into_loaded(name, warnings, limits)
 }
 
-/// The rows of a table that has neither times nor numbers of frames with those whose cells are all empty: frames in which nobody was
-/// seen. One below the header, and those behind the last frame, are none.
+/// Adds rows whose cells are all empty to the rows of a table without times and frame numbers: in these frames nobody was seen. Empty
+/// rows directly below the header and after the last frame are not frames.
 fn with_empty_rows<'a>(
     rows: Vec<TableLine<'a>>,
     layout: &ColumnLayout,

@@ -16,7 +16,7 @@ const TITLES: [&str; 7] = [
     "analog",
 ];
 
-/// True if a file begins as such an export does, perhaps behind what is said of the trial.
+/// True if a file begins like an export of Nexus. Lines about the trial may precede it.
 pub(super) fn begins(rows: &[TableLine]) -> bool {
     const PREAMBLE: usize = 12;
     let begins = |pair: &[TableLine]| {

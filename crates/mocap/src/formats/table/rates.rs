@@ -3,7 +3,7 @@
 use super::layout::TableLine;
 use crate::formats::cells::{Decimal, clock, number};
 
-/// True if the values of a column rise, most by the same step: times or numbers of frames, whatever they are called.
+/// True if the values of a column rise, mostly by the same step: the column then holds times or frame numbers, whatever its name.
 pub(super) fn rises_evenly(rows: &[TableLine], column: usize) -> bool {
     const LEAST: usize = 3;
     let value = |(_, cells): &TableLine| {

@@ -105,14 +105,20 @@ pub(super) fn train_line(
     line.settings(settings).with("-o", output)
 }
 
-/// The command that sets a label.
-fn label_line(db: &Path, snapshot: &Snapshot, sample: &NewSample) -> Option<ShownCommand> {
+/// The command that labels a stretch, without the label's state.
+fn stretch_line(db: &Path, snapshot: &Snapshot, sample: &NewSample) -> Option<ShownCommand> {
     let line = ShownCommand::new("morec db label").word(db);
     let line = line
         .with("--clip", &snapshot.clip(sample.clip)?.name)
         .with("--class", &sample.class)
         .secs("--start", sample.start_secs)
         .secs("--stop", sample.stop_secs);
+    Some(line)
+}
+
+/// The command that sets a label.
+fn label_line(db: &Path, snapshot: &Snapshot, sample: &NewSample) -> Option<ShownCommand> {
+    let line = stretch_line(db, snapshot, sample)?;
     Some(match sample.state {
         SampleState::Accepted => line,
         state => line.with("--state", state.name()),
@@ -244,7 +250,7 @@ impl State {
             Edit::Judge { ids, state } => {
                 let line = |id: &SampleId| {
                     let s = snapshot.sample(*id)?;
-                    let line = label_line(db, snapshot, &NewSample::from(s))?;
+                    let line = stretch_line(db, snapshot, &NewSample::from(s))?;
                     Some(line.with("--state", state.name()))
                 };
                 let lines: Option<Vec<ShownCommand>> = ids.iter().map(line).collect();

@@ -13,14 +13,14 @@
 //!
 //! The trunk frame has the direction from hips to neck as its up, the line of the shoulders, made orthogonal to it, as its lateral axis.
 
-use crate::features::{BONE_WEIGHTS, BoneSet, FeatureParams, RowLayout};
+use crate::features::{BODY_BONES, BONE_WEIGHTS, BoneSet, FeatureParams, RowLayout};
 use crate::math::portable;
 
 use super::LOOK_COLUMNS;
 use super::extent::LookExtent;
 
 /// Points that are placed: hands, elbows, feet, knees, left before right.
-pub const POINTS: usize = 8;
+pub(super) const POINTS: usize = 8;
 /// Hands, elbows and feet have texture.
 const TEXTURED: usize = 6;
 /// Points whose speed is the body's pace: root, head, elbows, hands, knees, feet.
@@ -112,8 +112,9 @@ impl BodyTick {
 /// The last ticks of a stream's body. Nothing is allocated after construction.
 #[derive(Debug, Clone)]
 pub struct BodyTrack {
-    bones: BoneSet,
     layout: RowLayout,
+    /// Place in a row of each bone of the body, if it is there.
+    slots: [Option<usize>; BODY_BONES],
     root_weight: f64,
     tick_secs: f64,
     ring: Vec<BodyTick>,
@@ -127,8 +128,8 @@ impl BodyTrack {
     pub fn new(bones: BoneSet, features: &FeatureParams, ticks: usize) -> Self {
         let capacity = (ticks + 2 * TEXTURE_TICKS as usize + 2).next_power_of_two();
         Self {
-            bones,
             layout: RowLayout::of(bones),
+            slots: std::array::from_fn(|bone| bones.indices().position(|b| b == bone)),
             root_weight: features.root_weight,
             tick_secs: 1.0 / features.tick_hz(),
             ring: vec![BodyTick::BLANK; capacity],
@@ -229,7 +230,7 @@ impl BodyTrack {
 
     /// The points of a row, without the root's motion.
     fn placed(&self, row: &[f32]) -> BodyTick {
-        let bone = |bone: usize, otherwise: V3| match self.slot(bone) {
+        let bone = |bone: usize, otherwise: V3| match self.slots[bone] {
             Some(slot) => {
                 let weight = BONE_WEIGHTS[bone] as f32;
                 let columns = self.layout.direction(slot);
@@ -277,11 +278,6 @@ impl BodyTrack {
             paced,
             ..BodyTick::BLANK
         }
-    }
-
-    fn slot(&self, bone: usize) -> Option<usize> {
-        let mut slots = self.bones.indices().enumerate();
-        slots.find(|(_, b)| *b == bone).map(|(slot, _)| slot)
     }
 
     /// Moves the tick's body to where its root is.

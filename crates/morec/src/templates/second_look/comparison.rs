@@ -35,7 +35,7 @@ pub struct Judged {
     pub score: f32,
 }
 
-/// MappedSegments after the metric, each with its spread.
+/// Segments after the metric, each with its spread and its noise.
 #[derive(Debug, Clone, Default)]
 struct MappedSegments {
     /// [`SEGMENT`] values each.

@@ -1,7 +1,7 @@
 //! From matches at every tick to one report for each motion, with nothing taken back.
 
 use crate::classes::ClassId;
-use crate::decode::{ClassDistance, MIN_AGE_TICKS, TickDetection};
+use crate::decode::{ClassDistance, MIN_AGE_TICKS, TickDetection, copy_with_room};
 use crate::math::portable;
 use crate::templates::{Calibration, PerformerKind, TemplateModel};
 
@@ -100,22 +100,16 @@ pub struct LookDecoder {
 
 impl Clone for LookDecoder {
     fn clone(&self) -> Self {
-        // A derived copy of a vector has room for what it holds only, and pushing must not allocate.
-        fn copy<T: Copy>(of: &Vec<T>) -> Vec<T> {
-            let mut copy = Vec::with_capacity(of.capacity());
-            copy.extend_from_slice(of);
-            copy
-        }
         Self {
             body: self.body.clone(),
             comparison: self.comparison.clone(),
             columns: self.columns.clone(),
             near: self.near.clone(),
-            open: copy(&self.open),
-            waiting: copy(&self.waiting),
+            open: copy_with_room(&self.open),
+            waiting: copy_with_room(&self.waiting),
             full: self.full.clone(),
             segment: self.segment.clone(),
-            found: copy(&self.found),
+            found: copy_with_room(&self.found),
             ..*self
         }
     }

@@ -14,7 +14,7 @@ mod segment;
 #[cfg(test)]
 mod tests;
 
-pub use body::{BodyTrack, POINTS};
+pub use body::BodyTrack;
 pub use comparison::{Comparison, Judged};
 pub use decoder::LookDecoder;
 pub use model::SecondLook;
