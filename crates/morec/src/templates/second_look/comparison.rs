@@ -130,7 +130,8 @@ impl Comparison {
                 found[NEAREST_OF_ATLAS - 1] = distance;
                 found.sort_unstable_by(f32::total_cmp);
                 // As near to so much other motion it is refused, whatever the rest is at.
-                if found[NEAREST_OF_ATLAS - 1] <= refused {
+                let third = found[NEAREST_OF_ATLAS - 1];
+                if third < f32::MAX && third <= refused {
                     break;
                 }
             }
