@@ -42,6 +42,8 @@ struct MappedSegments {
     values: Vec<f32>,
     spreads: Vec<f32>,
     noises: Vec<f32>,
+    /// [`PADDED`] values each.
+    means: Vec<f32>,
 }
 
 /// A model laid out for comparing. Nothing is allocated after construction.
@@ -60,6 +62,9 @@ pub struct Comparison {
     segment: Vec<f32>,
     /// Of the segment.
     noise: f32,
+    mean: [f32; PADDED],
+    /// Segments by the distance of their means, which is room for the samples and for the atlas.
+    order: Vec<(f32, usize)>,
 }
 
 impl Comparison {
@@ -67,10 +72,13 @@ impl Comparison {
     pub fn new(model: &SecondLook) -> Self {
         let metric = Metric::new(&model.ridged, &model.total);
         let samples = MappedSegments::mapped(&metric, &model.segments);
+        let atlas = MappedSegments::mapped(&metric, &model.atlas);
         Self {
             classes: model.classes.clone(),
             typical_spread: median_of(&mut samples.spreads.clone()).max(1e-6),
-            atlas: MappedSegments::mapped(&metric, &model.atlas),
+            order: Vec::with_capacity(samples.spreads.len().max(atlas.spreads.len())),
+            mean: [0.0; PADDED],
+            atlas,
             samples,
             scale: model.scale,
             has_scale: model.scale > 0.0,
@@ -99,7 +107,9 @@ impl Comparison {
     ) -> Option<Judged> {
         let spread = self.map(segment);
         let mut best: Option<(f32, ClassId)> = None;
-        for sample in (0..self.classes.len()).filter(|sample| counts(*sample)) {
+        self.samples.sort_by_mean(&self.mean, &mut self.order);
+        let order = self.order.iter().map(|(_, sample)| *sample);
+        for sample in order.filter(|sample| counts(*sample)) {
             let most = best.map_or(f32::MAX, |(distance, _)| distance);
             let distance = self.distance(&self.samples, sample, spread, most);
             if best.is_none() || distance < most {
@@ -116,16 +126,17 @@ impl Comparison {
     }
 
     /// The score beside what other motion is at.
-    fn against_atlas(&self, spread: f32, nearest: f32) -> f32 {
+    fn against_atlas(&mut self, spread: f32, nearest: f32) -> f32 {
         let mut found = [f32::MAX; NEAREST_OF_ATLAS];
         let least = match self.has_scale {
             true => 2.0 * self.bound - portable::ln(f64::from(self.scale / nearest)) as f32,
             false => self.bound,
         };
         let refused = nearest * portable::exp(f64::from(least)) as f32;
-        for stretch in 0..self.atlas.spreads.len() {
+        self.atlas.sort_by_mean(&self.mean, &mut self.order);
+        for (_, stretch) in &self.order {
             let most = found[NEAREST_OF_ATLAS - 1];
-            let distance = self.distance(&self.atlas, stretch, spread, most);
+            let distance = self.distance(&self.atlas, *stretch, spread, most);
             if distance < most {
                 found[NEAREST_OF_ATLAS - 1] = distance;
                 found.sort_unstable_by(f32::total_cmp);
@@ -163,6 +174,7 @@ impl Comparison {
             out[..dim].copy_from_slice(row);
         }
         self.noise = noise_of(&self.segment);
+        self.mean = mean_of(&self.segment);
         spread_of(&self.segment)
     }
 
@@ -174,9 +186,10 @@ impl Comparison {
         let spreads = (of.spreads[place] + moved) / (2.0 * self.typical_spread);
         let norm = portable::powf(f64::from(spreads.max(LEAST_SPREAD)), f64::from(EXPONENT)) as f32;
         let taught = &of.values[place * SEGMENT..][..SEGMENT];
-        // Without its noise a distance is at least half of what it was.
-        let limit = (most * norm / (1.0 - NOISE_SHARE)).min(f32::MAX) * PATH_WEIGHT;
-        let plain = warped(taught, &self.segment, limit) / PATH_WEIGHT;
+        // From here on it is not below `most` when the noise is taken off.
+        let least = most * norm;
+        let limit = (least + noise).min(least / (1.0 - NOISE_SHARE));
+        let plain = warped(taught, &self.segment, limit.min(f32::MAX) * PATH_WEIGHT) / PATH_WEIGHT;
         (plain - noise.min(NOISE_SHARE * plain)) / norm
     }
 }
@@ -244,11 +257,22 @@ impl MappedSegments {
         }
         let spreads = values.chunks_exact(SEGMENT).map(spread_of).collect();
         let noises = values.chunks_exact(SEGMENT).map(noise_of).collect();
+        let means = values.chunks_exact(SEGMENT).flat_map(mean_of).collect();
         Self {
             values,
             spreads,
             noises,
+            means,
         }
+    }
+
+    /// Writes the places of all segments to `order`, the one whose mean is the nearest to `mean` first: the nearest segments come early, and
+    /// most others are given up after a few rows.
+    fn sort_by_mean(&self, mean: &[f32; PADDED], order: &mut Vec<(f32, usize)>) {
+        let means = self.means.chunks_exact(PADDED).enumerate();
+        order.clear();
+        order.extend(means.map(|(place, of)| (squared(of, mean), place)));
+        order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     }
 }
 
@@ -260,6 +284,17 @@ pub fn median_of(values: &mut [f32]) -> f32 {
         n if n % 2 == 1 => values[n / 2],
         n => (values[n / 2 - 1] + values[n / 2]) / 2.0,
     }
+}
+
+/// Mean of a segment's rows.
+fn mean_of(segment: &[f32]) -> [f32; PADDED] {
+    let mut mean = [0.0; PADDED];
+    for row in segment.chunks_exact(PADDED) {
+        for (mean, value) in mean.iter_mut().zip(row) {
+            *mean += value / SEGMENT_ROWS as f32;
+        }
+    }
+    mean
 }
 
 /// Mean squared distance of a segment's rows from their mean.
@@ -315,11 +350,11 @@ fn warped(a: &[f32], b: &[f32], limit: f32) -> f32 {
 #[inline(always)]
 fn squared(a: &[f32], b: &[f32]) -> f32 {
     let mut sums = [0.0f32; LANES];
-    for (a, b) in a.chunks_exact(LANES).zip(b.chunks_exact(LANES)) {
-        for lane in 0..LANES {
-            let apart = a[lane] - b[lane];
-            sums[lane] += apart * apart;
-        }
+    let (a, _) = a.as_chunks::<LANES>();
+    let (b, _) = b.as_chunks::<LANES>();
+    for (a, b) in a.iter().zip(b) {
+        let apart: [f32; LANES] = std::array::from_fn(|lane| a[lane] - b[lane]);
+        sums = std::array::from_fn(|lane| sums[lane] + apart[lane] * apart[lane]);
     }
     let [a, b, c, d, e, f, g, h] = sums;
     ((a + e) + (c + g)) + ((b + f) + (d + h))
