@@ -51,6 +51,7 @@ enum Subcommands {
     Train(commands::train::Args),
     #[command(alias = "recognise")]
     Recognize(commands::recognize::Args),
+    Classify(commands::classify::Args),
     Evaluate(commands::evaluate::Args),
     Crossval(commands::crossval::Args),
     Bench(commands::bench::Args),
@@ -80,6 +81,7 @@ fn main() -> ExitCode {
         Subcommands::Reproduce(args) => commands::reproduce::run(&args),
         Subcommands::Train(args) => commands::train::run(&args),
         Subcommands::Recognize(args) => commands::recognize::run(&args),
+        Subcommands::Classify(args) => commands::classify::run(&args),
         Subcommands::Crossval(args) => commands::crossval::run(&args),
         Subcommands::Bench(args) => commands::bench::run(&args),
         Subcommands::Evaluate(args) => commands::evaluate::run(&args),

@@ -78,9 +78,10 @@ def main() -> None:
     def ours(train, test, aside):
         chosen = lambda mask, of: [clip for clip, keep in zip(of, mask) if keep]  # noqa: E731
         model = morec.MotionClassifier(everyday="auto").fit(chosen(train, known), y[train], groups=groups[train])
-        near = model.decision_function(chosen(test, known))
-        far = model.decision_function(chosen(aside, idle)).max(1) if aside.any() else np.empty(0)
-        return model.classes_[near.argmax(1)], near.max(1), far
+        rows = lambda clips: model.index_.classify(clips)  # noqa: E731
+        near = lambda clips: np.array([max(row["probabilities"].values()) for row in rows(clips)])  # noqa: E731
+        held = chosen(test, known)
+        return model.predict(held), near(held), near(chosen(aside, idle)) if aside.any() else np.empty(0)
 
     both("morec.MotionClassifier", ours)
 

@@ -4,17 +4,16 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use morec::features::{all_bones_of_clip, rows_of_clip};
+use morec::classify::Classifier;
+use morec::features::all_bones_of_clip;
 use morec::import::SignedAxis;
 use morec::index::MotionIndex;
-use morec::live::{Model, RecognizerCache, StartError};
-use morec::templates::{MatchGate, Matcher, Metric, Stretches};
+use morec::live::{RecognizerCache, StartError};
 use morec_ops::RecognizeSettings;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use rayon::prelude::*;
 
-use crate::arrays::owned;
 use crate::clip::PyClip;
 use crate::clip_data::ClipData;
 use crate::errors::{library_error, morec_error, value_error, warn};
@@ -203,31 +202,23 @@ impl PyIndex {
         PyRecognizer::new(py, &index.model, layout, up)
     }
 
-    /// Distance of each clip from each class: float32 of shape (clips, classes), and the distance from which on nothing is
-    /// reported. Of the method `templates` only.
-    fn distances<'py>(
+    /// The class of each clip, as a list of dictionaries.
+    fn classify<'py>(
         &self,
         py: Python<'py>,
         clips: &Bound<'py, PyAny>,
-    ) -> PyResult<(Bound<'py, PyAny>, f32)> {
-        let Model::Templates(model) = &self.index.model else {
-            return Err(value_error("distances are those of the method templates"));
-        };
+    ) -> PyResult<Bound<'py, PyAny>> {
         let clips: Vec<Arc<ClipData>> = clips_of(clips)?
             .iter()
             .map(|clip| clip.get().data.clone())
             .collect();
         let index = &self.index;
+        let classifier = Classifier::new(&index.model).map_err(|e| value_error(e.to_string()))?;
         let found = py.detach(|| {
-            let one = |data: &Arc<ClipData>| class_distances(index, data);
+            let one = |data: &Arc<ClipData>| classified(index, &classifier, data);
             clips.par_iter().map(one).collect::<Result<Vec<_>, _>>()
         });
-        let found = found.map_err(morec_error)?;
-        let shape = [found.len(), model.classes.len()];
-        Ok((
-            owned(py, found.concat(), &shape)?.into_any(),
-            model.threshold,
-        ))
+        plain(py, &found.map_err(morec_error)?)
     }
 
     /// The classes: name, samples and people that taught them.
@@ -300,37 +291,18 @@ type Recognized = (
     Result<FoundWithDeviation, StartError>,
 );
 
-/// The least distance of each class anywhere in a clip, as recognition compares; infinite if it is like none.
-fn class_distances(index: &MotionIndex, data: &Arc<ClipData>) -> Result<Vec<f32>, String> {
-    let Model::Templates(model) = &index.model else {
-        return Err("distances are those of the method templates".to_owned());
-    };
+/// A clip's class and the probabilities of all, as a JSON object.
+fn classified(
+    index: &MotionIndex,
+    classifier: &Classifier,
+    data: &Arc<ClipData>,
+) -> Result<serde_json::Value, String> {
     let data = completed(index, data);
-    let named = |error: String| format!("{}: {error}", data.clip.name);
-    let shown = all_bones_of_clip(&data.clip, &data.roles, &data.rest).and(model.bones);
-    let model = model.restricted(shown).map_err(|e| named(e.to_string()))?;
-    let (bones, features) = (model.bones, &model.features);
-    let rows = rows_of_clip(&data.clip, &data.roles, &data.rest, bones, features);
-    let metric = Metric::new(&model.ridged, &model.total);
-    let templates: Vec<_> = model
-        .samples
-        .iter()
-        .map(|s| metric.apply_all(&s.rows))
-        .collect();
-    let mut matcher = Matcher::new(&templates, metric.dim(), &model.decode);
-    let mut stretches = Stretches::new(metric.dim(), matcher.longest_match());
-    let gate = MatchGate::plain(model.decode.rest_share(model.rule()));
-    let mut least = vec![f32::INFINITY; model.classes.len()];
-    for row in metric.apply_all(&rows).iter() {
-        matcher.step(row);
-        stretches.push(row);
-        matcher.look(f32::INFINITY, &mut stretches);
-        for (number, sample) in model.samples.iter().enumerate() {
-            let best = &mut least[sample.class.index()];
-            if let Some(found) = matcher.nearer(number, *best, gate, &stretches) {
-                *best = found.distance;
-            }
-        }
-    }
-    Ok(least)
+    let found = classifier.classify(&data.clip, &data.roles, &data.rest);
+    let found = found.map_err(|error| format!("{}: {error}", data.clip.name))?;
+    let found = found.named(&index.model);
+    Ok(serde_json::json!({
+        "clip": data.clip.name, "class": found.class, "probability": found.probability,
+        "nearest": found.nearest, "probabilities": found.probabilities,
+    }))
 }

@@ -46,6 +46,22 @@ def test_what_is_like_no_class_is_rejected(samples: Any) -> None:
     assert (model.predict(cut) == np.array(names)).mean() >= 0.9
 
 
+def test_an_index_classifies_clips(samples: Any) -> None:
+    cut, names, people = samples
+    numbered = [clip.renamed(f"{at}") for at, clip in enumerate(cut)]
+    samples_of = list(zip(numbered, names, people))
+    taught = [(clip, name) for clip, name, person in samples_of if person != people[0]]
+    held = [(clip, name) for clip, name, person in samples_of if person == people[0]]
+    index = morec.train([clip for clip, _ in taught], [(clip.name, name) for clip, name in taught], progress=False)
+    rows = index.classify([clip for clip, _ in held])
+    assert [row["clip"] for row in rows] == [clip.name for clip, _ in held]
+    right = [row["class"] == name for row, (_, name) in zip(rows, held)]
+    assert np.mean(right) >= 5 / 6
+    for row in rows:
+        assert list(row["probabilities"]) == index.class_names and 0 <= sum(row["probabilities"].values()) <= 1
+        assert row["class"] is None or (row["class"] == row["nearest"] and row["probability"] > 0.5)
+
+
 def test_arrays_are_classified(samples: Any) -> None:
     cut, names, _ = samples
     frames = min(clip.frames for clip in cut)

@@ -54,6 +54,17 @@ export interface Detection {
   period_secs?: number;
 }
 
+/** The class of a whole clip. */
+export interface Classification {
+  /** Absent if none of the classes is more probable than everything else. */
+  class?: string;
+  probability?: number;
+  /** The class whose samples are nearest; absent where nothing moves. */
+  nearest?: string;
+  /** By class; what is missing to 1 is the probability of none of them. */
+  probabilities: Record<string, number>;
+}
+
 export interface MotionEvent extends Detection {
   /** `end` is final; the others say what seems to be under way. */
   phase: "start" | "update" | "repetition" | "cancel" | "end";
@@ -97,6 +108,8 @@ export class Index {
   withSensitivity(alarms_per_minute: number): Index;
   /** The detections in a clip, as of a live stream. */
   recognize(clip: Clip): Detection[];
+  /** The class of a whole clip that was cut around one motion. */
+  classify(clip: Clip): Classification;
   /** A recogniser of a stream of points: a published set's names, usual joint names, or `roles()`. */
   recognizer(points: string[], options?: RecognizerOptions): Recognizer;
   free(): void;

@@ -5,6 +5,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use js_sys::Function;
+use morec::classify::Classifier;
 use morec::files::FileReader;
 use morec::formats::{Limits, from_positions};
 use morec::import::{SignedAxis, normalize};
@@ -128,6 +129,13 @@ impl JsIndex {
     pub fn recognize(&self, clip: &JsClip) -> Result<JsValue, JsError> {
         let found = self.index.recognize(&clip.take)?;
         to_js(&found.iter().map(DetectionRow::from).collect::<Vec<_>>())
+    }
+
+    /// The class of a whole clip that was cut around one motion.
+    pub fn classify(&self, clip: &JsClip) -> Result<JsValue, JsError> {
+        let (model, take) = (&self.index.model, &clip.take);
+        let found = Classifier::new(model)?.classify(&take.clip, &take.roles, take.rest())?;
+        to_js(&found.named(model))
     }
 }
 

@@ -70,6 +70,7 @@
 //! | learning | [`labels`], [`train`] | a [`TemplateModel`](templates::TemplateModel) and a report |
 //! | keeping | [`index`] | one file, with a checksum and where it came from |
 //! | recognising | [`templates`] or [`svrdm`], [`decode`], [`live`] | [`Detection`]s, nothing taken back |
+//! | naming whole clips | [`classify`] | one class each, or none, with probabilities |
 //! | numbers for other programs | [`tables`] | positions, rotations and feature rows as NumPy archives and CSV |
 //! | looking at a stream | [`diagnosis`] | what is wrong with it, in sentences that say what to do |
 //! | without labels | [`pivots`], [`pca`], [`segment`], [`cluster`] | pose rows, fewer dimensions, cuts, samples that are alike |
@@ -127,6 +128,8 @@ mod error;
 #[cfg(feature = "files")]
 pub mod tables;
 
+#[cfg(feature = "live")]
+pub mod classify;
 #[cfg(feature = "live")]
 pub mod decode;
 #[cfg(feature = "live")]

@@ -65,7 +65,7 @@ fn drawn<'a>(
 }
 
 /// Samples of all clips that are named like one that teaches, but for the number at the end.
-fn whole_clips(set: &MotionSet) -> Vec<Sample> {
+pub fn whole_clips(set: &MotionSet) -> Vec<Sample> {
     let kind = |name: &str| name.rsplit_once('_').map(|(kind, _)| kind.to_owned());
     let of_clip = |clip: &TrainClip| {
         let alike = set

@@ -93,6 +93,8 @@ pub struct DataSets {
     pub referee: MotionSet,
     pub exercises: MotionSet,
     pub segmentation: MotionSet,
+    /// Everyday and unusual motion without labels.
+    pub free: MotionSet,
     pub everyday: MotionSet,
     /// Clips of gestures, those that teach sessions among them.
     pub gestures: MotionSet,
@@ -115,6 +117,7 @@ impl DataSets {
                 .with_people(Some(&at("referee/people.tsv")), str::to_owned)?,
             exercises: labelled("exercises/clips", "exercises/labels.tsv")?,
             segmentation: MotionSet::unlabelled(&at("segmentation/clips"))?,
+            free: MotionSet::unlabelled(&at("cmu/clips"))?,
             everyday: labelled("everyday/clips", "everyday/clips.tsv")?
                 .with_people(None, of_style)?,
             gestures: labelled("gestures/clips", "gestures/clips.tsv")?

@@ -5,8 +5,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use morec::crossval::{FoldBy, folds};
 use morec::labels::Sample;
 use morec::perturb::Perturbation;
-use morec::train::TrainClip;
+use morec::train::{TrainClip, is_built_in};
 
+use super::draws::whole_clips;
 use super::sets::{DataSets, MotionSet};
 
 /// Signals of the referee clips.
@@ -43,6 +44,8 @@ pub struct TrialTest<'a> {
     pub truths: Vec<Sample>,
     pub unknown: bool,
     pub copy: Option<Perturbation>,
+    /// The clip is classified as a whole, not played as a stream.
+    pub classified: bool,
 }
 
 /// The trials of every data set and scenario that is there.
@@ -54,6 +57,7 @@ pub fn trials(sets: &DataSets) -> Vec<Trial<'_>> {
     all.extend(sessions(sets));
     all.extend(actions(sets));
     all.extend(hands(sets));
+    all.extend(cut_clips(sets));
     all.retain(|t| !t.lessons.is_empty());
     all
 }
@@ -136,6 +140,12 @@ fn exercises(sets: &DataSets) -> Vec<Trial<'_>> {
     )
 }
 
+/// Clips of the database that everyday motion is built in from, but those that are.
+fn free_motion(sets: &DataSets) -> Vec<&TrainClip> {
+    let is_new = |c: &&TrainClip| !is_built_in(&format!("cmu_{}", c.name));
+    sets.free.clips.iter().filter(is_new).collect()
+}
+
 /// With named background and many samples: the verifier.
 fn gestures(sets: &DataSets) -> Vec<Trial<'_>> {
     let set = &sets.gestures;
@@ -167,9 +177,11 @@ fn sessions(sets: &DataSets) -> Vec<Trial<'_>> {
     let lessons = (&sets.gestures, sets.session_lessons.as_slice());
     let mut all = of_sessions("sessions", lessons, &sets.sessions);
     let silent = motion_without_classes(sets, &["run", "walk"], false);
+    let free = free_motion(sets);
     for trial in &mut all {
         if trial.tests.iter().any(|t| t.row == "sessions own") {
             trial.add_unknown("silence sessions", &silent);
+            trial.add_unknown("free motion sessions", &free);
         }
     }
     let pair = ["clap", "wave"];
@@ -190,13 +202,8 @@ fn sessions(sets: &DataSets) -> Vec<Trial<'_>> {
             .iter()
             .filter(|c| c.person.as_ref() != Some(&person));
         let row = "sessions one, two classes";
-        all.push(Trial::new(
-            row,
-            &sets.gestures,
-            taught,
-            others,
-            &tested.samples,
-        ));
+        let trial = Trial::new(row, &sets.gestures, taught, others, &tested.samples);
+        all.push(trial.with_unknown("free motion two classes", &free));
     }
     let idle: Vec<&TrainClip> = sets
         .gestures
@@ -232,6 +239,49 @@ fn actions(sets: &DataSets) -> Vec<Trial<'_>> {
     for trial in &mut all {
         if trial.tests.iter().any(|t| t.row == "actions own") {
             trial.add_unknown("silence actions", &silent);
+            trial.add_unknown("free motion actions", &free_motion(sets));
+        }
+    }
+    all
+}
+
+/// One person's lessons on cut clips of others: played as streams, and classified as wholes.
+fn cut_clips(sets: &DataSets) -> Vec<Trial<'_>> {
+    let actions = whole_clips(&sets.actions);
+    let is_gesture = |s: &&Sample| s.class != "dontcare";
+    let gestures: Vec<Sample> = (sets.gestures.samples.iter().filter(is_gesture))
+        .cloned()
+        .collect();
+    let of = [
+        (
+            "gestures clips",
+            &sets.gestures,
+            &sets.session_lessons,
+            gestures,
+        ),
+        (
+            "actions clips",
+            &sets.actions,
+            &sets.actions.samples,
+            actions,
+        ),
+    ];
+    let mut all = Vec::new();
+    for (name, set, lessons, truths) in of {
+        for person in people(lessons) {
+            let taught = of_person(lessons, &person);
+            let is_other = |c: &&TrainClip| {
+                c.person.as_ref() != Some(&person) && truths.iter().any(|s| s.clip == c.name)
+            };
+            let others = set.clips.iter().filter(is_other);
+            let mut trial = Trial::new(&format!("{name} one"), set, taught, others, &truths);
+            let dontcare = set
+                .clips
+                .iter()
+                .filter(|c| c.name.contains("_dontcare_") && c.person.as_ref() != Some(&person));
+            trial.add_unknown(&format!("{name} one"), &dontcare.collect::<Vec<_>>());
+            trial.add_classified();
+            all.push(trial);
         }
     }
     all
@@ -426,6 +476,7 @@ impl<'a> Trial<'a> {
                     .collect(),
                 unknown: false,
                 copy: None,
+                classified: false,
             }
         }));
     }
@@ -437,12 +488,27 @@ impl<'a> Trial<'a> {
             truths: Vec::new(),
             unknown: true,
             copy: None,
+            classified: false,
         }));
     }
 
     fn with_unknown(mut self, row: &str, clips: &[&'a TrainClip]) -> Self {
         self.add_unknown(row, clips);
         self
+    }
+
+    /// Classifies the clips as wholes, too.
+    fn add_classified(&mut self) {
+        let classified = self.tests.iter().map(|t| TrialTest {
+            row: format!("{}, classified", t.row),
+            clip: t.clip,
+            truths: t.truths.clone(),
+            unknown: t.unknown,
+            copy: None,
+            classified: true,
+        });
+        let classified: Vec<_> = classified.collect();
+        self.tests.extend(classified);
     }
 
     fn add_copies(&mut self) {
@@ -459,6 +525,7 @@ impl<'a> Trial<'a> {
                 truths: t.truths.clone(),
                 unknown: false,
                 copy: copy.parse().ok(),
+                classified: false,
             })
             .collect();
         self.tests.extend(copies);

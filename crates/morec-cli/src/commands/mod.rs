@@ -4,6 +4,7 @@
 //! wrong.
 
 pub mod bench;
+pub mod classify;
 pub mod complete;
 pub mod convert;
 pub mod crossval;

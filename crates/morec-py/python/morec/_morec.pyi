@@ -229,14 +229,17 @@ class Index:
         MorecError
             An index that looks at joint rotations, or has no bone in common with the joints.
         """
-    def distances(self, clips: Clips) -> tuple[npt.NDArray[np.float32], float]:
-        """How far each clip is from each class, and the distance from which on nothing is reported.
+    def classify(self, clips: Clips) -> list[dict[str, Any]]:
+        """The class of whole clips that were cut around one motion each; `recognize` finds motions in longer ones.
+
+        Of the method ``templates`` only.
 
         Returns
         -------
-        distances : ndarray of float32, shape (clips, classes)
-            The least anywhere in the clip; infinite where nothing moves.
-        threshold : float
+        list of dict
+            One for each clip: ``clip``; ``class``, None if none of the classes is more probable than everything else;
+            its ``probability``; ``nearest``, the class whose samples are nearest, None where nothing moves; and
+            ``probabilities`` by class: what is missing to 1 is the probability of none of them.
         """
     @property
     def classes(self) -> list[dict[str, Any]]:

@@ -32,7 +32,7 @@ class MotionClassifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
     everyday : {"never", "auto", "always"}
         Whether training hears of everyday motion; it is what rejection is learned from.
     reject : bool
-        Predict ``rejected`` for what is further from every class than the trained threshold.
+        Predict ``rejected`` for what is more probably none of the classes than the nearest one.
     rejected : str
         What is predicted then.
     params : dict, optional
@@ -102,28 +102,28 @@ class MotionClassifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
         )
         return self
 
-    def decision_function(self, X: Any) -> npt.NDArray[np.float64]:
-        """How near each sample is to each class: distances with the sign turned; shape (samples, classes)."""
-        check_is_fitted(self)
-        distances, self.threshold_ = self.index_.distances(self._clips(X))
-        # What does not move is like nothing.
-        return -np.minimum(distances.astype(np.float64), 1e6)
-
     def predict_proba(self, X: Any) -> npt.NDArray[np.float64]:
-        """A share for each class, from the ratios of distances; shape (samples, classes), rows sum to 1.
+        """A probability for each class, given that a sample is one of them; shape (samples, classes), rows sum to 1.
 
-        They order classes and are no calibrated probabilities.
+        Of a sample in which nothing moves all are the same.
         """
-        near = self.decision_function(X) / max(self.threshold_ / 4, 1e-9)
-        weights = np.exp(near - near.max(axis=1, keepdims=True))
-        return np.asarray(weights / weights.sum(axis=1, keepdims=True))
+        check_is_fitted(self)
+        rows = self.index_.classify(self._clips(X))
+        names = self.index_.class_names
+        found = np.array([[row["probabilities"][name] for name in names] for row in rows], dtype=np.float64)
+        sums = found.sum(axis=1, keepdims=True)
+        even = np.full_like(found, 1 / len(self.classes_))
+        return np.divide(found, sums, out=even, where=sums > 0)
 
     def predict(self, X: Any) -> npt.NDArray[Any]:
-        """The nearest class of each sample; with ``reject``, `rejected` for what is like none."""
-        near = self.decision_function(X)
-        found: npt.NDArray[Any] = self.classes_[near.argmax(axis=1)]
+        """The nearest class of each sample; with ``reject``, `rejected` for what is none of the classes."""
+        check_is_fitted(self)
+        rows = self.index_.classify(self._clips(X))
+        names = dict(zip(self.index_.class_names, self.classes_))
+        found = np.array([names.get(row["nearest"], self.classes_[0]) for row in rows], dtype=self.classes_.dtype)
         if self.reject:
-            found = np.where(-near.max(axis=1) < self.threshold_, found.astype(object), self.rejected)
+            accepted = np.array([row["class"] is not None for row in rows])
+            found = np.where(accepted, found.astype(object), self.rejected)
         return found
 
     def _clips(self, X: Any) -> list[Clip]:

@@ -39,8 +39,8 @@ pub fn second_look_clips() -> Vec<TrainClip> {
     made.map(synthetic).chain(real).collect()
 }
 
-/// True of the name of a real one.
-pub fn is_real(name: &str) -> bool {
+/// True of the name of a real clip of the everyday motion that is built in.
+pub fn is_built_in(name: &str) -> bool {
     REAL.iter().any(|(real, _)| *real == name)
 }
 

@@ -37,6 +37,7 @@ pub use alike::AlikeClasses;
 pub use clips::train_clips;
 pub use data::{DataError, TrainingData, TrainingMaterial};
 pub use error::TrainError;
+pub use everyday::is_built_in;
 pub use from_clips::{LabelSet, Prepared, TrainClip, build_train_set};
 pub use kind::{ClassKind, ClassLabels};
 pub use mirror::Mirror;

@@ -17,7 +17,7 @@ use crate::templates::{
     TemplateModelError,
 };
 
-use super::everyday::is_real;
+use super::everyday::is_built_in;
 use super::params::TrainParams;
 use super::scatter::{covariance, ridged, within_class};
 use super::set::{StreamKind, TrainSample, TrainSet, evenly, overlap};
@@ -221,7 +221,7 @@ impl<'a> Tracks<'a> {
     fn atlas(&self) -> Rows {
         let hz = self.params.features.tick_hz();
         let everyday = self.set.everyday.par_iter();
-        let real = everyday.filter(|stream| is_real(&stream.name));
+        let real = everyday.filter(|stream| is_built_in(&stream.name));
         let tracks: Vec<BodyTrack> = real.map(|stream| self.of_rows(&stream.rows)).collect();
         let mut stretches = Vec::new();
         for (place, track) in tracks.iter().enumerate() {

@@ -1,0 +1,172 @@
+//! `morec classify`: the class of whole clips.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use anyhow::{Context, Result};
+use clap::ValueEnum;
+use morec::classify::{Classification, Classifier};
+use morec::import::ImportOptions;
+use morec::index::MotionIndex;
+use morec::labels::some_of;
+use morec::live::Model;
+
+use super::recognize::{adapt, open_index};
+use crate::files::{ReadArgs, expand, mapping, takes};
+use crate::output::{self, Output};
+use crate::progress::SlowProgress;
+
+/// Name the class of whole clips.
+///
+/// For clips that were cut around one motion each: all that moves in a clip is compared with the samples of every class. A clip is given
+/// the nearest class if that is more probable than everything else, else none. For clips in which motions have to be found, see
+/// `morec recognize`.
+///
+/// Writes one line for each clip: clip, class (empty: none of them), its probability, the nearest class, and the probability of each class.
+#[derive(clap::Args)]
+#[command(
+    after_help = "Exit codes: 0 all clips done; 1 something cannot be read (the others are done all the same); \
+    2 wrong command line.\n\n\
+    Example: morec classify signs.index cut/ -o classes.tsv"
+)]
+pub struct Args {
+    /// The index, as `morec train` writes it
+    index: PathBuf,
+    /// Clips, or folders of clips; - reads one clip from standard input
+    #[arg(required = true, value_name = "CLIP")]
+    clips: Vec<PathBuf>,
+    /// Form of the output
+    #[arg(long, value_enum, default_value = "tsv")]
+    form: ClassificationForm,
+    /// File to write to [default: standard output]
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Roles of joints, where inference fails: lines of `role<TAB>joint name`
+    #[arg(long, value_name = "FILE")]
+    roles: Option<PathBuf>,
+    #[command(flatten)]
+    read: ReadArgs,
+}
+
+/// Forms of output.
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+enum ClassificationForm {
+    /// Tab-separated text with a header
+    Tsv,
+    /// One JSON object a line
+    Jsonl,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<ExitCode> {
+    let index = open_index(&args.index)?;
+    let shown = || args.index.display().to_string();
+    let classifier = Classifier::new(&index.model).with_context(shown)?;
+    let paths = expand(&args.clips)?;
+    let failed = match &args.output {
+        None => {
+            let out = &mut crate::console::stdout();
+            classify_all(out, &paths, &index, &classifier, args)?
+        }
+        Some(path) => {
+            let shown = || path.display().to_string();
+            let own = match args.form {
+                ClassificationForm::Tsv => ["tsv", "txt"],
+                ClassificationForm::Jsonl => ["jsonl", "json"],
+            };
+            output::check(path).with_context(shown)?;
+            output::check_ending(path, "a table of classes (--form)", &own)?;
+            let mut out = Output::create(path).with_context(shown)?;
+            let failed = classify_all(&mut out, &paths, &index, &classifier, args)?;
+            out.finish().with_context(shown)?;
+            failed
+        }
+    };
+    Ok(ExitCode::from(u8::from(failed)))
+}
+
+/// Writes the class of every clip; gives whether one of them could not be read.
+fn classify_all(
+    out: &mut dyn Write,
+    paths: &[PathBuf],
+    index: &MotionIndex,
+    classifier: &Classifier,
+    args: &Args,
+) -> Result<bool> {
+    let options = ImportOptions {
+        mapping: mapping(args.roles.as_deref())?,
+        ..ImportOptions::default()
+    };
+    if args.form == ClassificationForm::Tsv {
+        let names: Vec<&str> = (index.model.classes().iter())
+            .map(|class| class.name.as_str())
+            .collect();
+        writeln!(out, "{HEADER}\t{}", names.join("\t"))?;
+    }
+    let mut progress = SlowProgress::new(paths.len(), "classifying");
+    let (mut failed, mut none) = (false, Vec::new());
+    for path in paths {
+        match classify_file(path, index, classifier, &options, args) {
+            Ok(clips) => {
+                for (clip, found) in clips {
+                    write_line(out, args.form, &clip, &index.model, &found)?;
+                    none.extend(found.class.is_none().then_some(clip));
+                }
+            }
+            Err(error) => {
+                failed = true;
+                progress.suspend(|| eprintln!("morec: {error:#}"));
+            }
+        }
+        progress.step();
+    }
+    out.flush()?;
+    drop(progress);
+    if !none.is_empty() {
+        let names = some_of(&none);
+        eprintln!("morec: {} clips are given no class: {names}", none.len());
+    }
+    Ok(failed)
+}
+
+const HEADER: &str = "clip\tclass\tprobability\tnearest";
+
+fn classify_file(
+    path: &Path,
+    index: &MotionIndex,
+    classifier: &Classifier,
+    options: &ImportOptions,
+    args: &Args,
+) -> Result<Vec<(String, Classification)>> {
+    let classify = |mut take: morec::Take| {
+        adapt(&mut take, index, path, options.mapping.is_none());
+        let found = classifier.classify(&take.clip, &take.roles, take.rest());
+        let shown = || format!("{} ({})", path.display(), take.clip.name);
+        Ok((take.clip.name.clone(), found.with_context(shown)?))
+    };
+    let takes = takes(path, &args.read, options)?;
+    takes.into_iter().map(classify).collect()
+}
+
+fn write_line(
+    out: &mut dyn Write,
+    form: ClassificationForm,
+    clip: &str,
+    model: &Model,
+    found: &Classification,
+) -> std::io::Result<()> {
+    let named = found.named(model);
+    if form == ClassificationForm::Jsonl {
+        let mut object = serde_json::to_value(named)?;
+        object["clip"] = clip.into();
+        return writeln!(out, "{object}");
+    }
+    let probability = (named.probability).map_or_else(String::new, |p| format!("{p:.3}"));
+    let (class, nearest) = (named.class.unwrap_or(""), named.nearest.unwrap_or(""));
+    write!(out, "{clip}\t{class}\t{probability}\t{nearest}")?;
+    for probability in &found.probabilities {
+        write!(out, "\t{probability:.3}")?;
+    }
+    writeln!(out)
+}
