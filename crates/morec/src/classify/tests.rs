@@ -1,6 +1,6 @@
 //! Clips of synthetic people, cut around one motion each.
 
-use crate::clip::Clip;
+use crate::TimeSpan;
 use crate::import::Take;
 use crate::synth::{DatabaseSpec, SyntheticTake, database};
 use crate::train::{LabelSet, TrainClip, TrainOptions, train_clips};
@@ -42,11 +42,19 @@ fn trained(takes: &[SyntheticTake], judge_whole: bool) -> Model {
     model.into()
 }
 
-/// The frames of `span` of a clip.
-fn cut(clip: &Clip, span: crate::TimeSpan) -> Take {
-    let hz = clip.rate_hz;
-    let frames = (span.start_secs * hz) as usize..((span.stop_secs * hz) as usize).min(clip.frames);
-    Take::new(clip.part(frames)).unwrap()
+/// The frames of a span of a take.
+fn cut(take: &SyntheticTake, span: TimeSpan) -> Take {
+    let clip = &take.clip;
+    let joints = clip.skeleton.len();
+    let frames = span.frames(clip.rate_hz);
+    let (first, last) = (frames.start.min(clip.frames), frames.end.min(clip.frames));
+    let mut part = clip.clone();
+    part.rotations = clip.rotations[first * joints..last * joints].to_vec();
+    for track in &mut part.tracks {
+        track.positions = track.positions[first..last].to_vec();
+    }
+    part.frames = last - first;
+    Take::new(part).unwrap()
 }
 
 fn classify(classifier: &Classifier, take: &Take) -> Classification {
@@ -61,7 +69,7 @@ fn clips_around_one_motion_are_named_after_it_with_and_without_a_second_look() {
         let model = trained(&takes, judge_whole);
         let classifier = Classifier::new(&model).unwrap();
         for label in &takes[0].labels {
-            let found = classify(&classifier, &cut(&takes[0].clip, label.span));
+            let found = classify(&classifier, &cut(&takes[0], label.span));
             let names = |class: Option<ClassId>| class.map(|c| CLASSES[c.index()]);
             assert_eq!(names(found.class), Some(label.class), "{found:?}");
             assert_eq!(found.nearest, found.class);
@@ -79,13 +87,10 @@ fn what_hardly_moves_is_none_of_the_classes() {
     for judge_whole in [true, false] {
         let model = trained(&takes, judge_whole);
         let classifier = Classifier::new(&model).unwrap();
-        let still = cut(&takes[0].clip, crate::TimeSpan::new(0.0, 0.8));
+        let still = cut(&takes[0], TimeSpan::new(0.0, 0.8));
         let found = classify(&classifier, &still);
         assert_eq!(found.class, None, "{found:?}");
-        let empty = Take {
-            clip: takes[0].clip.part(0..0),
-            ..still
-        };
+        let empty = cut(&takes[0], TimeSpan::new(1.0, 1.0));
         let found = classify(&classifier, &empty);
         assert_eq!((found.class, found.nearest), (None, None));
         assert_eq!(found.probabilities, [0.0; 3]);

@@ -8,6 +8,8 @@ use std::ops::Range;
 const LONG_SECS: f64 = 6.0;
 /// One whose samples follow others [without a break](ClassLabels) does from this length on.
 const UNBROKEN_SECS: f64 = 3.0;
+/// A label longer than this many times the median of its class does not decide.
+const OUTLIER: f64 = 3.0;
 /// Labels this near to each other, in seconds, follow each other.
 const BREAK_SECS: f64 = 0.25;
 
@@ -25,8 +27,10 @@ pub enum ClassKind {
 /// ends, people have divided what goes on.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct ClassLabels {
-    /// Duration of the longest.
+    /// Duration of the longest but for outliers.
     pub longest_secs: f64,
+    /// Duration of the longest outlier: three times as long as the median of the class, and longer.
+    pub outlier_secs: Option<f64>,
     labels: usize,
     unbroken: usize,
 }
@@ -37,6 +41,7 @@ impl ClassLabels {
         clips: impl IntoIterator<Item = (f64, Vec<(K, Range<f64>)>)>,
     ) -> BTreeMap<K, Self> {
         let mut classes: BTreeMap<K, Self> = BTreeMap::new();
+        let mut secs: BTreeMap<K, Vec<f64>> = BTreeMap::new();
         for (clip_secs, labels) in clips {
             let sorted = |of: fn(&Range<f64>) -> f64| {
                 let mut secs: Vec<f64> = labels.iter().map(|(_, label)| of(label)).collect();
@@ -50,10 +55,18 @@ impl ClassLabels {
                 let begins = before || has_near(&[0.0], label.start);
                 let stops = after || has_near(&[clip_secs], label.end);
                 let of_class = classes.entry(class.clone()).or_default();
-                of_class.longest_secs = of_class.longest_secs.max(label.end - label.start);
+                let durations = secs.entry(class.clone()).or_default();
+                durations.push(label.end - label.start);
                 of_class.labels += 1;
                 of_class.unbroken += usize::from(begins && stops && (before || after));
             }
+        }
+        for (of_class, mut secs) in classes.values_mut().zip(secs.into_values()) {
+            secs.sort_by(f64::total_cmp);
+            let most = OUTLIER * secs[secs.len() / 2];
+            let usual = secs.partition_point(|secs| *secs <= most);
+            of_class.longest_secs = secs[..usual].last().copied().unwrap_or(0.0);
+            of_class.outlier_secs = secs[usual..].last().copied();
         }
         classes
     }
@@ -108,6 +121,17 @@ mod tests {
             kind(&labels, &[1, 3]),
             ClassKind::Gesture,
             "not most of them"
+        );
+        // One long label among short ones does not decide; of two, neither is usual.
+        let mut push: Vec<Range<f64>> = (0..5)
+            .map(|k| 3.0 * f64::from(k)..3.0 * f64::from(k) + 1.6)
+            .collect();
+        push.push(20.0..56.0);
+        let labels =
+            ClassLabels::of_clips([(60.0, push.into_iter().map(|label| ((), label)).collect())]);
+        assert_eq!(
+            (labels[&()].kind(), labels[&()].outlier_secs),
+            (ClassKind::Gesture, Some(36.0))
         );
         // A clip that is one sample says nothing.
         assert_eq!(kind(&[0.0..20.0], &[0]), ClassKind::Activity, "it is long");

@@ -84,6 +84,30 @@ fn long_gesture_note(
     })
 }
 
+/// A note about labels that are much longer than the others of their class.
+fn outlier_note(
+    trained: &TrainedTemplates,
+    prepared: &Prepared,
+    params: &TrainParams,
+) -> Option<String> {
+    let labels = labels_of(&prepared.set.streams, params.features.tick_hz());
+    let classes = (0u16..).map(ClassId).zip(&trained.model.classes);
+    let outliers = classes.filter_map(|(class, info)| {
+        let secs = labels
+            .get(&Some(class))?
+            .outlier_secs
+            .filter(|s| *s >= LONG_GESTURE_SECS)?;
+        Some(format!("{} ({secs:.1} s)", info.name))
+    });
+    let outliers: Vec<String> = outliers.collect();
+    (!outliers.is_empty()).then(|| {
+        format!(
+            "a label is more than three times as long as most of its class: {}; does it hold several samples?",
+            outliers.join(", ")
+        )
+    })
+}
+
 /// A note about classes that were named activities and are none.
 fn no_activity_note(trained: &TrainedTemplates, params: &TrainParams) -> Option<String> {
     let activities = trained.model.activities.as_ref();
@@ -194,6 +218,7 @@ impl TrainingReport {
         }
         notes.extend(no_activity_note(trained, params));
         notes.extend(long_gesture_note(trained, prepared, params));
+        notes.extend(outlier_note(trained, prepared, params));
         if !prepared.lacking.is_empty() {
             notes.push(format!(
                 "left out because they lack bones that the labelled clips have: {}",
