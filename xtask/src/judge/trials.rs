@@ -118,13 +118,9 @@ fn everyday(sets: &DataSets) -> Vec<Trial<'_>> {
             .clips
             .iter()
             .filter(|c| c.person.as_ref() != Some(&style));
-        all.push(Trial::new(
-            "everyday one",
-            set,
-            lessons,
-            tested,
-            &set.samples,
-        ));
+        let mut trial = Trial::new("everyday one", set, lessons, tested, &set.samples);
+        trial.add_classified();
+        all.push(trial);
     }
     all
 }

@@ -141,6 +141,12 @@ fn print_templates(report: &TrainingReport) {
         };
         println!("sensitivity, alarms a minute → {of}: {}", points.join(", "));
     }
+    if let Some(held_out) = report.held_out {
+        println!(
+            "false alarms in background motion that did not set the score: {:.2} a minute, in {:.0} minutes",
+            held_out.per_minute, held_out.minutes
+        );
+    }
     let negatives: Vec<String> = report
         .negatives
         .iter()

@@ -121,6 +121,11 @@ impl Classifier {
         roles: &RoleMap,
         rest: &Span,
     ) -> Result<Classification, ClassifyError> {
+        if clip.frames == 0 {
+            let classes = vec![f32::INFINITY; self.model.classes.len()];
+            let verified = None;
+            return Ok(ClipDistances { classes, verified }.classified(&self.model));
+        }
         let roles = &roles.for_bones(&clip.skeleton, self.model.bones);
         let shown = all_bones_of_clip(clip, roles, rest);
         check_shown(self.model.bones, shown)?;

@@ -48,6 +48,7 @@ pub use params::{StrangerParams, TrainParams};
 pub use recipe::{Recipe, train_model};
 pub use report::TrainingReport;
 pub(crate) use scatter::{ridged, within_groups};
+pub use second_look::HeldOutAlarms;
 pub use set::{LabelledSpan, StreamKind, TrainSample, TrainSet, TrainStream, overlap_share};
 pub use templates::{TrainedTemplates, scatters, train};
 pub use trainer::{Trainer, train_index};

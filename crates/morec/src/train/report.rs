@@ -12,7 +12,7 @@ use super::from_clips::Prepared;
 use super::kind::ClassKind;
 use super::notes::class_notes;
 use super::params::TrainParams;
-use super::second_look::OwnSample;
+use super::second_look::{HeldOutAlarms, OwnSample};
 use super::set::{StreamKind, TrainSample, TrainStream};
 use super::templates::TrainedTemplates;
 use super::thesis::SvrdmReport;
@@ -146,6 +146,9 @@ pub struct TrainingReport {
     /// Thresholds for other rates of false alarms: distances, or the scores of a verifier.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub operating: Vec<OperatingPoint>,
+    /// False alarms of background motion that did not set the least score; only where the whole motion is judged.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub held_out: Option<HeldOutAlarms>,
     /// Hard negatives found, by the same sources.
     pub negatives: BTreeMap<String, usize>,
     /// True if the whole motion around a match is judged: thresholds are then scores that must be exceeded.
@@ -257,6 +260,7 @@ impl TrainingReport {
                 (None, None) => trained.model.operating.clone(),
             },
             judges_whole: look.is_some(),
+            held_out: trained.held_out,
             negatives,
             verified: trained.model.verifier.is_some(),
             notes,

@@ -21,6 +21,7 @@ use super::everyday::is_built_in;
 use super::params::TrainParams;
 use super::scatter::{covariance, ridged, within_class};
 use super::set::{StreamKind, TrainSample, TrainSet, evenly, overlap};
+use super::templates::CAP_EXPONENT;
 
 /// Matches farther than this are no candidates, in normalised distances.
 const REACH: f32 = 5.0;
@@ -254,7 +255,17 @@ fn in_common(a: &Range<usize>, b: &Range<usize>) -> f32 {
     shared as f32 / (a.len() + b.len() - shared).max(1) as f32
 }
 
-/// Sets the bound of the model's second look by the scores that background motion reaches.
+/// False alarms of background motion that did not set the bound.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+pub struct HeldOutAlarms {
+    /// A minute, at the bound that the other half of the background sets.
+    pub per_minute: f64,
+    /// Minutes of background.
+    pub minutes: f64,
+}
+
+/// Sets the bound of the model's second look by the scores that background motion reaches. Gives the rate of false alarms of each half of the
+/// background at the bound that the other half sets; nothing without a second look or background.
 ///
 /// # Errors
 /// As [`TemplateModel::check`].
@@ -262,44 +273,58 @@ pub fn set_bound(
     model: &mut TemplateModel,
     set: &TrainSet,
     params: &TrainParams,
-) -> Result<(), TemplateModelError> {
+) -> Result<Option<HeldOutAlarms>, TemplateModelError> {
     let Some(look) = &model.look else {
-        return Ok(());
+        return Ok(None);
     };
     let is_few = !look.atlas.is_empty();
-    let background = Scores::of_background(model, set, params)?;
-    let usual = background.exceeded(params.alarms_per_minute);
-    let bound = |rate: f64| {
-        let exceeded = background.exceeded(rate);
-        let bound = match is_few {
-            true => BOUND_OF_FEW + BACKGROUND_SHARE * (exceeded - usual),
-            false => BOUND + BACKGROUND_SHARE * exceeded,
-        };
-        bound.clamp(LEAST_BOUND, MOST_BOUND)
+    let halves = BackgroundScores::of_halves(model, set, params)?;
+    let asked = params.alarms_per_minute;
+    let background = BackgroundScores::of_all(&halves);
+    let bound = |rate: f64| background.bound(rate, asked, is_few);
+    let alarms = |set_by: usize, counted: usize| {
+        let bound = halves[set_by].bound(asked, asked, is_few);
+        halves[counted]
+            .scores
+            .partition_point(|score| *score > bound)
     };
+    let held_out = (background.minutes > 0.0).then(|| HeldOutAlarms {
+        per_minute: (alarms(0, 1) + alarms(1, 0)) as f64 / background.minutes,
+        minutes: background.minutes,
+    });
     let operating = ALARM_RATES.map(|alarms_per_minute| OperatingPoint {
         alarms_per_minute,
         threshold: bound(alarms_per_minute),
     });
     if let Some(look) = &mut model.look {
-        look.bound = bound(params.alarms_per_minute);
+        look.bound = bound(asked);
         look.operating = operating.to_vec();
     }
-    Ok(())
+    Ok(held_out)
+}
+
+/// How much lower the score may be at `rate` than at the rate that was asked for, where background motion comes near the classes too seldom to
+/// say: the largest distance grows as that of [matches](CAP_EXPONENT) does.
+fn wider(rate: f64, asked: f64) -> f32 {
+    match rate > 0.0 && asked > 0.0 {
+        true => (CAP_EXPONENT * portable::ln(rate / asked)) as f32,
+        false => 0.0,
+    }
 }
 
 /// Scores of what a model reports in background motion, whatever its bound, largest first.
-struct Scores {
+struct BackgroundScores {
     scores: Vec<f32>,
     minutes: f64,
 }
 
-impl Scores {
-    fn of_background(
+impl BackgroundScores {
+    /// Of every other stream, and of those between them.
+    fn of_halves(
         model: &TemplateModel,
         set: &TrainSet,
         params: &TrainParams,
-    ) -> Result<Self, TemplateModelError> {
+    ) -> Result<[Self; 2], TemplateModelError> {
         let streams = set.streams.iter();
         let background = streams.filter(|s| s.source != StreamKind::Labelled);
         let background = background.chain(&set.everyday);
@@ -325,17 +350,58 @@ impl Scores {
                 margins.extend(engine.push(row).map(|found| found.score));
             }
             margins.extend(engine.finish().map(|found| found.score));
-            margins
-                .into_iter()
-                .map(|margin| -(portable::ln(1.0 - margin) as f32))
+            let score = |margin: f64| -(portable::ln(1.0 - margin) as f32);
+            margins.into_iter().map(score).collect::<Vec<_>>()
         };
-        let mut scores: Vec<f32> = background.par_iter().flat_map_iter(scores).collect();
+        let of_stream: Vec<Vec<f32>> = background.par_iter().map(scores).collect();
+        let hz = params.features.tick_hz();
+        Ok([0, 1].map(|half| {
+            let mut scores: Vec<f32> = of_stream
+                .iter()
+                .skip(half)
+                .step_by(2)
+                .flatten()
+                .copied()
+                .collect();
+            scores.sort_by(|a, b| b.total_cmp(a));
+            let ticks: usize = background
+                .iter()
+                .skip(half)
+                .step_by(2)
+                .map(|rows| rows.len())
+                .sum();
+            Self {
+                scores,
+                minutes: ticks as f64 / hz / 60.0,
+            }
+        }))
+    }
+
+    /// Of both halves.
+    fn of_all(halves: &[Self; 2]) -> Self {
+        let mut scores: Vec<f32> = halves
+            .iter()
+            .flat_map(|half| &half.scores)
+            .copied()
+            .collect();
         scores.sort_by(|a, b| b.total_cmp(a));
-        let ticks: usize = background.iter().map(|rows| rows.len()).sum();
-        Ok(Self {
+        Self {
             scores,
-            minutes: ticks as f64 / params.features.tick_hz() / 60.0,
-        })
+            minutes: halves.iter().map(|half| half.minutes).sum(),
+        }
+    }
+
+    /// The bound for `rate` false alarms a minute, where `asked` is what training was asked for.
+    fn bound(&self, rate: f64, asked: f64, is_few: bool) -> f32 {
+        let exceeded = self.exceeded(rate);
+        let bound = match is_few {
+            true => {
+                let step = BACKGROUND_SHARE * (exceeded - self.exceeded(asked));
+                BOUND_OF_FEW + step - wider(rate, asked)
+            }
+            false => BOUND + BACKGROUND_SHARE * exceeded,
+        };
+        bound.clamp(LEAST_BOUND, MOST_BOUND)
     }
 
     /// The score that is exceeded `rate` times a minute; 0 if none is.

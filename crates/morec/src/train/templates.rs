@@ -24,7 +24,7 @@ use super::mining::{NearMiss, NearestByGate, TrainGates, hard_negatives, smalles
 use super::operating::AlarmCurve;
 use super::params::TrainParams;
 use super::scatter::{covariance, ridged, within_class};
-use super::second_look::{self, OwnSample};
+use super::second_look::{self, HeldOutAlarms, OwnSample};
 use super::set::{StreamKind, TrainSample, TrainSet, TrainStream};
 use super::thresholds;
 use super::trim::motion_span;
@@ -45,6 +45,8 @@ pub struct TrainedTemplates {
     pub alike: Vec<AlikeClasses>,
     /// Samples judged among the others by the second look; none where it does not decide.
     pub own: Vec<OwnSample>,
+    /// False alarms of background motion that did not set the bound of the second look.
+    pub held_out: Option<HeldOutAlarms>,
 }
 
 /// `params` with the spread of the usual template among `samples`, where rows are not a body's. Thresholds are then at most that
@@ -214,7 +216,7 @@ pub fn train(
     } else {
         model
     };
-    second_look::set_bound(&mut model, set, params)?;
+    let held_out = second_look::set_bound(&mut model, set, params)?;
     model.check()?;
     Ok(TrainedTemplates {
         model,
@@ -223,6 +225,7 @@ pub fn train(
         quiet,
         alike,
         own,
+        held_out,
     })
 }
 
@@ -244,7 +247,7 @@ const CANDIDATE_REST_GATE: f32 = 0.85;
 
 /// Exponent by which the bound of the threshold follows the rate of false alarms: 2.4 at a third of the usual rate and
 /// 3.3 at three times, for 2.8.
-const CAP_EXPONENT: f64 = 0.15;
+pub(super) const CAP_EXPONENT: f64 = 0.15;
 
 /// The threshold and its origin.
 struct Operating {

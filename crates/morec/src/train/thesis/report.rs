@@ -92,6 +92,7 @@ pub(super) fn of(
         threshold_from,
         negatives: BTreeMap::new(),
         judges_whole: false,
+        held_out: None,
         verified: false,
         notes,
         svrdm: Some(svrdm),
