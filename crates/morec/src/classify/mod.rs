@@ -139,7 +139,8 @@ impl Classifier {
             && rows.len() >= Activities::LEAST_TICKS
         {
             for (class, share) in activities.shares(RowLayout::of(model.bones), &rows) {
-                distances.classes[class.index()] = share as f32;
+                let distance = &mut distances.classes[class.index()];
+                *distance = distance.min(share as f32);
             }
         }
         Ok(distances.classified(model))

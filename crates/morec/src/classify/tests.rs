@@ -2,8 +2,9 @@
 
 use crate::TimeSpan;
 use crate::import::Take;
+use crate::live::recognize_clip;
 use crate::synth::{DatabaseSpec, SyntheticTake, database};
-use crate::train::{LabelSet, TrainClip, TrainOptions, train_clips};
+use crate::train::{LabelSet, TrainClip, TrainOptions, TrainParams, train_clips};
 
 use super::*;
 
@@ -20,7 +21,7 @@ fn takes() -> Vec<SyntheticTake> {
 }
 
 /// An index of all takes but the first.
-fn trained(takes: &[SyntheticTake], judge_whole: bool) -> Model {
+fn trained(takes: &[SyntheticTake], change: impl FnOnce(&mut TrainParams)) -> Model {
     let clips: Vec<TrainClip> = takes[1..]
         .iter()
         .map(|take| TrainClip {
@@ -36,9 +37,8 @@ fn trained(takes: &[SyntheticTake], judge_whole: bool) -> Model {
         ..Default::default()
     };
     let mut options = TrainOptions::default();
-    options.params.judge_whole = judge_whole;
+    change(&mut options.params);
     let (model, _) = train_clips(&clips, &labelling, &options, &()).unwrap();
-    assert_eq!(model.look.is_some(), judge_whole);
     model.into()
 }
 
@@ -66,7 +66,7 @@ fn classify(classifier: &Classifier, take: &Take) -> Classification {
 fn clips_around_one_motion_are_named_after_it_with_and_without_a_second_look() {
     let takes = takes();
     for judge_whole in [true, false] {
-        let model = trained(&takes, judge_whole);
+        let model = trained(&takes, |params| params.judge_whole = judge_whole);
         let classifier = Classifier::new(&model).unwrap();
         for label in &takes[0].labels {
             let found = classify(&classifier, &cut(&takes[0], label.span));
@@ -85,7 +85,7 @@ fn clips_around_one_motion_are_named_after_it_with_and_without_a_second_look() {
 fn what_hardly_moves_is_none_of_the_classes() {
     let takes = takes();
     for judge_whole in [true, false] {
-        let model = trained(&takes, judge_whole);
+        let model = trained(&takes, |params| params.judge_whole = judge_whole);
         let classifier = Classifier::new(&model).unwrap();
         let still = cut(&takes[0], TimeSpan::new(0.0, 0.8));
         let found = classify(&classifier, &still);
@@ -94,5 +94,29 @@ fn what_hardly_moves_is_none_of_the_classes() {
         let found = classify(&classifier, &empty);
         assert_eq!((found.class, found.nearest), (None, None));
         assert_eq!(found.probabilities, [0.0; 3]);
+    }
+}
+
+#[test]
+fn activities_are_compared_as_wholes_and_reported_by_their_windows() {
+    let takes = takes();
+    let waves = ["wave".to_owned()];
+    let model = trained(&takes, |params| params.set_kinds(&waves, &[]));
+    let Model::Templates(templates) = &model else {
+        unreachable!("templates were trained")
+    };
+    let look = templates.look.as_ref().unwrap();
+    let wave = ClassId(0);
+    assert!(templates.activities.as_ref().unwrap().holds(wave) && look.classes.contains(&wave));
+    let classifier = Classifier::new(&model).unwrap();
+    for label in takes[0].labels.iter().filter(|label| label.class == "wave") {
+        let found = classify(&classifier, &cut(&takes[0], label.span));
+        assert_eq!(found.class, Some(wave), "{found:?}");
+    }
+    let take = Take::new(takes[0].clip.clone()).unwrap();
+    let found = recognize_clip(&model, &take.clip, &take.roles, take.rest()).unwrap();
+    for label in &takes[0].labels {
+        let here = found.iter().filter(|d| d.span.overlaps(label.span));
+        assert!(here.count() <= 1, "{found:?} in {label:?}");
     }
 }

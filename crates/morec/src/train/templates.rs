@@ -107,6 +107,9 @@ pub fn train(
         let activities = activities.as_ref();
         !is_held && !activities.is_some_and(|a| a.holds(sample.class))
     };
+    let goes_on =
+        |sample: &&TrainSample| activities.as_ref().is_some_and(|a| a.holds(sample.class));
+    let going_on: Vec<TrainSample> = samples.iter().filter(goes_on).cloned().collect();
     let samples = samples.into_iter().filter(has_templates).collect();
     let (samples, quiet) = moving(samples, &metric, params);
     let mut samples = templates_of(samples, set.classes.len(), params.max_templates);
@@ -169,7 +172,11 @@ pub fn train(
         }
     }
     let learned = match verifier {
-        None if judges_whole => second_look::learn(set, &samples[..taught], bones, params),
+        None if judges_whole => {
+            // What goes on is compared, too, and reported by its windows.
+            let judged = [&samples[..taught], &going_on].concat();
+            second_look::learn(set, &judged, bones, params)
+        }
         _ => None,
     };
     let (look, own) = learned.map_or((None, Vec::new()), |(look, own)| (Some(look), own));

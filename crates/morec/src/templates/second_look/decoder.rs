@@ -81,6 +81,8 @@ pub struct LookDecoder {
     body: BodyTrack,
     comparison: Comparison,
     columns: Vec<usize>,
+    /// True of classes that are activities, which their windows report.
+    goes_on: Vec<bool>,
     bound: f32,
     reach: f32,
     calibration: Option<Calibration>,
@@ -104,6 +106,7 @@ impl Clone for LookDecoder {
             body: self.body.clone(),
             comparison: self.comparison.clone(),
             columns: self.columns.clone(),
+            goes_on: self.goes_on.clone(),
             near: self.near.clone(),
             open: copy_with_room(&self.open),
             waiting: copy_with_room(&self.waiting),
@@ -139,6 +142,12 @@ impl LookDecoder {
             segment: vec![0.0; SEGMENT_ROWS * columns.len()],
             full: vec![0.0; SEGMENT_ROWS * LOOK_COLUMNS],
             columns,
+            goes_on: (0..model.classes.len())
+                .map(|class| {
+                    let activities = model.activities.as_ref();
+                    activities.is_some_and(|a| a.holds(ClassId(class as u16)))
+                })
+                .collect(),
             bound: look.bound,
             reach: look.reach,
             calibration: model.calibration,
@@ -269,7 +278,8 @@ impl LookDecoder {
         };
         self.judged[self.judgements % REMEMBERED] = look;
         self.judgements += 1;
-        if look.judged.score > self.bound.max(self.performer.least()) {
+        let is_reported = !self.goes_on[look.judged.class.index()];
+        if is_reported && look.judged.score > self.bound.max(self.performer.least()) {
             self.offer(look);
         }
     }
