@@ -333,7 +333,9 @@ fn of_sessions<'a>(
             others.into_iter(),
             &sessions.samples,
         );
-        one.add_copy("cam:1");
+        for copy in ["cam:1", "tilt:15", "occlude:0.2"] {
+            one.add_copy(copy);
+        }
         one.add_tests(
             &format!("{name} own"),
             own.iter().copied(),
