@@ -138,7 +138,7 @@ impl LookDecoder {
         let remembered = longest + 2 * LONG.ticks as usize + 16;
         Some(Self {
             body: BodyTrack::new(model.bones, &model.features, remembered),
-            comparison: Comparison::new(look),
+            comparison: Comparison::for_reports(look),
             segment: vec![0.0; SEGMENT_ROWS * columns.len()],
             full: vec![0.0; SEGMENT_ROWS * LOOK_COLUMNS],
             columns,
