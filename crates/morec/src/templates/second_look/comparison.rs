@@ -62,8 +62,6 @@ pub struct Comparison {
     farthest: f32,
     mapped: Vec<f32>,
     segment: Vec<f32>,
-    /// The segment column by column.
-    across: Vec<f32>,
     /// Of the segment.
     noise: f32,
     mean: [f32; PADDED],
@@ -90,7 +88,6 @@ impl Comparison {
             farthest: f32::MAX,
             mapped: vec![0.0; SEGMENT_ROWS * metric.dim()],
             segment: vec![0.0; SEGMENT],
-            across: vec![0.0; PADDED * ACROSS],
             noise: 0.0,
             metric,
         }
@@ -192,7 +189,6 @@ impl Comparison {
         {
             out[..dim].copy_from_slice(row);
         }
-        lay_across(&self.segment, &mut self.across);
         self.noise = noise_of(&self.segment);
         self.mean = mean_of(&self.segment);
         spread_of(&self.segment)
@@ -209,7 +205,7 @@ impl Comparison {
         // From here on it is not below `most` when the noise is taken off.
         let least = most * norm;
         let limit = (least + noise).min(least / (1.0 - NOISE_SHARE));
-        let plain = warped(taught, &self.across, limit.min(f32::MAX) * PATH_WEIGHT) / PATH_WEIGHT;
+        let plain = warped(taught, &self.segment, limit.min(f32::MAX) * PATH_WEIGHT) / PATH_WEIGHT;
         (plain - noise.min(NOISE_SHARE * plain)) / norm
     }
 }
@@ -332,76 +328,34 @@ fn spread_of(segment: &[f32]) -> f32 {
     (square / rows - mean.sum::<f64>()).max(0.0) as f32
 }
 
-/// Cells of a row of the alignment, `2 BAND + 1`, padded to whole lanes.
-const CELLS: usize = 16;
-/// Rows whose distances are computed together.
-const BLOCK: usize = 4;
-/// Rows of a segment of which all cells of a row are read at once, padded by the band on both sides.
-const ACROSS: usize = SEGMENT_ROWS + CELLS;
-
-/// Lays out a segment column by column, each as [`ACROSS`] values: its row `j` is at place `j + BAND`.
-fn lay_across(segment: &[f32], across: &mut [f32]) {
-    for (column, out) in across.chunks_exact_mut(ACROSS).enumerate() {
-        for (row, out) in segment.chunks_exact(PADDED).zip(&mut out[BAND..]) {
-            *out = row[column];
-        }
-    }
-}
-
-/// Squared distances of row `i` from all rows in its band.
-#[inline(always)]
-fn costs_of(row: &[f32], across: &[f32], i: usize) -> [f32; CELLS] {
-    let mut costs = [0.0f32; CELLS];
-    for (value, column) in row.iter().zip(across.chunks_exact(ACROSS)) {
-        let Some(near) = column[i..].first_chunk::<CELLS>() else {
-            return costs;
-        };
-        for (cost, near) in costs.iter_mut().zip(near) {
-            let apart = value - near;
-            *cost += apart * apart;
-        }
-    }
-    costs
-}
-
 /// Cost of the cheapest path that aligns all rows of both segments: steps that go on in both count twice, in one of them once (Sakoe and
-/// Chiba 1978, symmetric weights), within [`BAND`] rows of the diagonal. Any value from `limit` on where every path costs as much. `across` is
-/// the second segment as [`lay_across`] lays it out: the distances of a row from all rows in its band are computed at once.
+/// Chiba 1978, symmetric weights), within [`BAND`] rows of the diagonal. `f32::MAX` where every path costs `limit` or more.
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
-fn warped(a: &[f32], across: &[f32], limit: f32) -> f32 {
+fn warped(a: &[f32], b: &[f32], limit: f32) -> f32 {
+    const WIDTH: usize = 2 * BAND + 1;
     const OUTSIDE: f32 = f32::MAX;
-    let least = |a: f32, b: f32| if a < b { a } else { b };
-    // Of the row before, at place `j - i + BAND + 1`; one more on each side stays outside.
-    let mut before = [OUTSIDE; CELLS + 2];
-    before[BAND + 1] = 0.0;
-    let mut costs = [[0.0f32; CELLS]; BLOCK];
+    // Of the row before, at place `j - i + BAND`; one more on each side stays outside.
+    let mut before = [OUTSIDE; WIDTH + 2];
     for i in 0..SEGMENT_ROWS {
-        if i % BLOCK == 0 {
-            let rows = a[i * PADDED..].chunks_exact(PADDED);
-            for ((r, costs), row) in costs.iter_mut().enumerate().zip(rows) {
-                *costs = costs_of(row, across, i + r);
-            }
+        let mut here = [OUTSIDE; WIDTH + 2];
+        let row = &a[i * PADDED..][..PADDED];
+        let mut least = OUTSIDE;
+        for k in 0..WIDTH {
+            let Some(j) = (i + k).checked_sub(BAND).filter(|j| *j < SEGMENT_ROWS) else {
+                continue;
+            };
+            let cost = squared(row, &b[j * PADDED..][..PADDED]);
+            let total = match (i, j) {
+                (0, 0) => 2.0 * cost,
+                _ => {
+                    let both = before[k + 1] + 2.0 * cost;
+                    both.min(before[k + 2] + cost).min(here[k] + cost)
+                }
+            };
+            here[k + 1] = total;
+            least = least.min(total);
         }
-        let costs = &costs[i % BLOCK];
-        // Steps from the row before, of all cells at once; then those along the row.
-        let mut here = [OUTSIDE; CELLS + 2];
-        for (k, cost) in costs.iter().enumerate() {
-            here[k + 1] = least(before[k + 1] + 2.0 * cost, before[k + 2] + cost);
-        }
-        let first = BAND.saturating_sub(i);
-        let last = (SEGMENT_ROWS + BAND - i).min(2 * BAND + 1);
-        here[..first + 1].fill(OUTSIDE);
-        here[last + 1..].fill(OUTSIDE);
-        let (mut along, mut cheapest) = (OUTSIDE, OUTSIDE);
-        for (cell, cost) in here[first + 1..last + 1]
-            .iter_mut()
-            .zip(&costs[first..last])
-        {
-            along = least(*cell, along + cost);
-            *cell = along;
-            cheapest = least(cheapest, along);
-        }
-        if cheapest >= limit {
+        if least >= limit {
             return OUTSIDE;
         }
         before = here;
@@ -409,16 +363,17 @@ fn warped(a: &[f32], across: &[f32], limit: f32) -> f32 {
     before[BAND + 1]
 }
 
-/// Squared distance of two rows.
+#[inline(always)]
 fn squared(a: &[f32], b: &[f32]) -> f32 {
     let mut sums = [0.0f32; LANES];
-    for (a, b) in a.chunks_exact(LANES).zip(b.chunks_exact(LANES)) {
-        for lane in 0..LANES {
-            let apart = a[lane] - b[lane];
-            sums[lane] += apart * apart;
-        }
+    let (a, _) = a.as_chunks::<LANES>();
+    let (b, _) = b.as_chunks::<LANES>();
+    for (a, b) in a.iter().zip(b) {
+        let apart: [f32; LANES] = std::array::from_fn(|lane| a[lane] - b[lane]);
+        sums = std::array::from_fn(|lane| sums[lane] + apart[lane] * apart[lane]);
     }
-    sums.into_iter().sum()
+    let [a, b, c, d, e, f, g, h] = sums;
+    ((a + e) + (c + g)) + ((b + f) + (d + h))
 }
 
 /// The cost of aligning rows of one value each.
@@ -431,7 +386,5 @@ pub(super) fn warped_rows(a: &[f64], b: &[f64]) -> f32 {
         }
         rows
     };
-    let mut across = vec![0.0; PADDED * ACROSS];
-    lay_across(&spread(b), &mut across);
-    warped(&spread(a), &across, f32::MAX)
+    warped(&spread(a), &spread(b), f32::MAX)
 }
