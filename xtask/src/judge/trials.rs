@@ -280,6 +280,24 @@ fn cut_clips(sets: &DataSets) -> Vec<Trial<'_>> {
             all.push(trial);
         }
     }
+    // All others teach.
+    let set = &sets.gestures;
+    let wanted: Vec<Sample> = (set.samples.iter().filter(is_gesture)).cloned().collect();
+    let row = "gestures clips by person";
+    for mut trial in of_folds(row, set, &wanted, FoldBy::Person, usize::MAX) {
+        let others = trial
+            .tests
+            .iter()
+            .filter_map(|t| t.clip.person.clone())
+            .collect::<BTreeSet<_>>();
+        let is_idle = |c: &&TrainClip| {
+            c.name.contains("_dontcare_") && c.person.as_ref().is_some_and(|p| others.contains(p))
+        };
+        trial.tests.retain(|t| !t.truths.is_empty());
+        trial.add_unknown(row, &set.clips.iter().filter(is_idle).collect::<Vec<_>>());
+        trial.add_classified();
+        all.push(trial);
+    }
     all
 }
 

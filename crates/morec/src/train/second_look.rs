@@ -35,8 +35,8 @@ const LEAST_BOUND: f32 = 0.45;
 const MOST_BOUND: f32 = 0.90;
 /// The bound of fewer classes: what is reported wrongly there is mostly motion like the classes, which background does not show.
 const BOUND_OF_FEW: f32 = 0.60;
-/// Taught motions are parts of a flow if the median share of a label in common with its short growth is below this.
-const FLOW_SHARE: f32 = 0.6;
+/// Taught motions are parts of a flow if the median share of a short growth that lies within its label is below this.
+const FLOW_SHARE: f32 = 0.75;
 /// Stretches of the atlas, their durations in seconds, and the pace that they have at least.
 const ATLAS: usize = 200;
 const ATLAS_SECS: [f64; 7] = [0.5, 0.7, 1.0, 1.4, 2.0, 2.8, 4.0];
@@ -54,7 +54,8 @@ pub fn are_apart(
 ) -> bool {
     let tracks = Tracks::new(set, bones, params);
     let mut shares = tracks.each(samples, |track, sample| {
-        in_common(&grown_of(track, &sample.ticks)[0], &sample.ticks)
+        let grown = &grown_of(track, &sample.ticks)[0];
+        overlap(grown, &sample.ticks) as f32 / grown.len().max(1) as f32
     });
     shares.sort_by(f32::total_cmp);
     shares
@@ -247,12 +248,6 @@ impl<'a> Tracks<'a> {
             rows.flat_map(Rows::into_values).collect(),
         )
     }
-}
-
-/// Intersection over union.
-fn in_common(a: &Range<usize>, b: &Range<usize>) -> f32 {
-    let shared = overlap(a, b);
-    shared as f32 / (a.len() + b.len() - shared).max(1) as f32
 }
 
 /// False alarms of background motion that did not set the bound.
