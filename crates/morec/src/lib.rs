@@ -84,7 +84,7 @@
 //!
 //! # Features
 //!
-//! All are on by default but `fbx`.
+//! All are on by default but `fbx` and `hdf5`.
 //!
 //! | feature | has |
 //! |---|---|
@@ -94,6 +94,7 @@
 //! | `train` | labels, training, measuring, synthetic people; includes `formats` and `live` |
 //! | `report` | pages and pictures: [`report`], [`plot`], [`reproduce`]; includes `train` |
 //! | `fbx` | FBX files, which takes a C compiler |
+//! | `hdf5` | HDF5 files of pose estimators |
 //!
 //! # Notation
 //!

@@ -16,6 +16,7 @@ use crate::formats::{Format, FormatInput, Limits, ParseError, Place, Warning};
 #[cfg(feature = "fbx")]
 use crate::import::SignedAxis;
 use crate::import::{ImportOptions, Stated, Take, normalize};
+use crate::roles::mapping::Mapping;
 
 use super::neighbours::Around;
 use super::sequence::FrameFiles;
@@ -184,6 +185,7 @@ impl FileReader {
                     name: &stem,
                     rate_hz: self.rate_hz,
                     positions: self.positions,
+                    planar: self.import.mapping.as_ref().is_some_and(Mapping::is_custom),
                     beside: &|name| around.file(path, name),
                     limits: &self.limits,
                 };

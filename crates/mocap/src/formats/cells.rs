@@ -184,6 +184,11 @@ fn bare(cell: &str) -> &str {
     inner.unwrap_or(cell).trim()
 }
 
+/// True if a word is one of `words`, which blanks separate.
+pub(super) fn is_among(words: &str, word: &str) -> bool {
+    words.split(' ').any(|known| known == word)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -4,7 +4,6 @@ use std::io;
 
 use super::bvh::PositionChannels;
 use super::head::Head;
-use super::timing::rate_not_used;
 use super::{Limits, Loaded, ParseError, Place};
 use crate::math::Axis;
 
@@ -36,10 +35,12 @@ pub struct FormatInput<'a> {
     pub bytes: &'a [u8],
     /// Name for its clip.
     pub name: &'a str,
-    /// Replaces the rate where the file holds frames; keys in seconds keep theirs.
+    /// Replaces the rate of frames, and that at which keys in seconds are sampled.
     pub rate_hz: Option<f64>,
     /// Meaning of BVH position channels below the root; decided from the data if not given.
     pub positions: Option<PositionChannels>,
+    /// True if points in two dimensions are read, all in one plane, in place of refusing them: those of a custom skeleton.
+    pub planar: bool,
     /// The files beside it.
     pub beside: Beside<'a>,
     /// Limits of what it may declare.
@@ -51,14 +52,6 @@ impl FormatInput<'_> {
     pub(super) fn at_rate(&self, mut loaded: Loaded) -> Loaded {
         for clip in &mut loaded.clips {
             clip.rate_hz = self.rate_hz.unwrap_or(clip.rate_hz);
-        }
-        loaded
-    }
-
-    /// Its clips, whose keys have times: a rate in their place is not used, with a warning.
-    pub(super) fn timed(&self, mut loaded: Loaded) -> Loaded {
-        if self.rate_hz.is_some() {
-            loaded.warnings.push(rate_not_used());
         }
         loaded
     }

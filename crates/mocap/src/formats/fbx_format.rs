@@ -17,7 +17,7 @@ pub(super) const FORMAT: FormatDescriptor = FormatDescriptor {
 
 #[cfg(feature = "fbx")]
 fn read(file: &FormatInput<'_>) -> Result<Loaded, ParseError> {
-    Ok(file.timed(super::fbx::read(file.bytes, file.name, file.limits)?))
+    Ok(super::fbx::read_stated(file.bytes, file.name, file.rate_hz, file.limits)?.0)
 }
 
 #[cfg(not(feature = "fbx"))]

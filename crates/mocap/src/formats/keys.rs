@@ -85,6 +85,16 @@ pub(super) fn grid(mut times: Vec<f64>, preferred_hz: Option<f64>) -> Option<Key
     Some(at_rate(first, last, rate_hz, found.is_some()))
 }
 
+/// The grid of a given rate from the first of `times` to the last, else [`grid`].
+pub(super) fn grid_at(times: Vec<f64>, given_hz: Option<f64>) -> Option<KeyGrid> {
+    let Some(rate_hz) = given_hz else {
+        return grid(times, None);
+    };
+    let finite = || times.iter().copied().filter(|time| time.is_finite());
+    let (first, last) = (finite().reduce(f64::min)?, finite().reduce(f64::max)?);
+    Some(at_rate(first, last, rate_hz, true))
+}
+
 /// The grid of `rate_hz` from one time to another.
 pub(super) fn at_rate(first: f64, last: f64, rate_hz: f64, exact: bool) -> KeyGrid {
     let steps = (last - first) * rate_hz;

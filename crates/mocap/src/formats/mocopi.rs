@@ -6,9 +6,11 @@
 
 use super::builder::{ClipBuilder, check_size};
 use super::descriptor::FormatDescriptor;
+use super::timing::{Clock, Schedule, Stamps};
 use super::{Limits, Loaded, ParseError, Place, Warning, keys};
 use crate::clip::Joint;
 use crate::math::{Axis, Quat, Vec3};
+use crate::resample;
 
 pub(super) const FORMAT: FormatDescriptor = FormatDescriptor {
     name: "mocopi",
@@ -88,11 +90,14 @@ pub fn read(bytes: &[u8], name: &str, limits: &Limits) -> Result<Loaded, ParseEr
         }
     };
     let (bones, joints) = joints(bones);
-    check_size(recording.frames.len(), joints.len(), 0, bytes.len(), limits)?;
     let rate_hz = recording.rate(&mut warnings);
+    let stamps = recording.stamps(rate_hz);
+    let schedule = Schedule::of(&stamps, &Clock::settled(rate_hz), &mut warnings);
+    let frames = schedule.frames(recording.frames.len());
+    check_size(frames.len(), joints.len(), 0, bytes.len(), limits)?;
     let mut builder = ClipBuilder::new(joints);
-    for frame in &recording.frames {
-        match frame.in_order(&bones) {
+    for frame in frames {
+        match frame.and_then(|at| recording.frames[at].in_order(&bones)) {
             Some((rotations, positions)) => builder.push_local(rotations, positions),
             None => builder.push_missing(),
         }
@@ -116,6 +121,7 @@ struct MocopiBone {
 #[derive(Default)]
 struct MocopiFrame {
     time_secs: Option<f64>,
+    number: Option<f64>,
     bones: Vec<MocopiBone>,
 }
 
@@ -153,8 +159,12 @@ impl PacketFile {
                     let mut frame = MocopiFrame::default();
                     for part in Boxes::of(value, at) {
                         let (name, value, _) = part?;
-                        if let (b"uttm", Ok(bytes)) = (&name, value.try_into()) {
-                            frame.time_secs = Some(f64::from_le_bytes(bytes));
+                        let time = value.try_into().map(f64::from_le_bytes);
+                        let number = value.try_into().map(u32::from_le_bytes);
+                        match (&name, time, number) {
+                            (b"uttm", Ok(time), _) => frame.time_secs = Some(time),
+                            (b"fnum", _, Ok(number)) => frame.number = Some(f64::from(number)),
+                            _ => {}
                         }
                     }
                     read_bones(value, at, *b"btrs", *b"btdt", &mut frame.bones)?;
@@ -167,12 +177,24 @@ impl PacketFile {
     }
 
     fn rate(&self, warnings: &mut Vec<Warning>) -> f64 {
-        let times: Vec<f64> = self.frames.iter().filter_map(|f| f.time_secs).collect();
-        let span = match times[..] {
-            [first, .., last] if times.len() == self.frames.len() => last - first,
-            _ => 0.0,
+        let step = |pair: &[MocopiFrame]| {
+            let secs = pair[1].time_secs? - pair[0].time_secs?;
+            // Lost packets lie between numbers, not between frames.
+            let frames = pair[1]
+                .number
+                .zip(pair[0].number)
+                .map_or(1.0, |(b, a)| b - a);
+            (secs > 0.0 && frames > 0.0).then_some((secs, frames))
         };
-        let hz = (times.len().saturating_sub(1)) as f64 / span;
+        let steps: Vec<(f64, f64)> = self.frames.windows(2).filter_map(step).collect();
+        let (secs, frames) = steps
+            .iter()
+            .fold((0.0, 0.0), |sum, step| (sum.0 + step.0, sum.1 + step.1));
+        let numbered = self.frames.iter().all(|frame| frame.number.is_some());
+        let each: Vec<f64> = steps.iter().map(|(secs, _)| *secs).collect();
+        // The mean, but for pauses where no number tells what was lost.
+        let mean = 1.0 / resample::usual_step(&each).unwrap_or(f64::NAN);
+        let hz = if numbered { frames / secs } else { mean };
         if !(hz.is_finite() && (1.0..=1000.0).contains(&hz)) {
             let text = format!("no usable times in the packets; {ASSUMED_HZ} Hz assumed");
             warnings.push(Warning::new(Place::File, text));
@@ -183,6 +205,27 @@ impl PacketFile {
             Some(usual) => usual,
             None => hz,
         }
+    }
+
+    /// Numbers of the frames: as packets have them, else by their times where a pause is longer than jitter.
+    fn stamps(&self, rate_hz: f64) -> Stamps {
+        /// Steps that are a pause.
+        const PAUSE: f64 = 2.5;
+        let mut at = 0.0;
+        let mut before: Option<f64> = None;
+        let by_time = self.frames.iter().map(|frame| {
+            let steps = frame.time_secs.zip(before).map(|(b, a)| (b - a) * rate_hz);
+            let lost = steps.filter(|steps| *steps > PAUSE).map_or(1.0, f64::round);
+            at += if before.is_some() { lost } else { 0.0 };
+            before = frame.time_secs;
+            Some(at)
+        });
+        let numbers: Vec<Option<f64>> = match self.frames.iter().all(|f| f.number.is_some()) {
+            true => self.frames.iter().map(|frame| frame.number).collect(),
+            false if self.frames.iter().all(|f| f.time_secs.is_some()) => by_time.collect(),
+            false => Vec::new(),
+        };
+        Stamps::none(self.frames.len()).numbered(numbers)
     }
 }
 
@@ -365,6 +408,37 @@ mod tests {
                 mangle::check(&loaded);
             }
         });
+    }
+
+    #[test]
+    fn packets_that_were_lost_are_gaps() {
+        let turned = [0.0, 0.0, 0.6, 0.8, 0.0, 0.1, 0.0];
+        let numbered = |number: u32| {
+            let packet = frame(0.02 * f64::from(number), turned);
+            let (head, body) = packet.split_at(packet.len() - inner(&packet));
+            let number = boxed(b"fnum", &number.to_le_bytes());
+            let body = [&number, body].concat();
+            let head = &head[..head.len() - 8];
+            [head, &boxed(b"fram", &body)].concat()
+        };
+        for lost in [[0, 1, 2, 6, 7], [0, 2, 1, 6, 7]] {
+            let packets: Vec<u8> = lost.into_iter().flat_map(numbered).collect();
+            let loaded = read(&packets, "f", &Limits::default()).unwrap();
+            let clip = &loaded.clips[0];
+            assert_eq!((clip.frames, clip.rate_hz), (8, 50.0), "{lost:?}");
+            assert_eq!(clip.repaired, [3..6]);
+        }
+        // Without numbers, pauses in the times tell.
+        let times = [0.0, 0.02, 0.041, 0.12, 0.14];
+        let packets: Vec<u8> = times.iter().flat_map(|time| frame(*time, turned)).collect();
+        let loaded = read(&packets, "f", &Limits::default()).unwrap();
+        assert_eq!((loaded.clips[0].frames, loaded.clips[0].rate_hz), (8, 50.0));
+    }
+
+    /// Bytes within the last box of a packet.
+    fn inner(packet: &[u8]) -> usize {
+        let (_, _, at) = Boxes::of(packet, 0).filter_map(Result::ok).last().unwrap();
+        packet.len() - at as usize
     }
 
     #[test]

@@ -38,6 +38,9 @@ mod encoding;
 pub mod fbx;
 mod fbx_format;
 pub mod gltf;
+#[cfg(feature = "hdf5")]
+pub mod hdf5;
+mod hdf5_format;
 mod head;
 pub mod htr;
 mod json;
@@ -120,6 +123,8 @@ pub enum Format {
     OpenSimModel,
     /// Motion of DeepMimic's humanoid, JSON.
     DeepMimic,
+    /// Poses of DeepLabCut, SLEAP and NWB in HDF5.
+    Hdf5,
 }
 
 /// Every format that is read, in the order in which its content is asked for.
@@ -140,6 +145,7 @@ const READ: &[(Format, FormatDescriptor)] = &[
     (Format::DeepMimic, deepmimic::FORMAT),
     (Format::Landmarks, landmarks::FORMAT),
     (Format::Numpy, numpy::FORMAT),
+    (Format::Hdf5, hdf5_format::FORMAT),
     (Format::Smd, smd::FORMAT),
     (Format::Htr, htr::FORMAT),
     (Format::Csm, csm::FORMAT),

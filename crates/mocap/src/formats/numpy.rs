@@ -23,7 +23,16 @@ pub(super) const FORMAT: FormatDescriptor = FormatDescriptor {
     endings: &["npy"],
     looks_so: |h| h.bytes.starts_with(b"\x93NUMPY"),
     up: None,
-    read: |file| Ok(file.at_rate(read(file.bytes, file.name, file.rate_hz, file.limits)?)),
+    read: |file| {
+        let loaded = read_as(
+            file.bytes,
+            file.name,
+            file.rate_hz,
+            file.limits,
+            file.planar,
+        )?;
+        Ok(file.at_rate(loaded))
+    },
 };
 
 /// Frames a second where nothing says.
@@ -32,64 +41,32 @@ const ASSUMED_HZ: f64 = 30.0;
 const MOST_PEOPLE: usize = 10;
 
 /// Keys of positions, the likeliest first.
-const POSITIONS: [&str; 20] = [
-    "positions",
-    "positions_3d",
-    "world_positions",
-    "global_positions",
-    "joint_positions",
-    "keypoints_3d",
-    "keypoints3d",
-    "joints_3d",
-    "joints3d",
-    "joints",
-    "pose3d",
-    "poses3d",
-    "poses_3d",
-    "pred_joints",
-    "motion",
-    "skeleton",
-    "keypoints",
-    "pos",
-    "xyz",
-    "points",
-];
-const NAMES: [&str; 8] = [
-    "joint_names",
-    "names",
-    "labels",
-    "keypoint_names",
-    "joints_names",
-    "marker_names",
-    "bodyparts",
-    "landmark_names",
-];
-const TIMES: [&str; 7] = [
-    "times",
-    "timestamps",
-    "time",
-    "timestamp",
-    "t",
-    "time_secs",
-    "times_secs",
-];
-const RATE: [&str; 11] = [
-    "sampling_rate",
-    "sample_rate",
-    "frequency",
-    "hz",
-    "rate_hz",
-    "fps",
-    "frame_rate",
-    "framerate",
-    "mocap_framerate",
-    "mocap_frame_rate",
-    "rate",
-];
+const POSITIONS: &str = "positions positions_3d world_positions global_positions joint_positions keypoints_3d keypoints3d joints_3d joints3d joints pose3d poses3d poses_3d pred_joints motion skeleton keypoints pos xyz points";
+const NAMES: &str =
+    "joint_names names labels keypoint_names joints_names marker_names bodyparts landmark_names";
+const TIMES: &str = "times timestamps time timestamp t time_secs times_secs";
+const RATE: &str = "sampling_rate sample_rate frequency hz rate_hz fps frame_rate framerate mocap_framerate mocap_frame_rate rate";
 /// True if an archive with files of these paths may hold positions and no poses of SMPL.
 pub fn has_positions(paths: &[String]) -> bool {
     let has = |key: &str| paths.iter().any(|path| key_of(path) == key);
-    POSITIONS.iter().any(|key| has(key)) && !super::smpl::has_poses(paths)
+    POSITIONS.split(' ').any(has) && !super::smpl::has_poses(paths)
+}
+
+/// The likeliest key of positions, and of names.
+pub(super) const POSITION: &str = "positions";
+#[cfg(feature = "hdf5")]
+pub(super) const NAME: &str = "joint_names";
+
+/// True of a key of points' names.
+pub(super) fn is_name(key: &str) -> bool {
+    NAMES.split(' ').any(|known| known == key)
+}
+
+/// True of a key of positions, times or a rate.
+pub(super) fn is_number(key: &str) -> bool {
+    let all = [POSITIONS, TIMES, RATE];
+    all.iter()
+        .any(|keys| keys.split(' ').any(|known| known == key))
 }
 
 fn key_of(path: &str) -> &str {
@@ -106,13 +83,22 @@ pub fn read(
     rate_hz: Option<f64>,
     limits: &Limits,
 ) -> Result<Loaded, ParseError> {
+    read_as(bytes, name, rate_hz, limits, false)
+}
+
+fn read_as(
+    bytes: &[u8],
+    name: &str,
+    rate_hz: Option<f64>,
+    limits: &Limits,
+    planar: bool,
+) -> Result<Loaded, ParseError> {
     let mut archive = ArrayArchive::default();
     let mut limits = limits.of_packed(bytes.len());
     if bytes.starts_with(b"PK") {
-        let keys = || POSITIONS.iter().chain(&NAMES).chain(&RATE).chain(&TIMES);
         let wanted = |path: &str| {
             let key = key_of(path);
-            SKELETON.contains(&key) || keys().any(|known| *known == key)
+            SKELETON.contains(&key) || is_name(key) || is_number(key)
         };
         for member in container::unzip(bytes, &wanted, limits.memory)? {
             limits = limits.without(member.bytes.len())?;
@@ -122,18 +108,25 @@ pub fn read(
             return Ok(loaded);
         }
     } else {
-        archive.add(POSITIONS[0], bytes, &mut limits)?;
+        archive.add(POSITION, bytes, &mut limits)?;
     }
+    of_arrays(&archive, bytes.len(), name, rate_hz, &limits, planar)
+}
+
+/// Reads arrays that are at hand, of a file of `bytes` bytes; as [`read`].
+pub(super) fn of_arrays(
+    archive: &ArrayArchive,
+    bytes: usize,
+    name: &str,
+    rate_hz: Option<f64>,
+    limits: &Limits,
+    planar: bool,
+) -> Result<Loaded, ParseError> {
     let array = archive
-        .first(&POSITIONS)
+        .first(POSITIONS)
         .ok_or_else(|| ParseError::new(Place::File, "an array of positions", "none"))?;
-    let shape = PointArray::of(array)?;
-    check_size(
-        shape.points * shape.people,
-        shape.frames,
-        bytes.len(),
-        &limits,
-    )?;
+    let shape = PointArray::of(array, planar)?;
+    check_size(shape.points * shape.people, shape.frames, bytes, limits)?;
     if shape.frames > limits.frames {
         let expected = format!("at most {} frames", limits.frames);
         return Err(ParseError::new(
@@ -143,10 +136,10 @@ pub fn read(
         ));
     }
     let mut warnings = Vec::new();
-    let names = NAMES.iter().find_map(|key| archive.texts.get(*key));
+    let names = NAMES.split(' ').find_map(|key| archive.texts.get(key));
     let points = shape.points(array, names.map(Vec::as_slice), &mut warnings);
     let stated = archive
-        .first(&RATE)
+        .first(RATE)
         .and_then(|rate| rate.values.first().copied());
     let clock = Clock {
         given_hz: rate_hz,
@@ -154,7 +147,7 @@ pub fn read(
         assumed_hz: ASSUMED_HZ,
     };
     let times = archive
-        .first(&TIMES)
+        .first(TIMES)
         .filter(|times| times.values.len() == shape.frames);
     let stamps = match times {
         Some(times) => Stamps::of_values(times.values.iter().copied().map(Some).collect(), None),
@@ -166,14 +159,14 @@ pub fn read(
         clock,
         metres_per_unit: None,
     };
-    timed.into_loaded(name, warnings, &limits)
+    timed.into_loaded(name, warnings, limits)
 }
 
 /// Arrays found in an archive.
 #[derive(Default)]
-struct ArrayArchive {
-    numbers: BTreeMap<String, Array>,
-    texts: BTreeMap<String, Vec<String>>,
+pub(super) struct ArrayArchive {
+    pub(super) numbers: BTreeMap<String, Array>,
+    pub(super) texts: BTreeMap<String, Vec<String>>,
 }
 
 impl ArrayArchive {
@@ -196,8 +189,8 @@ impl ArrayArchive {
         Ok(())
     }
 
-    fn first(&self, keys: &[&str]) -> Option<&Array> {
-        keys.iter().find_map(|key| self.numbers.get(*key))
+    fn first(&self, keys: &str) -> Option<&Array> {
+        keys.split(' ').find_map(|key| self.numbers.get(key))
     }
 }
 
@@ -211,7 +204,7 @@ struct PointArray {
 }
 
 impl PointArray {
-    fn of(array: &Array) -> Result<Self, ParseError> {
+    fn of(array: &Array, planar: bool) -> Result<Self, ParseError> {
         let known = |numbers: usize| {
             let points = (numbers.is_multiple_of(3)).then_some(numbers / 3)?;
             let fits = numbered_counts()
@@ -232,6 +225,10 @@ impl PointArray {
                 shape(frames, people, points, width)
             }
             [frames, points, width @ 3..=4] => shape(frames, 1, points, width),
+            [frames, people @ 1..=MOST_PEOPLE, points, 2] if planar => {
+                shape(frames, people, points, 2)
+            }
+            [frames, points, 2] if planar => shape(frames, 1, points, 2),
             [.., points, 2] if points > 2 => {
                 return Err(refuse(
                     array,
@@ -281,8 +278,9 @@ impl PointArray {
             for point in 0..kept {
                 let place = |frame: usize| {
                     let at = ((frame * people + person) * points + point) * width;
-                    match &array.values[at..at + 3] {
+                    match &array.values[at..at + width.min(3)] {
                         [x, y, z] => Vec3::new(*x, *y, *z),
+                        [x, y] => Vec3::new(*x, *y, 0.0),
                         _ => UNSEEN,
                     }
                 };
@@ -359,7 +357,7 @@ fn skeleton(
         }
     }
     let stated = archive
-        .first(&RATE)
+        .first(RATE)
         .and_then(|rate| rate.values.first().copied());
     let usable = |rate: &f64| (1e-3..=1e5).contains(rate);
     let rate_hz = rate_hz.or(stated.filter(usable)).unwrap_or(ASSUMED_HZ);

@@ -22,6 +22,17 @@ pub(super) struct Clock {
     pub(super) assumed_hz: f64,
 }
 
+impl Clock {
+    /// A rate that is known by now: frames are where their numbers are.
+    pub(super) fn settled(rate_hz: f64) -> Self {
+        Self {
+            given_hz: Some(rate_hz),
+            stated_hz: None,
+            assumed_hz: rate_hz,
+        }
+    }
+}
+
 /// When frames are, as far as a file says it.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Stamps {
@@ -117,12 +128,6 @@ impl TimedPoints {
     }
 }
 
-/// Warning about a rate given for a file whose keys stand at times.
-pub(super) fn rate_not_used() -> Warning {
-    let text = "its keys stand at times, not frames; the rate given is not used";
-    Warning::new(Place::File, text)
-}
-
 impl Schedule {
     /// The one rule for the times of frames. A rate that the user gives has priority, then the file's times, then its frame numbers. Times
     /// and numbers are sorted and repeated ones dropped; missing frames become gaps, irregular times are interpolated. Without times
@@ -193,6 +198,17 @@ impl Schedule {
                 }
             };
             point.positions = places.iter().map(at).collect();
+        }
+    }
+
+    /// For each frame the one of the file's `all` that it is; `None` in a gap.
+    pub(super) fn frames(&self, all: usize) -> Vec<Option<usize>> {
+        match &self.places {
+            Some(places) => {
+                let frame = |at: &BetweenFrames| at.known.then_some(at.before);
+                places.iter().map(frame).collect()
+            }
+            None => (0..all).map(Some).collect(),
         }
     }
 

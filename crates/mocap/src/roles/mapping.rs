@@ -14,7 +14,7 @@
 
 use std::fmt::Write;
 
-use super::points::{PointJoint, said};
+use super::points::{PointJoint, recognise, said};
 use super::{Role, RoleMap};
 use crate::clip::Skeleton;
 use crate::parse_error::{self, ParseError};
@@ -62,6 +62,12 @@ impl Mapping {
             entries.push(entry);
         }
         Ok(Self { entries })
+    }
+
+    /// True if it says what the points of a custom skeleton are.
+    pub fn is_custom(&self) -> bool {
+        let is_custom = |entry: &MappingEntry| entry.role.is_custom() && entry.joint.is_some();
+        self.entries.iter().any(is_custom)
     }
 
     /// For each role that is named, the place that plays it among joints of these names, or `None` for nobody.
@@ -175,4 +181,113 @@ pub fn write(map: &RoleMap, skeleton: &Skeleton) -> String {
         let _ = writeln!(text, "{role}\t{name}");
     }
     text
+}
+
+/// Markers that make each role, beside those of known sets, for people who name theirs otherwise.
+const MADE_BY: [(&str, &str); 9] = [
+    (
+        "hips",
+        "the pelvis, as LASI+RASI+LPSI+RPSI or LASI+RASI+SACR",
+    ),
+    (
+        "thigh",
+        "the hip joint: from the pelvis by itself, else the trochanter (GTR) or a joint centre (HJC)",
+    ),
+    (
+        "shin",
+        "the knee: both sides of it, as KNE+KNM or LFE+MFE, or one",
+    ),
+    (
+        "foot",
+        "the ankle: both sides of it, as ANK+ANM or LMAL+MMAL, or one",
+    ),
+    ("arm", "the shoulder: SHO or the acromion ACR"),
+    (
+        "forearm",
+        "the elbow: both sides of it, as ELB+ELM or LEL+MEL, or one",
+    ),
+    (
+        "hand",
+        "the wrist: both sides of it, as WRA+WRB or RAD+ULN, or one",
+    ),
+    ("neck", "C7+CLAV or C7"),
+    ("head", "the middle of the head, as LFHD+RFHD+LBHD+RBHD"),
+];
+
+/// A mapping file to start from for points of these names: the roles that are found in their names, and for each of the others which
+/// markers would make it, to be filled in. Lines that wait for that are comments.
+pub fn template(names: &[&str]) -> String {
+    let found = recognise(names);
+    let known = found.as_ref().map_or("none", |found| found.set);
+    let mut text = format!(
+        "# Roles for `--roles`. A role, a tab, and a marker, or markers between + for their middle; - for none.\n# Known set: {known}\n"
+    );
+    let roles = found.map_or_else(Vec::new, |found| found.roles);
+    let mut used = Vec::new();
+    for role in Role::BODY {
+        let place = roles
+            .iter()
+            .find(|(known, _)| *known == role)
+            .map(|(_, place)| place);
+        let bare = role
+            .name()
+            .trim_start_matches("left_")
+            .trim_start_matches("right_");
+        let made_by = MADE_BY.iter().find(|(made, _)| *made == bare);
+        // Writing to a string cannot fail.
+        let _ = match (place, made_by) {
+            (Some(place), _) => {
+                used.extend(place.points());
+                let of: Vec<&str> = place.points().iter().map(|&point| names[point]).collect();
+                let is_middle = match place {
+                    PointJoint::Point(_) => true,
+                    PointJoint::Middle(parts) => parts.iter().all(|part| part.single().is_some()),
+                    PointJoint::HipCentre { .. } => false,
+                };
+                match is_middle {
+                    true => writeln!(text, "{role}\t{}", of.join("+")),
+                    false => writeln!(text, "# {role} is found from {}", of.join(", ")),
+                }
+            }
+            (None, Some((_, how))) => writeln!(text, "# {role}\t{how}"),
+            (None, None) => Ok(()),
+        };
+    }
+    let others = (0..names.len()).filter(|point| !used.contains(point));
+    let others: Vec<&str> = others.map(|point| names[point]).collect();
+    if !others.is_empty() {
+        let _ = writeln!(text, "# Markers without a role: {}", others.join(", "));
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_template_is_read_back_and_says_what_is_missing() {
+        let names = [
+            "LASI", "RASI", "LPSI", "RPSI", "LKNE", "LKNM", "RKNE", "RKNM", "LANK", "RANK", "LSHO",
+            "RSHO", "M7",
+        ];
+        let text = template(&names);
+        assert!(text.contains("\nhips\tLASI+RASI+LPSI+RPSI\n"), "{text}");
+        assert!(text.contains("\nleft_shin\tLKNE+LKNM\n"), "{text}");
+        assert!(text.contains("# left_thigh is found from LASI"), "{text}");
+        assert!(text.contains("# left_hand\tthe wrist"), "{text}");
+        assert!(text.contains("without a role: M7"), "{text}");
+        let mapping = Mapping::read(text.as_bytes()).unwrap();
+        let places = mapping.places(&names).unwrap();
+        assert!(places.iter().all(|(_, place)| place.is_some()), "{text}");
+        let unknown = template(&["B1", "B2", "B3"]);
+        assert!(unknown.contains("Known set: none"), "{unknown}");
+        assert!(
+            Mapping::read(unknown.as_bytes())
+                .unwrap()
+                .places(&["B1"])
+                .unwrap()
+                .is_empty()
+        );
+    }
 }

@@ -29,156 +29,53 @@ pub use pairs::RolesFound;
 
 use std::fmt;
 
-/// A part of the body, a point of a hand or a point of a custom skeleton. A part of the body is played by the joint at its near end (the
-/// thigh by the hip joint, the shin by the knee, the hand by the wrist); a finger has four points from its base (1) to its tip. A
-/// custom skeleton, of whatever moves and is no person, has the points that a [mapping] says: `Point1` is its root. `Face` is any point
-/// straight before the head, where a headset looks: it gives a head and two hands their heading.
-#[derive(
-    Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
-)]
-#[serde(rename_all = "snake_case")]
-#[repr(u8)]
-#[allow(missing_docs)] // The names say it all.
-pub enum Role {
-    Hips,
-    LeftThigh,
-    LeftShin,
-    LeftFoot,
-    RightThigh,
-    RightShin,
-    RightFoot,
-    Torso,
-    Neck,
-    Head,
-    LeftShoulder,
-    LeftArm,
-    LeftForearm,
-    LeftHand,
-    RightShoulder,
-    RightArm,
-    RightForearm,
-    RightHand,
-    LeftPalm,
-    #[serde(rename = "left_thumb_1")]
-    LeftThumb1,
-    #[serde(rename = "left_thumb_2")]
-    LeftThumb2,
-    #[serde(rename = "left_thumb_3")]
-    LeftThumb3,
-    LeftThumbTip,
-    #[serde(rename = "left_index_1")]
-    LeftIndex1,
-    #[serde(rename = "left_index_2")]
-    LeftIndex2,
-    #[serde(rename = "left_index_3")]
-    LeftIndex3,
-    LeftIndexTip,
-    #[serde(rename = "left_middle_1")]
-    LeftMiddle1,
-    #[serde(rename = "left_middle_2")]
-    LeftMiddle2,
-    #[serde(rename = "left_middle_3")]
-    LeftMiddle3,
-    LeftMiddleTip,
-    #[serde(rename = "left_ring_1")]
-    LeftRing1,
-    #[serde(rename = "left_ring_2")]
-    LeftRing2,
-    #[serde(rename = "left_ring_3")]
-    LeftRing3,
-    LeftRingTip,
-    #[serde(rename = "left_little_1")]
-    LeftLittle1,
-    #[serde(rename = "left_little_2")]
-    LeftLittle2,
-    #[serde(rename = "left_little_3")]
-    LeftLittle3,
-    LeftLittleTip,
-    RightPalm,
-    #[serde(rename = "right_thumb_1")]
-    RightThumb1,
-    #[serde(rename = "right_thumb_2")]
-    RightThumb2,
-    #[serde(rename = "right_thumb_3")]
-    RightThumb3,
-    RightThumbTip,
-    #[serde(rename = "right_index_1")]
-    RightIndex1,
-    #[serde(rename = "right_index_2")]
-    RightIndex2,
-    #[serde(rename = "right_index_3")]
-    RightIndex3,
-    RightIndexTip,
-    #[serde(rename = "right_middle_1")]
-    RightMiddle1,
-    #[serde(rename = "right_middle_2")]
-    RightMiddle2,
-    #[serde(rename = "right_middle_3")]
-    RightMiddle3,
-    RightMiddleTip,
-    #[serde(rename = "right_ring_1")]
-    RightRing1,
-    #[serde(rename = "right_ring_2")]
-    RightRing2,
-    #[serde(rename = "right_ring_3")]
-    RightRing3,
-    RightRingTip,
-    #[serde(rename = "right_little_1")]
-    RightLittle1,
-    #[serde(rename = "right_little_2")]
-    RightLittle2,
-    #[serde(rename = "right_little_3")]
-    RightLittle3,
-    RightLittleTip,
-    #[serde(rename = "point_1")]
-    Point1,
-    #[serde(rename = "point_2")]
-    Point2,
-    #[serde(rename = "point_3")]
-    Point3,
-    #[serde(rename = "point_4")]
-    Point4,
-    #[serde(rename = "point_5")]
-    Point5,
-    #[serde(rename = "point_6")]
-    Point6,
-    #[serde(rename = "point_7")]
-    Point7,
-    #[serde(rename = "point_8")]
-    Point8,
-    #[serde(rename = "left_point_1")]
-    LeftPoint1,
-    #[serde(rename = "left_point_2")]
-    LeftPoint2,
-    #[serde(rename = "left_point_3")]
-    LeftPoint3,
-    #[serde(rename = "left_point_4")]
-    LeftPoint4,
-    #[serde(rename = "left_point_5")]
-    LeftPoint5,
-    #[serde(rename = "left_point_6")]
-    LeftPoint6,
-    #[serde(rename = "left_point_7")]
-    LeftPoint7,
-    #[serde(rename = "left_point_8")]
-    LeftPoint8,
-    #[serde(rename = "right_point_1")]
-    RightPoint1,
-    #[serde(rename = "right_point_2")]
-    RightPoint2,
-    #[serde(rename = "right_point_3")]
-    RightPoint3,
-    #[serde(rename = "right_point_4")]
-    RightPoint4,
-    #[serde(rename = "right_point_5")]
-    RightPoint5,
-    #[serde(rename = "right_point_6")]
-    RightPoint6,
-    #[serde(rename = "right_point_7")]
-    RightPoint7,
-    #[serde(rename = "right_point_8")]
-    RightPoint8,
-    Face,
+/// Makes the roles, each with its name, in the order of their numbers.
+macro_rules! roles {
+    ($(#[$doc:meta])* $($role:ident $name:literal,)*) => {
+        $(#[$doc])*
+        #[derive(
+            Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
+        )]
+        #[repr(u8)]
+        #[allow(missing_docs)] // The names say it all.
+        pub enum Role {
+            $(#[serde(rename = $name)] $role,)*
+        }
+
+        /// Names of the roles, in the order of their numbers.
+        const NAMES: [&str; Role::COUNT] = [$($name),*];
+
+        impl Role {
+            /// Every role, in the order of their numbers: the body, the left hand, the right hand, the points of a custom skeleton, the face.
+            pub const ALL: [Role; Role::COUNT] = [$(Role::$role),*];
+        }
+    };
+}
+
+roles! {
+    /// A part of the body, a point of a hand or a point of a custom skeleton. A part of the body is played by the joint at its near end (the
+    /// thigh by the hip joint, the shin by the knee, the hand by the wrist); a finger has four points from its base (1) to its tip. A
+    /// custom skeleton, of whatever moves and is no person, has the points that a [mapping] says: `Point1` is its root. `Face` is any point
+    /// straight before the head, where a headset looks: it gives a head and two hands their heading.
+    Hips "hips", LeftThigh "left_thigh", LeftShin "left_shin", LeftFoot "left_foot", RightThigh "right_thigh", RightShin "right_shin",
+    RightFoot "right_foot", Torso "torso", Neck "neck", Head "head", LeftShoulder "left_shoulder", LeftArm "left_arm",
+    LeftForearm "left_forearm", LeftHand "left_hand", RightShoulder "right_shoulder", RightArm "right_arm", RightForearm "right_forearm",
+    RightHand "right_hand", LeftPalm "left_palm", LeftThumb1 "left_thumb_1", LeftThumb2 "left_thumb_2", LeftThumb3 "left_thumb_3",
+    LeftThumbTip "left_thumb_tip", LeftIndex1 "left_index_1", LeftIndex2 "left_index_2", LeftIndex3 "left_index_3",
+    LeftIndexTip "left_index_tip", LeftMiddle1 "left_middle_1", LeftMiddle2 "left_middle_2", LeftMiddle3 "left_middle_3",
+    LeftMiddleTip "left_middle_tip", LeftRing1 "left_ring_1", LeftRing2 "left_ring_2", LeftRing3 "left_ring_3",
+    LeftRingTip "left_ring_tip", LeftLittle1 "left_little_1", LeftLittle2 "left_little_2", LeftLittle3 "left_little_3",
+    LeftLittleTip "left_little_tip", RightPalm "right_palm", RightThumb1 "right_thumb_1", RightThumb2 "right_thumb_2",
+    RightThumb3 "right_thumb_3", RightThumbTip "right_thumb_tip", RightIndex1 "right_index_1", RightIndex2 "right_index_2",
+    RightIndex3 "right_index_3", RightIndexTip "right_index_tip", RightMiddle1 "right_middle_1", RightMiddle2 "right_middle_2",
+    RightMiddle3 "right_middle_3", RightMiddleTip "right_middle_tip", RightRing1 "right_ring_1", RightRing2 "right_ring_2",
+    RightRing3 "right_ring_3", RightRingTip "right_ring_tip", RightLittle1 "right_little_1", RightLittle2 "right_little_2",
+    RightLittle3 "right_little_3", RightLittleTip "right_little_tip", Point1 "point_1", Point2 "point_2", Point3 "point_3",
+    Point4 "point_4", Point5 "point_5", Point6 "point_6", Point7 "point_7", Point8 "point_8", LeftPoint1 "left_point_1",
+    LeftPoint2 "left_point_2", LeftPoint3 "left_point_3", LeftPoint4 "left_point_4", LeftPoint5 "left_point_5", LeftPoint6 "left_point_6",
+    LeftPoint7 "left_point_7", LeftPoint8 "left_point_8", RightPoint1 "right_point_1", RightPoint2 "right_point_2",
+    RightPoint3 "right_point_3", RightPoint4 "right_point_4", RightPoint5 "right_point_5", RightPoint6 "right_point_6",
+    RightPoint7 "right_point_7", RightPoint8 "right_point_8", Face "face",
 }
 
 /// Both legs, left first: thigh, shin, foot.
@@ -192,95 +89,6 @@ pub const ARMS: [[Role; 3]; 2] = [
     [Role::RightArm, Role::RightForearm, Role::RightHand],
 ];
 
-/// Names of the roles, in the order of their numbers.
-const NAMES: [&str; Role::COUNT] = [
-    "hips",
-    "left_thigh",
-    "left_shin",
-    "left_foot",
-    "right_thigh",
-    "right_shin",
-    "right_foot",
-    "torso",
-    "neck",
-    "head",
-    "left_shoulder",
-    "left_arm",
-    "left_forearm",
-    "left_hand",
-    "right_shoulder",
-    "right_arm",
-    "right_forearm",
-    "right_hand",
-    "left_palm",
-    "left_thumb_1",
-    "left_thumb_2",
-    "left_thumb_3",
-    "left_thumb_tip",
-    "left_index_1",
-    "left_index_2",
-    "left_index_3",
-    "left_index_tip",
-    "left_middle_1",
-    "left_middle_2",
-    "left_middle_3",
-    "left_middle_tip",
-    "left_ring_1",
-    "left_ring_2",
-    "left_ring_3",
-    "left_ring_tip",
-    "left_little_1",
-    "left_little_2",
-    "left_little_3",
-    "left_little_tip",
-    "right_palm",
-    "right_thumb_1",
-    "right_thumb_2",
-    "right_thumb_3",
-    "right_thumb_tip",
-    "right_index_1",
-    "right_index_2",
-    "right_index_3",
-    "right_index_tip",
-    "right_middle_1",
-    "right_middle_2",
-    "right_middle_3",
-    "right_middle_tip",
-    "right_ring_1",
-    "right_ring_2",
-    "right_ring_3",
-    "right_ring_tip",
-    "right_little_1",
-    "right_little_2",
-    "right_little_3",
-    "right_little_tip",
-    "point_1",
-    "point_2",
-    "point_3",
-    "point_4",
-    "point_5",
-    "point_6",
-    "point_7",
-    "point_8",
-    "left_point_1",
-    "left_point_2",
-    "left_point_3",
-    "left_point_4",
-    "left_point_5",
-    "left_point_6",
-    "left_point_7",
-    "left_point_8",
-    "right_point_1",
-    "right_point_2",
-    "right_point_3",
-    "right_point_4",
-    "right_point_5",
-    "right_point_6",
-    "right_point_7",
-    "right_point_8",
-    "face",
-];
-
 impl Role {
     /// Number of roles.
     pub const COUNT: usize = 85;
@@ -288,95 +96,6 @@ impl Role {
     pub const BODY_COUNT: usize = 18;
     /// Number of parts of the body and points of hands, which come before the points of a custom skeleton.
     pub const HUMAN_COUNT: usize = 60;
-
-    /// Every role, in the order of their numbers: the body, the left hand, the right hand, the points of a custom skeleton, the face.
-    pub const ALL: [Role; Role::COUNT] = [
-        Role::Hips,
-        Role::LeftThigh,
-        Role::LeftShin,
-        Role::LeftFoot,
-        Role::RightThigh,
-        Role::RightShin,
-        Role::RightFoot,
-        Role::Torso,
-        Role::Neck,
-        Role::Head,
-        Role::LeftShoulder,
-        Role::LeftArm,
-        Role::LeftForearm,
-        Role::LeftHand,
-        Role::RightShoulder,
-        Role::RightArm,
-        Role::RightForearm,
-        Role::RightHand,
-        Role::LeftPalm,
-        Role::LeftThumb1,
-        Role::LeftThumb2,
-        Role::LeftThumb3,
-        Role::LeftThumbTip,
-        Role::LeftIndex1,
-        Role::LeftIndex2,
-        Role::LeftIndex3,
-        Role::LeftIndexTip,
-        Role::LeftMiddle1,
-        Role::LeftMiddle2,
-        Role::LeftMiddle3,
-        Role::LeftMiddleTip,
-        Role::LeftRing1,
-        Role::LeftRing2,
-        Role::LeftRing3,
-        Role::LeftRingTip,
-        Role::LeftLittle1,
-        Role::LeftLittle2,
-        Role::LeftLittle3,
-        Role::LeftLittleTip,
-        Role::RightPalm,
-        Role::RightThumb1,
-        Role::RightThumb2,
-        Role::RightThumb3,
-        Role::RightThumbTip,
-        Role::RightIndex1,
-        Role::RightIndex2,
-        Role::RightIndex3,
-        Role::RightIndexTip,
-        Role::RightMiddle1,
-        Role::RightMiddle2,
-        Role::RightMiddle3,
-        Role::RightMiddleTip,
-        Role::RightRing1,
-        Role::RightRing2,
-        Role::RightRing3,
-        Role::RightRingTip,
-        Role::RightLittle1,
-        Role::RightLittle2,
-        Role::RightLittle3,
-        Role::RightLittleTip,
-        Role::Point1,
-        Role::Point2,
-        Role::Point3,
-        Role::Point4,
-        Role::Point5,
-        Role::Point6,
-        Role::Point7,
-        Role::Point8,
-        Role::LeftPoint1,
-        Role::LeftPoint2,
-        Role::LeftPoint3,
-        Role::LeftPoint4,
-        Role::LeftPoint5,
-        Role::LeftPoint6,
-        Role::LeftPoint7,
-        Role::LeftPoint8,
-        Role::RightPoint1,
-        Role::RightPoint2,
-        Role::RightPoint3,
-        Role::RightPoint4,
-        Role::RightPoint5,
-        Role::RightPoint6,
-        Role::RightPoint7,
-        Role::RightPoint8,
-        Role::Face,
-    ];
 
     /// The parts of the body.
     pub const BODY: [Role; Role::BODY_COUNT] = {

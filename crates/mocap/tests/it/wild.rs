@@ -64,6 +64,8 @@ fn times_names_and_units_are_read_as_meant() {
         ("missing-as-9999.csv", 14, 30.0, 16, "gaps"),
         ("bvh-one-row-short.bvh", 14, 30.0, 16, "interpolated"),
         ("hand22-shrec17.txt", 14, 30.0, 20, ""),
+        ("hand21-frame-first.txt", 14, 30.0, 20, "right hand"),
+        ("rotations-only.c3d", 4, 85.0, 14, "segments"),
         ("two-bodies-a-line.csv", 8, 30.0, 16, ""),
         ("two-bodies-a-line.txt", 14, 30.0, 16, ""),
         ("landmarks-in-the-picture.csv", 14, 30.0, 15, "picture"),
@@ -94,7 +96,6 @@ fn what_is_no_motion_is_refused_by_what_it_is() {
         ("angles-columns.csv", "angles"),
         ("joint-angles-table.csv", "angles"),
         ("two-dimensions.txt", "two dimensions"),
-        ("rotations-only.c3d", "rotations of"),
     ] {
         match open(name) {
             Err(error) => assert!(error.contains(said), "{name}: {error}"),
@@ -105,7 +106,11 @@ fn what_is_no_motion_is_refused_by_what_it_is() {
 
 #[test]
 fn hands_of_gesture_sets_are_right_ones() {
-    for name in ["hand22-shrec17.txt", "leap-frames.json"] {
+    for name in [
+        "hand21-frame-first.txt",
+        "hand22-shrec17.txt",
+        "leap-frames.json",
+    ] {
         let takes = open(name).unwrap();
         let roles = &takes.takes[0].roles;
         assert!(roles.joint(Role::RightIndexTip).is_some(), "{name}");

@@ -79,12 +79,7 @@ impl C3dLayout {
 
 fn no_points(parameters: &Parameters) -> ParseError {
     let channels = parameters.number("ANALOG", "USED").unwrap_or(0.0);
-    let rotations = parameters.number("ROTATION", "USED").unwrap_or(0.0);
-    let found = if rotations > 0.0 {
-        format!(
-            "none, but rotations of {rotations} segments (Theia, Visual3D), which are not read: export FBX, or C3D with joint centres"
-        )
-    } else if channels > 0.0 {
+    let found = if channels > 0.0 {
         format!("none, but {channels} analog channels: no motion can be read from it")
     } else {
         "none".to_owned()
@@ -139,7 +134,7 @@ fn candidates(header: &C3dHeader, parameters: &Parameters, length: usize) -> Vec
 }
 
 /// Possible numbers of frames. Words of 16 bits overflow in long recordings, so other parameters repeat the count.
-fn frame_counts(header: &C3dHeader, parameters: &Parameters) -> Vec<usize> {
+pub(super) fn frame_counts(header: &C3dHeader, parameters: &Parameters) -> Vec<usize> {
     let span = |first: f64, last: f64| (last - first + 1.0).clamp(0.0, 1e9) as usize;
     let by_header = span(f64::from(header.first_frame), f64::from(header.last_frame));
     let actual = match (

@@ -10,6 +10,7 @@ mod header;
 mod layout;
 mod number;
 mod params;
+mod rotations;
 mod write;
 
 pub use write::write;
@@ -64,20 +65,48 @@ pub fn read(
     let (start, processor) = parameter_section(bytes, block, &mut warnings)?;
     let header = C3dHeader::read(block, processor);
     let parameters = Parameters::read(bytes, start, processor, &mut warnings);
-    let layout = C3dLayout::choose(&header, &parameters, bytes.len(), &mut warnings)?;
-    if layout.frames > limits.frames {
+    let given_hz = rate_hz;
+    let rate_hz = given_hz.unwrap_or_else(|| rate(&header, &parameters, &mut warnings));
+    let layout = C3dLayout::choose(&header, &parameters, bytes.len(), &mut warnings);
+    let segments = match &layout {
+        Err(_) => rotations::origins(bytes, &header, &parameters, limits, &mut warnings)?,
+        Ok(_) => None,
+    };
+    events::note(&header, &parameters, rate_hz, &mut warnings);
+    let metres_per_unit = metres_per_unit(&parameters, &mut warnings);
+    let (points, rate_hz) = match segments {
+        Some((points, ratio)) => (points, given_hz.unwrap_or(rate_hz * ratio)),
+        None => {
+            let layout = layout?;
+            let scale = scale(&header, &parameters, layout.floats, &mut warnings);
+            let names = names(&parameters, layout.points, &mut warnings);
+            let wanted = wanted(&names, &parameters, &mut warnings);
+            // The length of the file bounds them.
+            check_size(wanted.len(), layout.frames, bytes.len(), limits)?;
+            let points = frames::points(bytes, &layout, processor, scale, &names, &wanted);
+            (points, rate_hz)
+        }
+    };
+    let frames = points.first().map_or(0, |point| point.positions.len());
+    if frames > limits.frames {
         let expected = format!("at most {} frames", limits.frames);
         return Err(ParseError::new(
             Place::Byte(6),
             expected,
-            layout.frames.to_string(),
+            frames.to_string(),
         ));
     }
-    let rate_hz = rate_hz.unwrap_or_else(|| rate(&header, &parameters, &mut warnings));
-    let scale = scale(&header, &parameters, layout.floats, &mut warnings);
-    events::note(&header, &parameters, rate_hz, &mut warnings);
-    let names = names(&parameters, layout.points, &mut warnings);
-    let wanted = wanted(&names, &parameters, &mut warnings);
+    let table = PointTable {
+        points,
+        rate_hz,
+        metres_per_unit,
+        zero_is_missing: true,
+    };
+    table.into_loaded(name, warnings, limits)
+}
+
+/// Metres in the unit that the file states.
+fn metres_per_unit(parameters: &Parameters, warnings: &mut Vec<Warning>) -> Option<f64> {
     let unit = parameters.texts("POINT", "UNITS");
     let metres_per_unit = unit.first().and_then(|unit| metres_of(unit));
     if metres_per_unit.is_none() {
@@ -87,15 +116,7 @@ pub fn read(
         };
         warnings.push(Warning::new(Place::File, text));
     }
-    // The length of the file bounds them.
-    check_size(wanted.len(), layout.frames, bytes.len(), limits)?;
-    let table = PointTable {
-        points: frames::points(bytes, &layout, processor, scale, &names, &wanted),
-        rate_hz,
-        metres_per_unit,
-        zero_is_missing: true,
-    };
-    table.into_loaded(name, warnings, limits)
+    metres_per_unit
 }
 
 /// Start of the parameters, and the processor whose number format the file uses.

@@ -31,7 +31,15 @@ pub(super) const FORMAT: FormatDescriptor = FormatDescriptor {
     endings: &["gltf", "glb", "vrm", "vrma"],
     looks_so: |h| h.bytes.starts_with(b"glTF") || is_gltf(h),
     up: Some(Axis::Y),
-    read: |file| Ok(file.timed(read(file.bytes, file.name, file.beside, file.limits)?)),
+    read: |file| {
+        read_at(
+            file.bytes,
+            file.name,
+            file.rate_hz,
+            file.beside,
+            file.limits,
+        )
+    },
 };
 
 /// An object with glTF's words.
@@ -56,10 +64,22 @@ pub fn read(
     beside: Beside<'_>,
     limits: &Limits,
 ) -> Result<Loaded, ParseError> {
+    read_at(bytes, name, None, beside, limits)
+}
+
+/// [`read`], sampled at `rate_hz` where it is given.
+fn read_at(
+    bytes: &[u8],
+    name: &str,
+    rate_hz: Option<f64>,
+    beside: Beside<'_>,
+    limits: &Limits,
+) -> Result<Loaded, ParseError> {
     let mut warnings = Vec::new();
     let limits = &Document::limits_beside(bytes, limits)?;
     let document = Document::parse(bytes, limits, &mut warnings)?;
-    let stage = GltfScene::of(&document, limits, &mut warnings)?;
+    let mut stage = GltfScene::of(&document, limits, &mut warnings)?;
+    stage.rate_hz = rate_hz;
     // Half for the keys, half for the poses that are made of them.
     let limits = &Limits {
         memory: limits.memory / 2,
@@ -162,9 +182,9 @@ fn clip(
     warnings: &mut Vec<Warning>,
 ) -> Result<Clip, ParseError> {
     let times = animation.key_times(rig);
-    let grid = keys::grid(times, None).unwrap_or(keys::KeyGrid {
+    let grid = keys::grid_at(times, stage.rate_hz).unwrap_or(keys::KeyGrid {
         start_secs: 0.0,
-        rate_hz: 30.0,
+        rate_hz: stage.rate_hz.unwrap_or(30.0),
         frames: 1,
         exact: true,
     });

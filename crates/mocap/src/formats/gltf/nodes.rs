@@ -17,6 +17,8 @@ pub(super) struct GltfScene {
     bones: Vec<Option<String>>,
     /// True if there is a skin or a humanoid.
     character: bool,
+    /// The rate at which keys are sampled, where it is given.
+    pub(super) rate_hz: Option<f64>,
 }
 
 impl GltfScene {
@@ -54,6 +56,7 @@ impl GltfScene {
             rigs,
             bones,
             character,
+            rate_hz: None,
         })
     }
 

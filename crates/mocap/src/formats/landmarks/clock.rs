@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::formats::cells::clock;
+use crate::formats::cells::{clock, is_among};
 
 /// The time of a frame in seconds, as far as the name of its field says the unit.
 pub(super) fn time_of(frame: &Value) -> Option<f64> {
@@ -35,23 +35,11 @@ pub(super) fn time_of(frame: &Value) -> Option<f64> {
 
 /// The number of a frame.
 pub(super) fn number_of(frame: &Value) -> Option<f64> {
-    const KEYS: [&str; 12] = [
-        "frame",
-        "frame_id",
-        "frameid",
-        "frame_number",
-        "framenumber",
-        "frame_num",
-        "frame_index",
-        "frameindex",
-        "frame_idx",
-        "frameidx",
-        "frame_no",
-        "index",
-    ];
+    const KEYS: &str = "frame frame_id frameid frame_number framenumber frame_num frame_index frameindex frame_idx frameidx frame_no \
+        index";
     let fields = frame.as_object()?;
     let number = |(key, value): (&String, &Value)| {
-        let known = KEYS.contains(&key.to_lowercase().as_str());
+        let known = is_among(KEYS, &key.to_lowercase());
         value.as_f64().filter(|_| known)
     };
     fields.iter().find_map(number)
@@ -62,28 +50,12 @@ pub(super) fn rate_in<'v>(
     document: &'v Value,
     mut children: impl Iterator<Item = &'v Value>,
 ) -> Option<f64> {
-    const KEYS: [&str; 16] = [
-        "fps",
-        "framerate",
-        "rate",
-        "currentframerate",
-        "samplingrate",
-        "samplerate",
-        "frequency",
-        "hz",
-        "framespersecond",
-        "ratehz",
-        "frameratehz",
-        "videofps",
-        "capturerate",
-        "samplingfrequency",
-        "avgframerate",
-        "recordingrate",
-    ];
+    const KEYS: &str = "fps framerate rate currentframerate samplingrate samplerate frequency hz framespersecond ratehz frameratehz \
+        videofps capturerate samplingfrequency avgframerate recordingrate";
     let found = |value: &Value| {
         let rate = |(key, value): (&String, &Value)| {
             let letters: String = key.chars().filter(|c| c.is_alphabetic()).collect();
-            let known = KEYS.contains(&letters.to_lowercase().as_str());
+            let known = is_among(KEYS, &letters.to_lowercase());
             let text = || value.as_str()?.trim().parse().ok();
             value.as_f64().or_else(text).filter(|_| known)
         };

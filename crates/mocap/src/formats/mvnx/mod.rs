@@ -118,14 +118,8 @@ fn read_subject(
     let mut broken = 0;
     let mut first = None;
     let rate_hz = rate(subject, &frames, warnings);
-    let schedule = Schedule::of(&stamps(&frames, rate_hz), &clock_of(rate_hz), warnings);
-    let all: Vec<Option<usize>> = match &schedule.places {
-        Some(places) => places
-            .iter()
-            .map(|at| at.known.then_some(at.before))
-            .collect(),
-        None => (0..frames.len()).map(Some).collect(),
-    };
+    let clock = Clock::settled(rate_hz);
+    let all = Schedule::of(&stamps(&frames, rate_hz), &clock, warnings).frames(frames.len());
     check_size(all.len(), segments.len(), earlier, bytes, limits)?;
     for frame in all {
         let Some(frame) = frame.map(|at| frames[at]) else {
@@ -156,15 +150,6 @@ fn read_subject(
         warnings.push(Warning::new(first.at, text));
     }
     builder.finish(name, rate_hz)
-}
-
-/// The rate is settled: frames are where their numbers, or their times at this rate, are.
-fn clock_of(rate_hz: f64) -> Clock {
-    Clock {
-        given_hz: Some(rate_hz),
-        stated_hz: None,
-        assumed_hz: rate_hz,
-    }
 }
 
 fn stamps(frames: &[Node<'_, '_>], rate_hz: f64) -> Stamps {

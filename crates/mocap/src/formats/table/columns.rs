@@ -2,14 +2,14 @@
 
 use super::axis_labels::{axis_number, is_mark, prefix, suffix};
 use super::glued::{axis_glued, prefix_glued, suffix_glued, unit_of, without_unit};
-use super::layout::{ColumnLayout, TableLine};
+use super::layout::{ColumnLayout, IN_PLANE, TableLine};
 use super::quantities::{self, is_other, is_other_unit, is_plate, is_position, unit_in};
 use super::rates::{counts, rate_above, rises_evenly};
 use crate::formats::cells::{Decimal, number};
 use crate::formats::points::metres_of;
 
-/// The layout of a table whose header names its columns, in one row or several.
-pub(super) fn layout(rows: &[TableLine]) -> Option<ColumnLayout> {
+/// The layout of a table whose header names its columns, in one row or several; with `planar`, of x and y alone, too.
+pub(super) fn layout(rows: &[TableLine], planar: bool) -> Option<ColumnLayout> {
     let header_rows = header_rows(rows)?;
     let (header, units) = without_units(&rows[..header_rows]);
     let labels = labels(header);
@@ -75,6 +75,7 @@ pub(super) fn layout(rows: &[TableLine]) -> Option<ColumnLayout> {
                 found.notes.push(text);
             }
             [Some(x), Some(y), Some(z)] => found.points.push((name, [x, y, z])),
+            [Some(x), Some(y), None] if planar => found.points.push((name, [x, y, IN_PLANE])),
             _ => found
                 .notes
                 .push(format!("`{name}` has not all of x, y and z; left out")),

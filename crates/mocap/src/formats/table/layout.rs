@@ -6,6 +6,9 @@ use crate::formats::timing::Stamps;
 /// A row: its line and its cells.
 pub(super) type TableLine<'a> = (u64, Vec<&'a str>);
 
+/// The column of z of a point that lies in a plane, where z is 0.
+pub(super) const IN_PLANE: usize = usize::MAX;
+
 /// Layout of a table, from its header.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct ColumnLayout {

@@ -27,38 +27,9 @@ pub(super) struct LongColumns {
 const PARTS: [&str; 5] = ["model", "trajectory", "type", "landmark_type", "category"];
 
 /// Names of the column of joint names.
-const NAMES: [&str; 30] = [
-    "joint",
-    "jointid",
-    "jointindex",
-    "landmarkid",
-    "keypointid",
-    "boneid",
-    "markerid",
-    "jointtype",
-    "joint_type",
-    "joint type",
-    "jointname",
-    "bone",
-    "bone_name",
-    "bonename",
-    "keypoint_name",
-    "marker_name",
-    "markername",
-    "part",
-    "body part",
-    "keypoint",
-    "landmark",
-    "marker",
-    "bodypart",
-    "body_part",
-    "point",
-    "name",
-    "label",
-    "joint_name",
-    "landmark_name",
-    "node",
-];
+const NAMES: &str = "joint|jointid|jointindex|landmarkid|keypointid|boneid|markerid|jointtype|joint_type|joint type|jointname|bone|\
+    bone_name|bonename|keypoint_name|marker_name|markername|part|body part|keypoint|landmark|marker|bodypart|\
+    body_part|point|name|label|joint_name|landmark_name|node";
 
 /// The columns, if `row` is the header of a long table.
 pub(super) fn columns(
@@ -83,9 +54,11 @@ pub(super) fn columns(
         })
     };
     let axes = [axis("x")?, axis("y")?, axis("z")?];
-    let person = find(&|cell| PEOPLE.contains(&cell));
+    let person = find(&|cell| PEOPLE.split('|').any(|known| known == cell));
     // A landmark's number serves where it has no name.
-    let name = NAMES.iter().find_map(|known| find(&|cell| cell == *known));
+    let name = NAMES
+        .split('|')
+        .find_map(|known| find(&|cell| cell == known));
     let numbers = |cell: &str| {
         let ends = [
             "_id", "_index", "_idx", " id", " index", "_no", "_num", "_number",
@@ -94,7 +67,9 @@ pub(super) fn columns(
             "frame", "time", "sample", "image", "video", "file", "trial", "clip", "row",
         ];
         let numbered = ends.iter().any(|end| cell.ends_with(end)) || cell == "id";
-        numbered && !PEOPLE.contains(&cell) && !others.iter().any(|other| cell.starts_with(other))
+        numbered
+            && !PEOPLE.split('|').any(|known| known == cell)
+            && !others.iter().any(|other| cell.starts_with(other))
     };
     let name = name.or_else(|| find(&numbers))?;
     let time = find(&|cell| is_time(cell)).map(|column| (column, seconds_of(&lower[column])));
@@ -133,27 +108,8 @@ fn never_falls(rows: &[TableLine], column: usize) -> bool {
 }
 
 /// Names of the column that tells people apart.
-const PEOPLE: [&str; 19] = [
-    "person",
-    "person_id",
-    "personid",
-    "person_index",
-    "track_id",
-    "trackid",
-    "body_id",
-    "bodyid",
-    "skeleton_id",
-    "skeletonid",
-    "subject",
-    "subject_id",
-    "actor",
-    "individual",
-    "hand",
-    "handedness",
-    "hand_id",
-    "hand_index",
-    "hand_label",
-];
+const PEOPLE: &str = "person|person_id|personid|person_index|track_id|trackid|body_id|bodyid|skeleton_id|skeletonid|subject|\
+    subject_id|actor|individual|hand|handedness|hand_id|hand_index|hand_label";
 
 /// TableFrames in the order in which they appear.
 pub(super) fn frames(

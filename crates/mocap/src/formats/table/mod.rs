@@ -21,7 +21,7 @@ mod rates;
 
 pub(super) use self::columns::axis_of;
 use self::columns::is_value;
-use self::layout::{ColumnLayout, TableFrames, TableLine};
+use self::layout::{ColumnLayout, IN_PLANE, TableFrames, TableLine};
 use super::cells::{Decimal, clock, empty_rows, lines, number, split, utf8};
 use super::descriptor::FormatDescriptor;
 use super::points::{Point, UNSEEN, check_size};
@@ -38,7 +38,15 @@ pub(super) const FORMAT: FormatDescriptor = FormatDescriptor {
         !h.is_binary() && (!opensim::is_table(h) || opensim::has_markers(h)) && looks_so(h.bytes)
     },
     up: None,
-    read: |file| read(file.bytes, file.name, file.rate_hz, file.limits),
+    read: |file| {
+        read_as(
+            file.bytes,
+            file.name,
+            file.rate_hz,
+            file.limits,
+            file.planar,
+        )
+    },
 };
 
 /// TableFrames a second of a table without times.
@@ -55,6 +63,17 @@ pub fn read(
     rate_hz: Option<f64>,
     limits: &Limits,
 ) -> Result<Loaded, ParseError> {
+    read_as(bytes, name, rate_hz, limits, false)
+}
+
+/// [`read`]; with `planar`, of points in two dimensions too, whose z is 0.
+pub(super) fn read_as(
+    bytes: &[u8],
+    name: &str,
+    rate_hz: Option<f64>,
+    limits: &Limits,
+    planar: bool,
+) -> Result<Loaded, ParseError> {
     let text = utf8(bytes);
     let rows = lines(&text, limits)?;
     let separator = separator(&rows);
@@ -69,7 +88,7 @@ pub fn read(
     let mut warnings = Vec::new();
     // Sections of other measurements may stand above that of positions.
     let section = nexus::layout(&cells).map(TableHeader::Wide);
-    let (points, stamps, layout) = match section.or_else(|| header(head)) {
+    let (points, stamps, layout) = match section.or_else(|| header(head, planar)) {
         Some(TableHeader::Long(columns)) => long::frames(&columns, &cells, limits)?,
         Some(TableHeader::Wide(layout)) => {
             check_size(layout.points.len(), cells.len(), bytes.len(), limits)?;
@@ -149,7 +168,7 @@ pub(super) fn looks_so(head: &[u8]) -> bool {
             .collect()
     };
     let first = brackets::spread(cells(HEAD_ROWS));
-    match header(&first) {
+    match header(&first, false) {
         Some(TableHeader::Long(_)) => true,
         Some(TableHeader::Wide(layout)) => layout.points.len() >= 2,
         None => {
@@ -165,7 +184,7 @@ enum TableHeader {
     Long(long::LongColumns),
 }
 
-fn header(rows: &[TableLine]) -> Option<TableHeader> {
+fn header(rows: &[TableLine], planar: bool) -> Option<TableHeader> {
     if let Some(layout) = motive::layout(rows).or_else(|| qualisys::layout(rows)) {
         return Some(TableHeader::Wide(layout));
     }
@@ -176,7 +195,7 @@ fn header(rows: &[TableLine]) -> Option<TableHeader> {
     {
         return Some(TableHeader::Long(columns));
     }
-    columns::layout(rows).map(TableHeader::Wide)
+    columns::layout(rows, planar).map(TableHeader::Wide)
 }
 
 /// Separator of cells: of tab, semicolon and comma the one that most rows have; none if no row has any.
@@ -348,10 +367,17 @@ fn wide(
         let time = |(column, _)| value(column).or_else(|| clock(column));
         times.push(layout.time.and_then(time));
         numbers.push(layout.frame.and_then(value));
+        let depth = |column| {
+            if column == IN_PLANE {
+                Some(0.0)
+            } else {
+                value(column)
+            }
+        };
         for ((_, [x, y, z]), point) in layout.points.iter().zip(&mut points) {
             point
                 .positions
-                .push(match [value(*x), value(*y), value(*z)] {
+                .push(match [value(*x), value(*y), depth(*z)] {
                     [Some(x), Some(y), Some(z)] => Vec3::new(x, y, z),
                     _ => UNSEEN,
                 });

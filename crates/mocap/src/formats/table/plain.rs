@@ -117,10 +117,13 @@ pub(super) fn layout(rows: &[TableLine]) -> Option<ColumnLayout> {
     if named.is_none() && header_rows > 0 && is_telling(first) {
         return None;
     }
+    // Rows of First-Person Hand Action (Garcia-Hernando et al. 2018) are a frame's number and 21 joints, of right hands alone.
+    let of_right_hand = counted && named.is_none() && (before, width, count) == (1, 3, 21);
     let point = |number: usize| {
         let x = before + width * number;
         let name = named.as_ref().map(|names| names[number].to_owned());
         let numbered = || match bodies {
+            1 if of_right_hand => format!("right_{number}"),
             1 => number.to_string(),
             _ => {
                 let own = count / bodies;
@@ -140,6 +143,7 @@ pub(super) fn layout(rows: &[TableLine]) -> Option<ColumnLayout> {
         ""
     };
     let whose = match bodies {
+        1 if of_right_hand => format!("{count} points of a right hand"),
         1 => format!("{count} points"),
         _ => format!("{} points of each of {bodies} bodies", count / bodies),
     };

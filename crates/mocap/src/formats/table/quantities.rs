@@ -1,83 +1,32 @@
 //! What columns hold besides positions: words and units that say so.
 
 use super::layout::TableLine;
+use crate::formats::cells::is_among;
 
 /// Words behind a name that say that its position is meant.
-const POSITION: [&str; 11] = [
-    "position",
-    "positions",
-    "posi",
-    "pos",
-    "translation",
-    "translate",
-    "trans",
-    "location",
-    "loc",
-    "coord",
-    "t",
-];
+const POSITION: &str =
+    "position positions posi pos translation translate trans location loc coord t";
 /// Words that say that something else is meant.
-const NO_POSITION: [&str; 39] = [
-    "gyr",
-    "gyroscope",
-    "accelerometer",
-    "compass",
-    "axis",
-    "element",
-    "mom",
-    "linacc",
-    "velo",
-    "grf",
-    "cop",
-    "rotation",
-    "rot",
-    "r",
-    "q",
-    "quat",
-    "quaternion",
-    "euler",
-    "angle",
-    "vel",
-    "velocity",
-    "acc",
-    "acceleration",
-    "force",
-    "moment",
-    "orientation",
-    "error",
-    "gyro",
-    "torque",
-    "power",
-    "momentum",
-    "emg",
-    "mag",
-    "magnetic",
-    "magnetometer",
-    "accel",
-    "angular",
-    "omega",
-    "gravity",
-];
+const NO_POSITION: &str = "gyr gyroscope accelerometer compass axis element mom linacc velo grf cop rotation rot r q quat quaternion euler angle \
+    vel velocity acc acceleration force moment orientation error gyro torque power momentum emg mag magnetic magnetometer \
+    accel angular omega gravity";
 
 /// True if a word behind a name says that its position is meant.
 pub(super) fn is_position(word: &str) -> bool {
-    POSITION.contains(&word)
+    is_among(POSITION, word)
 }
 
 /// True if a word in lower case says that something else is meant.
 pub(super) fn is_other(word: &str) -> bool {
-    NO_POSITION.contains(&word)
+    is_among(NO_POSITION, word)
 }
 
 /// True if a unit is one of angles, speeds, forces or of what sensors measure.
 pub(super) fn is_other_unit(unit: &str) -> bool {
-    const OTHERS: [&str; 24] = [
-        "deg", "degree", "degrees", "°", "rad", "radians", "g", "a.u.", "n", "kn", "nm", "n.m",
-        "n*m", "nmm", "n.mm", "v", "mv", "uv", "t", "ut", "µt", "mt", "gauss", "%",
-    ];
+    const OTHERS: &str = "deg degree degrees ° rad radians g a.u. n kn nm n.m n*m nmm n.mm v mv uv t ut µt mt gauss %";
     let unit = unit.trim().to_lowercase();
     let per_time = unit.contains("/s") || unit.ends_with("dps");
-    per_time || OTHERS.contains(&unit.as_str())
+    per_time || is_among(OTHERS, &unit)
 }
 
 /// True for channels of a force plate, `FP1.For` of D-Flow.
@@ -112,27 +61,13 @@ pub(super) fn is_turned(labels: &[String]) -> bool {
 }
 
 /// What is measured in place of positions, glued to a name or in a title.
-const QUANTITIES: [&str; 13] = [
-    "angle",
-    "angles",
-    "velocity",
-    "velocities",
-    "acceleration",
-    "accelerations",
-    "moment",
-    "moments",
-    "force",
-    "forces",
-    "power",
-    "powers",
-    "winkel",
-];
+const QUANTITIES: &str = "angle angles velocity velocities acceleration accelerations moment moments force forces power powers winkel";
 
 /// True of what Plug-in Gait and others call angles and loads of joints, `LHipAngles`.
 pub(super) fn names_other(name: &str) -> bool {
     let lower = name.to_lowercase();
-    let glued = |end: &&str| lower.ends_with(*end) && lower.len() > end.len();
-    QUANTITIES.iter().any(glued) && !lower.ends_with("triangle")
+    let glued = |end: &str| lower.ends_with(end) && lower.len() > end.len();
+    QUANTITIES.split(' ').any(glued) && !lower.ends_with("triangle")
 }
 
 /// True if a row above the names is a title of angles, speeds or loads, `Joint Angle`.
@@ -142,18 +77,10 @@ pub(super) fn says_other_above(header: &[TableLine]) -> bool {
     let says = |cell: &&str| {
         let lower = cell.to_lowercase();
         let words: Vec<&str> = lower.split(|c: char| !c.is_alphabetic()).collect();
-        let has = |known: &[&str]| words.iter().any(|word| known.contains(word));
+        let has = |known: &str| words.iter().any(|word| is_among(known, word));
         cell.len() <= LONGEST
-            && has(&QUANTITIES)
-            && !has(&[
-                "position",
-                "positions",
-                "marker",
-                "markers",
-                "trajectories",
-                "no",
-                "without",
-            ])
+            && has(QUANTITIES)
+            && !has("position positions marker markers trajectories no without")
     };
     let above = header.split_last().map_or(&[][..], |(_, above)| above);
     // In the row of kinds each column says what it is.
@@ -170,7 +97,7 @@ pub(super) fn says_other_above(header: &[TableLine]) -> bool {
 pub(super) fn is_glued_other(name: &str) -> bool {
     const LEAST: usize = 3;
     let lower = name.to_lowercase();
-    let long = NO_POSITION.iter().filter(|word| word.len() >= LEAST);
+    let long = NO_POSITION.split(' ').filter(|word| word.len() >= LEAST);
     let is_channel =
         name.ends_with(['R', 'Q']) && name.chars().nth_back(1).is_some_and(char::is_lowercase);
     is_channel || long.into_iter().any(|word| lower.ends_with(word))

@@ -33,29 +33,9 @@ pub(super) fn counts(rows: &[TableLine], column: usize) -> bool {
 
 /// The rate that a row above the names states, in whatever words: `# fps: 60`, `Frame Rate,120`, `100,Hz`, `Frame time: 0.01`.
 pub(super) fn rate_above(header: &[TableLine]) -> Option<f64> {
-    const RATE: [&str; 14] = [
-        "fps",
-        "framerate",
-        "samplingrate",
-        "samplerate",
-        "capturerate",
-        "frequency",
-        "datarate",
-        "camerarate",
-        "updaterate",
-        "framespersecond",
-        "hz",
-        "frequenz",
-        "bildrate",
-        "abtastrate",
-    ];
-    const STEP: [&str; 5] = [
-        "frametime",
-        "timestep",
-        "dt",
-        "sampletime",
-        "samplinginterval",
-    ];
+    const RATE: &str = "fps framerate samplingrate samplerate capturerate frequency datarate camerarate updaterate framespersecond hz \
+        frequenz bildrate abtastrate";
+    const STEP: &str = "frametime timestep dt sampletime samplinginterval";
     let (_, above) = header.split_last()?;
     let stated = |cells: &[&str]| {
         let text = cells.join(",").to_lowercase();
@@ -68,17 +48,17 @@ pub(super) fn rate_above(header: &[TableLine]) -> Option<f64> {
             .filter_map(|word| number(word.trim_end_matches(char::is_alphabetic), Decimal::Point))
             .collect();
         let [value] = numbers[..] else { return None };
-        let is_key = |key: &&str| match key.len() {
+        let is_key = |key: &str| match key.len() {
             // Short words stand for themselves.
             ..=3 => text
                 .split(|c: char| !c.is_alphabetic())
-                .any(|word| word == *key),
-            _ => letters.contains(*key),
+                .any(|word| word == key),
+            _ => letters.contains(key),
         };
         let rate = match () {
-            () if RATE.iter().any(&is_key) => value,
-            () if STEP.iter().any(&is_key) && letters.contains("ms") => 1e3 / value,
-            () if STEP.iter().any(is_key) => 1.0 / value,
+            () if RATE.split(' ').any(is_key) => value,
+            () if STEP.split(' ').any(is_key) && letters.contains("ms") => 1e3 / value,
+            () if STEP.split(' ').any(is_key) => 1.0 / value,
             () => return None,
         };
         (rate > 0.0 && rate < 1e5).then_some(rate)

@@ -25,7 +25,7 @@ pub(super) const JOINTS: PointSet = PointSet {
         ),
         (
             "?_forearm",
-            "?forearm|?lowerarm|?lowarm|?farm|?elbow|?ejc|?radius",
+            "?forearm|?lowerarm|?lowarm|?farm|?larm|?elbow|?ejc|?radius",
         ),
         ("?_hand", "?wrist|?wjc|?hand"),
         ("?_shoulder", "?collar|?clavicle|?shoulder"),

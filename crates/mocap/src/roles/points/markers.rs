@@ -20,7 +20,8 @@ const fn markers(
     }
 }
 
-pub(super) const SETS: [PointSet; 10] = [
+/// Those without roles of their own have them by what their labels abbreviate ([`anatomy`](super::anatomy)).
+pub(super) const SETS: [PointSet; 20] = [
     // Vicon, "Plug-in Gait Reference Guide": full body, with joint centres where the model's outputs are in the file
     // (FEP, FEO, TIO, HUP, HUO, RAO). Medial markers as labs add them.
     markers(
@@ -88,6 +89,70 @@ pub(super) const SETS: [PointSet; 10] = [
          ?shouldertop ?shoulderback ?uarmhigh ?elbowout ?wristout ?wristin ?handout ?thigh ?kneeout ?shin ?ankleout \
          ?toeout ?toein ?toetip ?heel",
         OPTITRACK,
+    ),
+    // Rajagopal et al., "Full-body musculoskeletal model for muscle-driven simulation of human gait" (2016): OpenSim's model of 2015.
+    markers(
+        "Rajagopal 2015",
+        "?acr c7 clav ?ash ?psh ?ua1 ?ua2 ?ua3 ?lel ?mel ?fasuperior ?faradius ?faulna ?asi ?psi ?th1 ?th2 ?th3 ?lfc ?mfc ?tb1 \
+         ?tb2 ?tb3 ?lmal ?mmal ?cal ?toe ?mt5",
+        &[],
+    ),
+    // Uhlrich et al., "OpenCap: Human movement dynamics from smartphone videos" (2023): the markers that it infers.
+    markers(
+        "OpenCap",
+        "c7 ?shoulder ?asis ?psis ?knee ?mknee ?ankle ?mankle ?toe ?5meta ?calc ?lelbow ?melbow ?lwrist ?mwrist ?thigh1 ?thigh2 \
+         ?thigh3 ?sh1 ?sh2 ?sh3 ?hjc",
+        &[],
+    ),
+    // Fukuchi, Fukuchi and Duarte, "A public dataset of overground and treadmill walking kinematics and kinetics" (2018).
+    markers(
+        "Fukuchi (BMClab)",
+        "?asis ?psis ?iliaccrest ?gtr ?knee ?kneemedial ?hf ?tt ?ankle ?anklemedial ?heel ?mt1 ?mt2 ?mt5",
+        &[],
+    ),
+    // van den Bogert et al., "A real-time system for biomechanical analysis" (2013): Motek's treadmills.
+    markers(
+        "Human Body Model",
+        "?head thead fhead c7 t10 sacr nave xyph strn bbac ?sho ?delt ?lee ?mee ?frm ?mw ?lw ?fin ?asis ?psis ?gtro ?lek ?ati ?lm \
+         ?hee ?toe ?mt5",
+        &[],
+    ),
+    // Qualisys Track Manager, its sets for animation and for sports.
+    markers(
+        "Qualisys animation",
+        "?head headtop headfront ?shouldertop ?shoulderback ?arm ?elbowout ?wristout ?wristin ?handout ?handin chest spinetop ?back \
+         ?waistfront ?waistback ?thigh ?kneeout ?shin ?ankleout ?heelback ?forefootout ?forefootin ?toetip",
+        OPTITRACK,
+    ),
+    markers(
+        "Qualisys sports",
+        "?head headfront ?shouldertop ?arm ?elbowout ?elbowin ?wristout ?wristin ?handout chest spinethoracic2 spinethoracic12 \
+         ?waistfront ?waist waistback ?thighfrontlow ?kneeout ?kneein ?shinfronthigh ?ankleout ?heelback ?forefoot2 ?forefoot5",
+        OPTITRACK,
+    ),
+    // Leboeuf et al., "The conventional gait model, an open-source implementation" (2019), its versions 2.
+    markers(
+        "Conventional Gait Model 2",
+        "?asi ?psi ?thi ?thap ?thad ?kne ?knm ?tib ?tiap ?tiad ?ank ?med ?hee ?toe ?fmh ?smh ?vmh",
+        PLUG_IN_GAIT,
+    ),
+    // Vicon, "Upper Limb Model Guide".
+    markers(
+        "Vicon upper limb",
+        "c7 t10 clav strn ?sho ?upa ?upb ?upc ?elb ?frm ?wra ?wrb ?fin",
+        PLUG_IN_GAIT,
+    ),
+    // Cappozzo et al., "Position and orientation in space of bones during movement" (1995), with clusters.
+    markers(
+        "CAST",
+        "?asis ?psis ?gt ?le ?me ?hf ?tt ?lm ?mm ?ca ?fm ?sm ?vm",
+        &[],
+    ),
+    // C-Motion, "Marker Set Guidelines" of Visual3D.
+    markers(
+        "Visual3D",
+        "?asis ?psis ?ilc ?gtr ?lk ?mk ?la ?ma ?hl ?mt1 ?mt5 ?th1 ?th2 ?th3 ?th4 ?sk1 ?sk2 ?sk3 ?sk4",
+        &[],
     ),
 ];
 

@@ -104,10 +104,10 @@ pub fn recognise_posed(names: &[&str], poses: &[Vec<Vec3>]) -> Option<Recognised
         .iter()
         .filter(|(_, set)| set.coverage(&names) >= LEAST_COVERAGE)
         .find_map(|(_, set)| {
-            let found = set.assign(&names)?;
-            let found = match set.numbered {
-                true => found,
-                false => anatomy::complete(found, &names),
+            let found = match (set.numbered, set.roles) {
+                (true, _) => set.assign(&names)?,
+                (false, []) => anatomy::assign(&names)?,
+                (false, _) => anatomy::complete(set.assign(&names)?, &names),
             };
             let is_named = !set.numbered || set.coverage(&names) >= LEAST_NAMED;
             let name = if is_named { set } else { &landmarks::JOINTS }.name;
