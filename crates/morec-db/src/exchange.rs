@@ -37,6 +37,7 @@ use morec::formats::ParseError;
 use annotation::text;
 pub use annotation::{Annotation, ClipLengths, LabelContext, LabelFormat, ReadLabels, snap};
 pub use resolve::{ResolvedLabels, clip_lengths, clip_of_file, resolve};
+pub use tsv::is_of_boris;
 
 impl LabelFormat {
     /// The form that a file's ending says; text files are Audacity's, Praat's or subtitles, JSON is distinguished by its content.
@@ -84,7 +85,12 @@ pub fn read_with(
         LabelFormat::Csv => csv::read(bytes, context),
         LabelFormat::Json => json::read(bytes, context),
         LabelFormat::Eaf => eaf::read(text(bytes)?, context),
-        LabelFormat::Audacity => audacity::read(text(bytes)?, context.clip, context.tiers),
+        LabelFormat::Audacity => {
+            // Praat writes what is not ASCII so.
+            let wide = annotation::of_utf16(bytes);
+            let text = wide.as_deref().map_or_else(|| text(bytes), Ok)?;
+            audacity::read(text, context.clip, context.tiers)
+        }
         LabelFormat::Babel => babel::read(bytes),
         LabelFormat::LabelStudio => label_studio::read(bytes, context),
     }

@@ -175,6 +175,18 @@ pub(super) fn text(bytes: &[u8]) -> Result<&str, ParseError> {
     })
 }
 
+/// Text in UTF-16 with a mark of its order; `None` of other text.
+pub(super) fn of_utf16(bytes: &[u8]) -> Option<String> {
+    let (mark, rest) = bytes.split_at_checked(2)?;
+    let word = match mark {
+        [0xFF, 0xFE] => |pair: &[u8]| u16::from_le_bytes([pair[0], pair[1]]),
+        [0xFE, 0xFF] => |pair: &[u8]| u16::from_be_bytes([pair[0], pair[1]]),
+        _ => return None,
+    };
+    let words: Vec<u16> = rest.chunks_exact(2).map(word).collect();
+    Some(String::from_utf16_lossy(&words))
+}
+
 /// State in a cell of the column `state`. An empty cell is a proposal, so that earlier judgements stay.
 pub(super) fn state(cell: &str, line: u64) -> Result<SampleState, ParseError> {
     let name = cell.trim().to_ascii_lowercase();

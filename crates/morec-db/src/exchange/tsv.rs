@@ -45,7 +45,7 @@ pub fn read(bytes: &[u8], context: &LabelContext) -> Result<ReadLabels, ParseErr
 }
 
 /// True of events that BORIS exports: their columns are its own.
-fn is_of_boris(bytes: &[u8]) -> bool {
+pub fn is_of_boris(bytes: &[u8]) -> bool {
     const LOOKED_AT: usize = 4096;
     let head = String::from_utf8_lossy(&bytes[..bytes.len().min(LOOKED_AT)]);
     head.contains("Observation id") && head.contains("Behavior")
