@@ -6,16 +6,76 @@ use anyhow::{Context, Result, bail};
 use morec::TimeSpan;
 use morec::formats::{Place, Warning};
 use morec::labels::{Extent, Label, Labels};
-use morec_db::exchange::{self, Annotation, ClipLengths, LabelFormat};
+use morec_db::exchange::{self, Annotation, LabelContext, LabelFormat};
 use morec_db::labels::SampleState;
 
 use crate::files;
 
+/// What files of labels do not say of themselves.
+#[derive(clap::Args, Clone, Debug, Default)]
+#[command(next_help_heading = "Reading labels")]
+pub struct LabelArgs {
+    /// Only these tiers of labels that have some (ELAN, Praat), separated by commas
+    #[arg(long, value_name = "TIERS", value_delimiter = ',')]
+    pub tier: Vec<String>,
+    /// Seconds that are added to the times of labels: what was labelled began so much after the clip
+    #[arg(
+        long,
+        value_name = "SECS",
+        default_value_t = 0.0,
+        allow_negative_numbers = true
+    )]
+    pub offset: f64,
+    /// Frames a second of what was labelled, where frames are not the clip's: a video's
+    #[arg(long, value_name = "HZ", value_parser = files::rate)]
+    pub label_rate: Option<f64>,
+}
+
+impl LabelArgs {
+    /// A stretch in seconds at its place in the clip; `None` if it lies before the clip's beginning, which is said.
+    pub fn moved(&self, shown: &str, class: &str, (start, stop): (f64, f64)) -> Option<(f64, f64)> {
+        let (start, stop) = (start + self.offset, stop + self.offset);
+        if stop <= 0.0 {
+            eprintln!("morec: {shown}: {class} lies before the clip; left out");
+        }
+        (stop > 0.0).then_some((start.max(0.0), stop))
+    }
+
+    /// Labels of a table at their places. Frames stay frames where nothing moves them.
+    fn move_table(&self, shown: &str, labels: &mut Labels) -> Result<()> {
+        if self.offset == 0.0 && self.label_rate.is_none() {
+            return Ok(());
+        }
+        let rows = std::mem::take(&mut labels.rows);
+        for mut row in rows {
+            let span = match (&row.extent, self.label_rate) {
+                (Extent::WholeClip, _) => {
+                    labels.rows.push(row);
+                    continue;
+                }
+                (Extent::Secs(span), _) => *span,
+                (Extent::Frames(frames), Some(rate_hz)) => {
+                    TimeSpan::of_frames(frames.clone(), rate_hz)
+                }
+                (Extent::Frames(_), None) => {
+                    bail!("{shown}: --offset moves labels in frames only with --label-rate HZ")
+                }
+            };
+            let moved = self.moved(shown, &row.class, (span.start_secs, span.stop_secs));
+            if let Some((start, stop)) = moved {
+                row.extent = Extent::Secs(TimeSpan::new(start, stop));
+                labels.rows.push(row);
+            }
+        }
+        Ok(())
+    }
+}
+
 /// The labels in a file, or in the files of labels in a folder. What was proposed or rejected is no label.
-pub fn read(path: &Path) -> Result<Labels> {
+pub fn read(path: &Path, args: &LabelArgs) -> Result<Labels> {
     let mut all = Labels::default();
     for file in files_of_labels(std::slice::from_ref(&path.to_owned()))? {
-        let mut labels = one(&file)?;
+        let mut labels = one(&file, args)?;
         all.rows.append(&mut labels.rows);
         all.warnings.append(&mut labels.warnings);
     }
@@ -47,7 +107,7 @@ pub fn files_of_labels(paths: &[PathBuf]) -> Result<Vec<PathBuf>> {
     Ok(all)
 }
 
-fn one(path: &Path) -> Result<Labels> {
+fn one(path: &Path, args: &LabelArgs) -> Result<Labels> {
     let shown = || path.display().to_string();
     let bytes = files::read(path)?;
     // A table of labels may have any ending: all others say their form.
@@ -55,18 +115,25 @@ fn one(path: &Path) -> Result<Labels> {
         Some(LabelFormat::Audacity) if is_table(&bytes) => LabelFormat::Tsv,
         form => form.unwrap_or(LabelFormat::Tsv),
     };
-    if form == LabelFormat::Tsv {
-        return Labels::read(&bytes).with_context(shown);
+    if form == LabelFormat::Tsv && !exchange::is_of_boris(&bytes) {
+        let mut labels = Labels::read(&bytes).with_context(shown)?;
+        args.move_table(&shown(), &mut labels)?;
+        return Ok(labels);
     }
     // What a file says of its clip goes before what it is called.
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let clip = exchange::clip_of_file_name(&stem);
     let clip = (form.is_of_one_clip() && !exchange::names_clip(form, &bytes)).then_some(clip);
-    let read =
-        exchange::read(form, &bytes, clip.as_deref(), &ClipLengths::new()).with_context(shown)?;
+    let context = LabelContext {
+        clip: clip.as_deref(),
+        lengths: None,
+        label_rate_hz: args.label_rate,
+        tiers: &args.tier,
+    };
+    let read = exchange::read_with(form, &bytes, &context).with_context(shown)?;
     if let Some((clip, count)) = read.absent.iter().next() {
         bail!(
-            "{}: {count} labels of clip {clip} are in frames; expected seconds, which need no rate",
+            "{}: {count} labels of clip {clip} are in frames; expected seconds, or --label-rate HZ",
             path.display()
         );
     }
@@ -79,15 +146,21 @@ fn one(path: &Path) -> Result<Labels> {
         let text = format!("{} labels are not accepted; left out", others.len());
         warnings.push(Warning::new(Place::File, text));
     }
-    let rows = (1..).zip(accepted).map(|(line, annotation)| Label {
-        clip: annotation.clip,
-        class: annotation.class,
-        extent: match annotation.extent {
-            Some((start, stop)) => Extent::Secs(TimeSpan::new(start, stop)),
+    let rows = (1..).zip(accepted).filter_map(|(line, annotation)| {
+        let extent = match annotation.extent {
+            Some(extent) => {
+                let (start, stop) = args.moved(&shown(), &annotation.class, extent)?;
+                Extent::Secs(TimeSpan::new(start, stop))
+            }
             None => Extent::WholeClip,
-        },
-        person: annotation.person,
-        line,
+        };
+        Some(Label {
+            clip: annotation.clip,
+            class: annotation.class,
+            extent,
+            person: annotation.person,
+            line,
+        })
     });
     Ok(Labels {
         rows: rows.collect(),

@@ -15,7 +15,7 @@ use rayon::prelude::*;
 
 use crate::database;
 use crate::files::{ReadArgs, expand, mapping, read, takes};
-use crate::labels;
+use crate::labels::{self, LabelArgs};
 
 /// Training data: clips, labels, background.
 #[derive(Args, Debug)]
@@ -46,6 +46,8 @@ pub struct MaterialArgs {
     pub roles: Option<PathBuf>,
     #[command(flatten)]
     pub settings: TrainSettings,
+    #[command(flatten)]
+    pub reading: LabelArgs,
     #[command(flatten)]
     pub read: ReadArgs,
 }
@@ -114,7 +116,7 @@ impl MaterialArgs {
         labels: &Path,
         classes: &[String],
     ) -> Result<TrainingData> {
-        let text = labels::read(labels)?;
+        let text = labels::read(labels, &self.reading)?;
         warn(labels, &text.warnings);
         let clips = load_clips(&expand(paths)?, &self.read, &self.import_options()?)?;
         let material = TrainingMaterial {
@@ -165,7 +167,7 @@ impl MaterialArgs {
     /// The labels, and the table of people.
     fn labels(&self) -> Result<(Labels, Option<People>)> {
         let path = self.labels.as_deref().context("--labels: which?")?;
-        let labels = labels::read(path)?;
+        let labels = labels::read(path, &self.reading)?;
         warn(path, &labels.warnings);
         let classes = labels.rows.iter().map(|row| row.class.as_str());
         if let Some(doubt) = labels::doubt_of_none(classes) {

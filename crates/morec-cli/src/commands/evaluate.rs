@@ -17,7 +17,7 @@ use super::recognize::open_index;
 use crate::figures;
 use crate::files::{self, ReadArgs};
 use crate::json;
-use crate::labels;
+use crate::labels::{self, LabelArgs};
 use crate::lengths::lengths;
 use crate::material::load_clips;
 use crate::motion::ReportMotion;
@@ -66,6 +66,8 @@ pub struct Args {
     #[command(flatten)]
     settings: EvaluateSettings,
     #[command(flatten)]
+    reading: LabelArgs,
+    #[command(flatten)]
     read: ReadArgs,
 }
 
@@ -74,7 +76,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     if let Some(path) = &args.report {
         output::check_ending(path, "a page of HTML", &["html", "htm"])?;
     }
-    let labels = labels::read(&args.labels)?;
+    let labels = labels::read(&args.labels, &args.reading)?;
     let table =
         read_detections(&read(&args.found)?).with_context(|| args.found.display().to_string())?;
     warn(&args.labels, &labels.warnings);

@@ -9,6 +9,7 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail};
 use morec::import::{ImportOptions, SignedAxis, Take};
+use morec::roles::mapping;
 
 use crate::files::{self, ReadArgs};
 use crate::json::write_json;
@@ -30,6 +31,7 @@ Examples:
   morec inspect recordings/ --json
   morec inspect 13_29.amc --skeleton 13.asf --file-rate 60
   morec inspect odd.bvh --roles mine.tsv
+  morec inspect odd.c3d --roles-template > mine.tsv
   morec inspect odd.bvh --draw
   morec inspect odd.bvh --draw -o odd.svg
 
@@ -58,6 +60,9 @@ pub struct Args {
     /// Roles that override those found: a file of `role<TAB>joint` lines
     #[arg(long, value_name = "FILE")]
     roles: Option<PathBuf>,
+    /// Print a roles file to start from: the roles that are found, and which markers would make the others
+    #[arg(long, conflicts_with_all = ["json", "draw", "full"])]
+    roles_template: bool,
     /// Axis that is up in the files: x, y, z, -x, -y or -z
     #[arg(long, value_name = "AXIS", allow_hyphen_values = true)]
     up: Option<SignedAxis>,
@@ -74,6 +79,9 @@ pub fn run(args: Args) -> Result<ExitCode> {
     let expanded = files::expand_all(&args.clips)?;
     let left_out = files::say_left_out(&expanded);
     let paths = expanded.clips;
+    if args.roles_template {
+        return roles_template(&paths, &args.read, &options);
+    }
     let full = args.full || paths.len() == 1;
     if let Some(output) = &args.output {
         output::check_picture(output)?;
@@ -148,6 +156,28 @@ fn draw(drawings: &[Option<Drawing>], path: &Path, output: Option<&Path>) -> Res
         }
     }
     Ok(())
+}
+
+/// A roles file for the first clip of each file.
+fn roles_template(paths: &[PathBuf], read: &ReadArgs, options: &ImportOptions) -> Result<ExitCode> {
+    let mut out = crate::console::stdout();
+    for path in paths {
+        let opened = files::open(path, read)?;
+        let Some(clip) = opened.clips.first() else {
+            bail!("{}: there is no clip in it", path.display());
+        };
+        let text = if clip.points.is_some() {
+            mapping::template(&clip.skeleton.names().collect::<Vec<_>>())
+        } else {
+            let takes = opened.into_takes(options)?;
+            let first = takes.first();
+            first.map_or_else(String::new, |take| {
+                mapping::write(&take.roles, &take.clip.skeleton)
+            })
+        };
+        out.write_all(text.as_bytes())?;
+    }
+    Ok(ExitCode::SUCCESS)
 }
 
 fn inspect(

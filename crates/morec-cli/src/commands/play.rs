@@ -16,7 +16,7 @@ use morec::player::{PlayedClip, page};
 
 use super::recognize::open_index;
 use crate::files::{self, ReadArgs};
-use crate::labels;
+use crate::labels::{self, LabelArgs};
 use crate::output;
 use crate::show::{self, ShownClip};
 
@@ -50,6 +50,8 @@ pub struct Args {
     #[arg(long, value_name = "FILE")]
     roles: Option<PathBuf>,
     #[command(flatten)]
+    reading: LabelArgs,
+    #[command(flatten)]
     read: ReadArgs,
 }
 
@@ -78,7 +80,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     if takes.is_empty() {
         bail!("none of the named files contains motion");
     }
-    let mut labelled = labels(args.labels.as_deref(), &takes)?;
+    let mut labelled = labels(args.labels.as_deref(), &args.reading, &takes)?;
     let mut played = Vec::with_capacity(takes.len());
     for take in &mut takes {
         let said = match &index {
@@ -96,11 +98,15 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 }
 
 /// The labels of each clip by its name.
-fn labels(path: Option<&Path>, takes: &[Take]) -> Result<BTreeMap<String, Vec<Mark>>> {
+fn labels(
+    path: Option<&Path>,
+    reading: &LabelArgs,
+    takes: &[Take],
+) -> Result<BTreeMap<String, Vec<Mark>>> {
     let Some(path) = path else {
         return Ok(BTreeMap::new());
     };
-    let labels = labels::read(path)?;
+    let labels = labels::read(path, reading)?;
     let lengths: BTreeMap<String, ClipLength> = takes
         .iter()
         .map(|take| (take.name().to_owned(), (&take.clip).into()))

@@ -16,7 +16,7 @@ use serde::Serialize;
 use super::history;
 use crate::database;
 use crate::files;
-use crate::labels;
+use crate::labels::{self, LabelArgs};
 use crate::named::by_name;
 use crate::print;
 use crate::table::TextTable;
@@ -51,20 +51,6 @@ pub struct Args {
     /// The clip that a file of one clip, or --class, refers to
     #[arg(long, value_name = "CLIP")]
     clip: Option<String>,
-    /// Only these tiers of a file that has some (ELAN, Praat), separated by commas
-    #[arg(long, value_name = "TIERS", value_delimiter = ',')]
-    tier: Vec<String>,
-    /// Seconds that are added to the times of the files: what was labelled began so much after the clip
-    #[arg(
-        long,
-        value_name = "SECS",
-        default_value_t = 0.0,
-        allow_negative_numbers = true
-    )]
-    offset: f64,
-    /// Frames a second of what was labelled, where frames are not the clip's: a video's
-    #[arg(long, value_name = "HZ", value_parser = files::rate)]
-    label_rate: Option<f64>,
     /// Set one sample of this class
     #[arg(
         long,
@@ -98,6 +84,8 @@ pub struct Args {
     /// Print one JSON object
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    reading: LabelArgs,
 }
 
 /// Reads, sets or takes back.
@@ -340,32 +328,19 @@ fn read(args: &Args, lengths: &ClipLengths, absent: &mut Absent) -> Result<Vec<A
         let context = LabelContext {
             clip: named.as_deref(),
             lengths: Some(lengths),
-            label_rate_hz: args.label_rate,
-            tiers: &args.tier,
+            label_rate_hz: args.reading.label_rate,
+            tiers: &args.reading.tier,
         };
         let mut read =
             exchange::read_with(form, &bytes, &context).with_context(|| shown.clone())?;
-        for extent in read
-            .annotations
-            .iter_mut()
-            .filter_map(|a| a.extent.as_mut())
-        {
-            *extent = (extent.0 + args.offset, extent.1 + args.offset);
-        }
-        read.annotations.retain(|a| {
-            let before = a.extent.is_some_and(|(_, stop)| stop <= 0.0);
-            if before {
-                eprintln!("morec: {shown}: {} lies before the clip; left out", a.class);
+        read.annotations.retain_mut(|a| match &mut a.extent {
+            None => true,
+            Some(extent) => {
+                let moved = args.reading.moved(&shown, &a.class, *extent);
+                *extent = moved.unwrap_or(*extent);
+                moved.is_some()
             }
-            !before
         });
-        for (start, _) in read
-            .annotations
-            .iter_mut()
-            .filter_map(|a| a.extent.as_mut())
-        {
-            *start = start.max(0.0);
-        }
         for warning in &read.warnings {
             eprintln!("morec: {shown}: {warning}");
         }

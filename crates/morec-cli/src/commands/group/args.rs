@@ -6,6 +6,7 @@ use clap::ValueEnum;
 use morec_ops::GroupSettings;
 use serde::Serialize;
 
+use crate::labels::LabelArgs;
 use crate::poses::PoseArgs;
 
 /// Group samples or segments that are alike, of clips or of a database
@@ -52,6 +53,8 @@ pub struct Args {
     /// Print one JSON object
     #[arg(long)]
     pub(super) json: bool,
+    #[command(flatten)]
+    pub(super) reading: LabelArgs,
     #[command(flatten)]
     pub(super) poses: PoseArgs,
 }

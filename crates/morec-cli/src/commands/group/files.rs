@@ -60,6 +60,7 @@ fn samples(
         let length = |(name, clip): (&String, &RowedClip)| (name.clone(), clip.length);
         return labelled(
             path,
+            &args.reading,
             &args.settings.classes,
             &clips.iter().map(length).collect(),
         );

@@ -13,7 +13,7 @@ use morec_ops::{GroupSettings, largest_first};
 use serde::Serialize;
 
 use super::args::Args;
-use crate::labels;
+use crate::labels::{self, LabelArgs};
 use crate::print::{print_json, print_table};
 use crate::table::TextTable;
 
@@ -106,10 +106,11 @@ impl GroupList {
 /// The samples of the table `path` that lie in clips of these lengths, of `classes` or of all.
 pub fn labelled(
     path: &Path,
+    reading: &LabelArgs,
     classes: &[String],
     clips: &BTreeMap<String, ClipLength>,
 ) -> Result<Vec<GroupedSample>> {
-    let labels = labels::read(path)?;
+    let labels = labels::read(path, reading)?;
     let resolved = labels.resolve(clips);
     for warning in labels.warnings.iter().chain(&resolved.warnings) {
         eprintln!("morec: {}: {warning}", path.display());
