@@ -149,7 +149,7 @@ impl Schedule {
                 Err(_) => {}
             }
         }
-        let rate_hz = said.unwrap_or_else(|| {
+        let mut rate_hz = said.unwrap_or_else(|| {
             let stepped = stepped(&stamps.secs);
             warn(match stepped {
                 Some(rate) => format!("the usual step of the times makes {rate:.4} Hz"),
@@ -164,10 +164,16 @@ impl Schedule {
             Ok(ordered) if ordered.values.iter().all(|number| number.fract() == 0.0) => {
                 let said = ordered.said("numbers of frames");
                 said.into_iter().for_each(&mut warn);
-                if ordered.is_too_long(1.0) {
+                // Where every tenth frame was written, none is left out.
+                let each = ordered.even_step();
+                if each > 1.0 {
+                    warn(format!("frames are numbered in steps of {each}"));
+                    rate_hz = clock.given_hz.unwrap_or(rate_hz / each);
+                }
+                if ordered.is_too_long(each) {
                     warn("numbers of frames leave out too many; frames follow each other".into());
                 }
-                let places = ordered.by_steps(1.0);
+                let places = ordered.by_steps(each);
                 let all = places.as_ref().map_or(0, Vec::len);
                 if all > ordered.frames.len() {
                     let left_out = all - ordered.frames.len();

@@ -4,14 +4,13 @@ use super::header::C3dHeader;
 use super::params::Parameters;
 use crate::formats::{Place, Warning};
 
-/// Events of the EVENT group, else of the header, in one warning: labels are not among what a clip holds.
-pub(super) fn note(
+/// Seconds from the first frame of the file, and names, of the events of the EVENT group, else of the header, in the order of their
+/// times.
+pub(super) fn list(
     header: &C3dHeader,
     parameters: &Parameters,
     rate_hz: f64,
-    warnings: &mut Vec<Warning>,
-) {
-    const SHOWN: usize = 12;
+) -> Vec<(f64, String)> {
     let labels = parameters.all_texts("EVENT", "LABELS");
     let contexts = parameters.all_texts("EVENT", "CONTEXTS");
     // Minutes and seconds of each.
@@ -32,16 +31,29 @@ pub(super) fn note(
         events.clone_from(&header.events);
     }
     events.retain(|(time, name)| time.is_finite() && !name.is_empty());
-    if events.is_empty() {
-        return;
-    }
     // Times count from the recording's frame 1; a clip begins with the first frame of the file.
     let first = f64::from(header.first_frame.max(1) - 1) / rate_hz;
     events.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let from_first = |(time, name)| (time - first, name);
+    events.into_iter().map(from_first).collect()
+}
+
+/// The events in one warning: labels are not among what a clip holds.
+pub(super) fn note(
+    header: &C3dHeader,
+    parameters: &Parameters,
+    rate_hz: f64,
+    warnings: &mut Vec<Warning>,
+) {
+    const SHOWN: usize = 12;
+    let events = list(header, parameters, rate_hz);
+    if events.is_empty() {
+        return;
+    }
     let shown: Vec<String> = events
         .iter()
         .take(SHOWN)
-        .map(|(time, name)| format!("{name} at {:.3} s", time - first))
+        .map(|(time, name)| format!("{name} at {time:.3} s"))
         .collect();
     let more = if events.len() > SHOWN { ", …" } else { "" };
     let text = format!("{} events: {}{more}", events.len(), shown.join(", "));

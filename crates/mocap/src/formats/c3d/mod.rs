@@ -119,6 +119,37 @@ fn metres_per_unit(parameters: &Parameters, warnings: &mut Vec<Warning>) -> Opti
     metres_per_unit
 }
 
+/// What a C3D file says of its time besides its rate.
+#[derive(Debug, Clone, PartialEq)]
+pub struct C3dTime {
+    /// The number that the file gives its first frame, often 1.
+    pub first_frame: usize,
+    /// Seconds from the first frame, and names, of its events, in order.
+    pub events: Vec<(f64, String)>,
+}
+
+/// Reads the number of the first frame and the events of a C3D file. O(bytes of its parameters).
+///
+/// # Errors
+/// No C3D file.
+pub fn read_time(bytes: &[u8]) -> Result<C3dTime, ParseError> {
+    let mut warnings = Vec::new();
+    let block = bytes.first_chunk::<BLOCK>().ok_or_else(|| {
+        let found = format!("{} bytes in all", bytes.len());
+        ParseError::new(Place::Byte(0), "a C3D header of 512 bytes", found)
+    })?;
+    let (start, processor) = parameter_section(bytes, block, &mut warnings)?;
+    let header = C3dHeader::read(block, processor);
+    let parameters = Parameters::read(bytes, start, processor, &mut warnings);
+    let rate_hz = rate(&header, &parameters, &mut warnings);
+    let stated = parameters.long("TRIAL", "ACTUAL_START_FIELD");
+    let stated = stated.filter(|first| (0.0..1e9).contains(first));
+    Ok(C3dTime {
+        first_frame: stated.map_or(usize::from(header.first_frame), |first| first as usize),
+        events: events::list(&header, &parameters, rate_hz),
+    })
+}
+
 /// Start of the parameters, and the processor whose number format the file uses.
 fn parameter_section(
     bytes: &[u8],

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 
 use hdf5_pure::AttrValue;
 
-use super::{Tree, damaged, text_of};
+use super::contents::{Hdf5Contents, damaged, text_of};
 use crate::formats::npy::Array;
 use crate::formats::points::{Point, UNSEEN, metres_of};
 use crate::formats::timing::{Clock, Stamps, TimedPoints};
@@ -15,7 +15,7 @@ use crate::math::Vec3;
 const ASSUMED_HZ: f64 = 30.0;
 
 /// A series of places.
-struct Series<'a> {
+struct PoseSeries<'a> {
     path: &'a str,
     values: Array,
     /// The factor of its numbers.
@@ -27,8 +27,11 @@ struct Series<'a> {
 ///
 /// # Errors
 /// Places in a picture alone; series of different lengths; more than the limits allow.
-pub(super) fn series(tree: &Tree, rate_hz: Option<f64>) -> Result<Option<TimedPoints>, ParseError> {
-    let mut all: Vec<Series> = Vec::new();
+pub(super) fn series(
+    tree: &Hdf5Contents,
+    rate_hz: Option<f64>,
+) -> Result<Option<TimedPoints>, ParseError> {
+    let mut all: Vec<PoseSeries> = Vec::new();
     for path in &tree.groups {
         let attributes = tree.group(path)?.attrs().unwrap_or_default();
         let kind = text_of(attributes.get("neurodata_type")).unwrap_or_default();
@@ -40,7 +43,7 @@ pub(super) fn series(tree: &Tree, rate_hz: Option<f64>) -> Result<Option<TimedPo
         };
         let data = attributes_of(tree, &format!("{path}/data"))?;
         let number = |name: &str| data.get(name).and_then(number_of);
-        all.push(Series {
+        all.push(PoseSeries {
             path,
             values,
             scale: number("conversion").unwrap_or(1.0),
@@ -48,7 +51,7 @@ pub(super) fn series(tree: &Tree, rate_hz: Option<f64>) -> Result<Option<TimedPo
         });
     }
     // Poses are more than where an animal was; of several kinds of poses the first is read.
-    let is_place = |series: &Series| matches!(series.values.shape[..], [_, 3]);
+    let is_place = |series: &PoseSeries| matches!(series.values.shape[..], [_, 3]);
     let Some(first) = all.iter().find(|series| is_place(series)) else {
         return match all.is_empty() {
             true => Ok(None),
@@ -60,8 +63,8 @@ pub(super) fn series(tree: &Tree, rate_hz: Option<f64>) -> Result<Option<TimedPo
         };
     };
     let frames = first.values.shape[0];
-    let alike = |series: &&Series| is_place(series) && series.values.shape[0] == frames;
-    let used: Vec<&Series> = all.iter().filter(alike).collect();
+    let alike = |series: &&PoseSeries| is_place(series) && series.values.shape[0] == frames;
+    let used: Vec<&PoseSeries> = all.iter().filter(alike).collect();
     let parents: Vec<&str> = used.iter().map(|series| split(series.path).0).collect();
     let several = parents.iter().any(|parent| *parent != parents[0]);
     let points = used.iter().zip(&parents).map(|(series, parent)| {
@@ -99,8 +102,8 @@ pub(super) fn series(tree: &Tree, rate_hz: Option<f64>) -> Result<Option<TimedPo
 
 /// Times of the frames in seconds, or their rate, of the first series that has them: the others may refer to its.
 fn times(
-    tree: &Tree,
-    used: &[&Series],
+    tree: &Hdf5Contents,
+    used: &[&PoseSeries],
     frames: usize,
 ) -> Result<(Stamps, Option<f64>), ParseError> {
     let mut rate_hz = None;
@@ -116,7 +119,10 @@ fn times(
     Ok((Stamps::none(frames), rate_hz))
 }
 
-fn attributes_of(tree: &Tree, path: &str) -> Result<HashMap<String, AttrValue>, ParseError> {
+fn attributes_of(
+    tree: &Hdf5Contents,
+    path: &str,
+) -> Result<HashMap<String, AttrValue>, ParseError> {
     match tree.array(path) {
         Some(dataset) => dataset.attrs().map_err(damaged),
         None => Ok(HashMap::new()),

@@ -4,12 +4,12 @@ use std::fmt::Write;
 
 use hdf5_pure::{Datatype, DatatypeByteOrder};
 
-use super::{Tree, damaged, text_of};
+use super::contents::{Hdf5Contents, damaged, text_of};
 use crate::formats::npy::Array;
 use crate::formats::{ParseError, Place};
 
 /// Columns with their names, one for each level, and the numbers in each row.
-struct Frame {
+struct DataFrame {
     names: Vec<Vec<String>>,
     values: Array,
 }
@@ -18,7 +18,7 @@ struct Frame {
 ///
 /// # Errors
 /// A table whose columns or numbers are not as it says.
-pub(super) fn as_csv(tree: &Tree) -> Result<Option<String>, ParseError> {
+pub(super) fn as_csv(tree: &Hdf5Contents) -> Result<Option<String>, ParseError> {
     for path in &tree.groups {
         let attributes = tree.group(path)?.attrs().unwrap_or_default();
         let frame = match text_of(attributes.get("pandas_type")) {
@@ -31,8 +31,8 @@ pub(super) fn as_csv(tree: &Tree) -> Result<Option<String>, ParseError> {
     Ok(None)
 }
 
-impl Frame {
-    fn csv(&self, tree: &Tree) -> Result<String, ParseError> {
+impl DataFrame {
+    fn csv(&self, tree: &Hdf5Contents) -> Result<String, ParseError> {
         /// Bytes of a number as text, at most.
         const DIGITS: usize = 26;
         let columns = self.names.len();
@@ -85,7 +85,7 @@ fn refuse(expected: &str) -> ParseError {
 }
 
 /// Records of an index and blocks of values; an attribute has the names of each block's columns.
-fn of_records(tree: &Tree, group: &str) -> Result<Frame, ParseError> {
+fn of_records(tree: &Hdf5Contents, group: &str) -> Result<DataFrame, ParseError> {
     let none = || refuse("records");
     let table = tree.array(&format!("{group}/table")).ok_or_else(none)?;
     let Datatype::Compound { size, members } = table.datatype().map_err(damaged)? else {
@@ -133,7 +133,7 @@ fn of_records(tree: &Tree, group: &str) -> Result<Frame, ParseError> {
     let shape = vec![rows.len(), columns.len()];
     let values = rows.flat_map(|row| columns.iter().map(|(at, number)| number.read(&row[*at..])));
     let values = values.collect();
-    Ok(Frame {
+    Ok(DataFrame {
         names,
         values: Array { shape, values },
     })
@@ -175,7 +175,7 @@ impl Number {
 }
 
 /// Arrays of names for each level, of each column's number in them, and of values, in the block of numbers that is the widest.
-fn of_arrays(tree: &Tree, group: &str) -> Result<Frame, ParseError> {
+fn of_arrays(tree: &Hdf5Contents, group: &str) -> Result<DataFrame, ParseError> {
     let block = |number: usize| format!("{group}/block{number}");
     let blocks = (0..)
         .map(block)
@@ -203,7 +203,7 @@ fn of_arrays(tree: &Tree, group: &str) -> Result<Frame, ParseError> {
             name.push(texts.get(number as usize).cloned().unwrap_or_default());
         }
     }
-    Ok(Frame { names, values })
+    Ok(DataFrame { names, values })
 }
 
 /// The tuples of texts in a list that Python pickled as text (protocol 0, documented in its `pickletools`): of this only texts, tuples

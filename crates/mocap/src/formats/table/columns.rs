@@ -31,7 +31,11 @@ pub(super) fn layout(rows: &[TableLine], planar: bool) -> Option<ColumnLayout> {
         [suffix_glued, prefix_glued].into_iter().find_map(|axis| {
             let open = named_points(&labels, units, &|label| axis_glued(label, axis, &labels));
             // `kneerx` is how a knee turns; where sides are meant, there are left ones, too.
-            let is_turned = open.iter().all(|(name, _)| name.ends_with(['r', 'R']));
+            let is_turned = open.iter().all(|(name, _)| {
+                // Nor is `knee_vx` a place.
+                let last = name.rsplit(is_mark).next().unwrap_or_default();
+                name.ends_with(['r', 'R']) || is_other(&last.to_ascii_lowercase())
+            });
             (is_whole(&open) && open.len() > 1 && !is_turned).then_some(open)
         })
     };

@@ -7,7 +7,7 @@ use crate::formats::cells::is_among;
 const POSITION: &str =
     "position positions posi pos translation translate trans location loc coord t";
 /// Words that say that something else is meant.
-const NO_POSITION: &str = "gyr gyroscope accelerometer compass axis element mom linacc velo grf cop rotation rot r q quat quaternion euler angle \
+const NO_POSITION: &str = "v gyr gyroscope accelerometer compass axis element mom linacc velo grf cop rotation rot r q quat quaternion euler angle \
     vel velocity acc acceleration force moment orientation error gyro torque power momentum emg mag magnetic magnetometer \
     accel angular omega gravity";
 

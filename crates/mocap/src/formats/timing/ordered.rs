@@ -12,6 +12,8 @@ const EVEN: f64 = 0.05;
 const MANY: f64 = 0.02;
 /// Rates that differ by no more than this share are one rate, measured twice.
 const SAME_RATE: f64 = 0.02;
+/// Of more frames than this nobody takes one alone.
+const MOST_STEP: f64 = 30.0;
 /// Frames for each of a file's, at most: a hole of days must not make endless ones.
 const MOST_FRAMES: usize = 20;
 
@@ -174,6 +176,14 @@ impl OrderedFrames {
             };
         }
         Some(places)
+    }
+
+    /// The step from number to number where all are the same, as of a file with every tenth frame; else 1.
+    pub(super) fn even_step(&self) -> f64 {
+        let mut steps = self.values.windows(2).map(|w| w[1] - w[0]);
+        let first = steps.next().filter(|step| (1.0..=MOST_STEP).contains(step));
+        let is_even = |step: &f64| self.values.len() > 3 && steps.all(|other| other == *step);
+        first.filter(is_even).unwrap_or(1.0)
     }
 
     /// True if the way from the first to the last is that of far more frames than there are.

@@ -164,3 +164,24 @@ proptest::proptest! {
         }
     }
 }
+
+#[test]
+fn every_tenth_frame_is_one_without_gaps() {
+    let stamps = |by: f64| Stamps::none(6).numbered((0..6).map(|n| Some(by * n as f64)).collect());
+    for (by, given_hz, rate_hz, frames) in [
+        (10.0, None, 3.0, 6),
+        (10.0, Some(25.0), 25.0, 6),
+        (2.0, None, 15.0, 6),
+        (1.0, None, 30.0, 6),
+    ] {
+        let mut warnings = Vec::new();
+        let clock = Clock {
+            given_hz,
+            ..UNKNOWN
+        };
+        let schedule = Schedule::of(&stamps(by), &clock, &mut warnings);
+        assert_eq!(schedule.rate_hz, rate_hz, "{by}");
+        assert_eq!(schedule.frames(6).len(), frames, "{by}");
+        assert!(schedule.gaps().is_empty(), "{by}");
+    }
+}
