@@ -96,7 +96,7 @@ pub fn expand_all(paths: &[PathBuf]) -> Result<Listing> {
 
 /// The takes in a file; `-` is standard input. Errors begin with the path.
 pub fn takes(path: &Path, args: &ReadArgs, options: &ImportOptions) -> Result<Vec<Take>> {
-    let takes = open(path, args)?.into_takes(options);
+    let takes = open_with(path, args, options.mapping.as_ref())?.into_takes(options);
     let takes = takes.with_context(|| path.display().to_string())?;
     say_doubts(path, &takes);
     Ok(takes)
@@ -114,24 +114,25 @@ pub fn say_doubts(path: &Path, takes: &[Take]) {
 
 /// Reads a clip; `-` is standard input. Errors begin with the path.
 pub fn open(path: &Path, args: &ReadArgs) -> Result<ClipFile> {
+    open_with(path, args, None)
+}
+
+/// [`open`], for the roles of a mapping file.
+pub fn open_with(path: &Path, args: &ReadArgs, mapping: Option<&Mapping>) -> Result<ClipFile> {
+    let reader = args.reader_with(mapping.cloned());
     let (file, _) = split_choice(path);
     if path != Path::new("-") && is_large(&file) {
         // Not held as a whole, if its format allows it.
         output::mark_read(path);
         output::mark_read(&file);
-        return marked(args.reader().read(path)?);
+        return marked(reader.read(path)?);
     }
     let bytes = if path == Path::new("-") {
         read_stream(std::io::stdin().lock()).context("standard input")?
     } else {
         read(path)?
     };
-    parse(path, &bytes, args)
-}
-
-/// Reads a clip whose bytes are at hand. Errors begin with the path.
-pub fn parse(path: &Path, bytes: &[u8], args: &ReadArgs) -> Result<ClipFile> {
-    marked(args.reader().parse(path, bytes)?)
+    marked(reader.parse(path, &bytes)?)
 }
 
 /// No output of this run may take the place of the skeleton that a clip was read with.

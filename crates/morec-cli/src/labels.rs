@@ -1,11 +1,12 @@
 //! Labels on disk, in every form that `morec db label` reads, as the table that training and measuring take.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
 use morec::TimeSpan;
-use morec::formats::{Place, Warning};
-use morec::labels::{Extent, Label, Labels};
+use morec::formats::{Place, Warning, c3d};
+use morec::labels::{Extent, Label, Labels, names_of_clip};
 use morec_db::exchange::{self, Annotation, LabelContext, LabelFormat};
 use morec_db::labels::SampleState;
 
@@ -29,9 +30,48 @@ pub struct LabelArgs {
     /// Frames a second of what was labelled, where frames are not the clip's: a video's
     #[arg(long, value_name = "HZ", value_parser = files::rate)]
     pub label_rate: Option<f64>,
+    /// The number that frames of labels begin with: 0, or what a C3D file calls its first frame (often 1)
+    #[arg(
+        long,
+        value_enum,
+        value_name = "file|0",
+        default_value = "0",
+        hide_possible_values = true
+    )]
+    pub first_frame: FirstFrame,
+}
+
+/// The number of a clip's first frame in labels.
+#[derive(clap::ValueEnum, Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum FirstFrame {
+    /// 0.
+    #[default]
+    #[value(name = "0")]
+    Zero,
+    /// What the clip's file says.
+    File,
 }
 
 impl LabelArgs {
+    /// The number of the first frame of each clip in C3D files among `clips` and the folders there, by name; empty if frames count from 0.
+    pub fn first_frames(&self, clips: &[PathBuf]) -> Result<BTreeMap<String, usize>> {
+        let mut first = BTreeMap::new();
+        if self.first_frame == FirstFrame::Zero {
+            return Ok(first);
+        }
+        for path in files::expand(clips)? {
+            let is_c3d = path
+                .extension()
+                .is_some_and(|end| end.eq_ignore_ascii_case("c3d"));
+            if let (true, Some(stem)) = (is_c3d, path.file_stem()) {
+                let time = c3d::read_time(&files::read(&path)?);
+                let time = time.with_context(|| path.display().to_string())?;
+                first.insert(stem.to_string_lossy().into_owned(), time.first_frame);
+            }
+        }
+        Ok(first)
+    }
+
     /// A stretch in seconds at its place in the clip; `None` if it lies before the clip's beginning, which is said.
     pub fn moved(&self, shown: &str, class: &str, (start, stop): (f64, f64)) -> Option<(f64, f64)> {
         let (start, stop) = (start + self.offset, stop + self.offset);
@@ -42,7 +82,26 @@ impl LabelArgs {
     }
 
     /// Labels of a table at their places. Frames stay frames where nothing moves them.
-    fn move_table(&self, shown: &str, labels: &mut Labels) -> Result<()> {
+    fn move_table(
+        &self,
+        shown: &str,
+        first_frames: &BTreeMap<String, usize>,
+        labels: &mut Labels,
+    ) -> Result<()> {
+        for row in &mut labels.rows {
+            let first = names_of_clip(&row.clip).find_map(|name| first_frames.get(name));
+            if let (Extent::Frames(frames), Some(&first)) = (&mut row.extent, first) {
+                if frames.start < first {
+                    bail!(
+                        "{shown}: line {}: frame {} is before the first frame of {}, {first}",
+                        row.line,
+                        frames.start,
+                        row.clip
+                    );
+                }
+                *frames = frames.start - first..frames.end - first;
+            }
+        }
         if self.offset == 0.0 && self.label_rate.is_none() {
             return Ok(());
         }
@@ -72,10 +131,12 @@ impl LabelArgs {
 }
 
 /// The labels in a file, or in the files of labels in a folder. What was proposed or rejected is no label.
-pub fn read(path: &Path, args: &LabelArgs) -> Result<Labels> {
+/// `clips` are the files that frames of labels may count in.
+pub fn read(path: &Path, args: &LabelArgs, clips: &[PathBuf]) -> Result<Labels> {
+    let first_frames = args.first_frames(clips)?;
     let mut all = Labels::default();
     for file in files_of_labels(std::slice::from_ref(&path.to_owned()))? {
-        let mut labels = one(&file, args)?;
+        let mut labels = one(&file, args, &first_frames)?;
         all.rows.append(&mut labels.rows);
         all.warnings.append(&mut labels.warnings);
     }
@@ -96,7 +157,12 @@ pub fn files_of_labels(paths: &[PathBuf]) -> Result<Vec<PathBuf>> {
             inside.push(entry.with_context(shown)?.path());
         }
         inside.retain(|file| {
-            file.is_file() && LabelFormat::of_file(&file.to_string_lossy(), b"").is_some()
+            // A C3D file in a folder is a clip; named, it stands for its events.
+            let is_clip = file
+                .extension()
+                .is_some_and(|end| end.eq_ignore_ascii_case("c3d"));
+            let form = LabelFormat::of_file(&file.to_string_lossy(), b"");
+            file.is_file() && form.is_some() && !is_clip
         });
         if inside.is_empty() {
             bail!("{}: no file of labels in this folder", path.display());
@@ -107,7 +173,7 @@ pub fn files_of_labels(paths: &[PathBuf]) -> Result<Vec<PathBuf>> {
     Ok(all)
 }
 
-fn one(path: &Path, args: &LabelArgs) -> Result<Labels> {
+fn one(path: &Path, args: &LabelArgs, first_frames: &BTreeMap<String, usize>) -> Result<Labels> {
     let shown = || path.display().to_string();
     let bytes = files::read(path)?;
     // A table of labels may have any ending: all others say their form.
@@ -117,7 +183,7 @@ fn one(path: &Path, args: &LabelArgs) -> Result<Labels> {
     };
     if form == LabelFormat::Tsv && !exchange::is_of_boris(&bytes) {
         let mut labels = Labels::read(&bytes).with_context(shown)?;
-        args.move_table(&shown(), &mut labels)?;
+        args.move_table(&shown(), first_frames, &mut labels)?;
         return Ok(labels);
     }
     // What a file says of its clip goes before what it is called.
@@ -129,6 +195,7 @@ fn one(path: &Path, args: &LabelArgs) -> Result<Labels> {
         lengths: None,
         label_rate_hz: args.label_rate,
         tiers: &args.tier,
+        first_frames: Some(first_frames),
     };
     let read = exchange::read_with(form, &bytes, &context).with_context(shown)?;
     if let Some((clip, count)) = read.absent.iter().next() {

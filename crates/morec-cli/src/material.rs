@@ -116,7 +116,7 @@ impl MaterialArgs {
         labels: &Path,
         classes: &[String],
     ) -> Result<TrainingData> {
-        let text = labels::read(labels, &self.reading)?;
+        let text = labels::read(labels, &self.reading, paths)?;
         warn(labels, &text.warnings);
         let clips = load_clips(&expand(paths)?, &self.read, &self.import_options()?)?;
         let material = TrainingMaterial {
@@ -167,7 +167,7 @@ impl MaterialArgs {
     /// The labels, and the table of people.
     fn labels(&self) -> Result<(Labels, Option<People>)> {
         let path = self.labels.as_deref().context("--labels: which?")?;
-        let labels = labels::read(path, &self.reading)?;
+        let labels = labels::read(path, &self.reading, &self.clips)?;
         warn(path, &labels.warnings);
         let classes = labels.rows.iter().map(|row| row.class.as_str());
         if let Some(doubt) = labels::doubt_of_none(classes) {

@@ -10,7 +10,7 @@
 //! | CSV | seconds and frames | all but who set it |
 //! | JSON | seconds and frames | all but who set it |
 //! | ELAN | milliseconds, so frames of up to 500 Hz | clip, class, person; state by tier |
-//! | Audacity | seconds | class; the clip by the file's name ([`file_name`]); Praat's TextGrids and subtitles are read as it |
+//! | Audacity | seconds | class; the clip by the file's name ([`file_name`]); Praat's TextGrids, subtitles and events of C3D are read as it |
 //! | BORIS (read as TSV or CSV) | seconds | clip, class, person |
 //! | BABEL | seconds | clip, class, whole clips, state (a key of ours) |
 //! | Label Studio | seconds | clip, class, score; accepted ones as annotations, others as predictions |
@@ -21,6 +21,7 @@ mod babel;
 mod boris;
 mod csv;
 mod eaf;
+mod events;
 mod file_names;
 mod json;
 mod label_studio;
@@ -40,13 +41,13 @@ pub use resolve::{ResolvedLabels, clip_lengths, clip_of_file, resolve};
 pub use tsv::is_of_boris;
 
 impl LabelFormat {
-    /// The form that a file's ending says; text files are Audacity's, Praat's or subtitles, JSON is distinguished by its content.
+    /// The form that a file's ending says; text files are Audacity's, Praat's or subtitles, a C3D file stands for its events, JSON is distinguished by its content.
     pub fn of_file(name: &str, bytes: &[u8]) -> Option<Self> {
         match name.rsplit_once('.')?.1.to_ascii_lowercase().as_str() {
             "tsv" => Some(LabelFormat::Tsv),
             "csv" => Some(LabelFormat::Csv),
             "eaf" => Some(LabelFormat::Eaf),
-            "txt" | "textgrid" | "srt" | "vtt" => Some(LabelFormat::Audacity),
+            "txt" | "textgrid" | "srt" | "vtt" | "c3d" => Some(LabelFormat::Audacity),
             "json" => Some(json::which(bytes)),
             _ => None,
         }
@@ -86,6 +87,9 @@ pub fn read_with(
         LabelFormat::Json => json::read(bytes, context),
         LabelFormat::Eaf => eaf::read(text(bytes)?, context),
         LabelFormat::Audacity => {
+            if let (true, Some(clip)) = (events::is_c3d(bytes), context.clip) {
+                return events::read(bytes, clip);
+            }
             // Praat writes what is not ASCII so.
             let wide = annotation::of_utf16(bytes);
             let text = wide.as_deref().map_or_else(|| text(bytes), Ok)?;

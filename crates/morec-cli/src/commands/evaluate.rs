@@ -76,7 +76,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     if let Some(path) = &args.report {
         output::check_ending(path, "a page of HTML", &["html", "htm"])?;
     }
-    let labels = labels::read(&args.labels, &args.reading)?;
+    let labels = labels::read(&args.labels, &args.reading, &args.clips)?;
     let table =
         read_detections(&read(&args.found)?).with_context(|| args.found.display().to_string())?;
     warn(&args.labels, &labels.warnings);

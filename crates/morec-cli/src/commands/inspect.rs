@@ -162,7 +162,7 @@ fn draw(drawings: &[Option<Drawing>], path: &Path, output: Option<&Path>) -> Res
 fn roles_template(paths: &[PathBuf], read: &ReadArgs, options: &ImportOptions) -> Result<ExitCode> {
     let mut out = crate::console::stdout();
     for path in paths {
-        let opened = files::open(path, read)?;
+        let opened = files::open_with(path, read, options.mapping.as_ref())?;
         let Some(clip) = opened.clips.first() else {
             bail!("{}: there is no clip in it", path.display());
         };
@@ -185,7 +185,7 @@ fn inspect(
     read: &ReadArgs,
     options: &ImportOptions,
 ) -> Result<(InspectReport, Vec<Take>)> {
-    let opened = files::open(path, read)?;
+    let opened = files::open_with(path, read, options.mapping.as_ref())?;
     let (format, skeleton, warnings) = (
         opened.format,
         opened.skeleton.clone(),

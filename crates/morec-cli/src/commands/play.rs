@@ -80,7 +80,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     if takes.is_empty() {
         bail!("none of the named files contains motion");
     }
-    let mut labelled = labels(args.labels.as_deref(), &args.reading, &takes)?;
+    let mut labelled = labels(args.labels.as_deref(), &args.reading, &args.clips, &takes)?;
     let mut played = Vec::with_capacity(takes.len());
     for take in &mut takes {
         let said = match &index {
@@ -101,12 +101,13 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 fn labels(
     path: Option<&Path>,
     reading: &LabelArgs,
+    clips: &[PathBuf],
     takes: &[Take],
 ) -> Result<BTreeMap<String, Vec<Mark>>> {
     let Some(path) = path else {
         return Ok(BTreeMap::new());
     };
-    let labels = labels::read(path, reading)?;
+    let labels = labels::read(path, reading, clips)?;
     let lengths: BTreeMap<String, ClipLength> = takes
         .iter()
         .map(|take| (take.name().to_owned(), (&take.clip).into()))

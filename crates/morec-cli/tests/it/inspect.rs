@@ -309,3 +309,32 @@ fn recognise_is_recognize_and_names_files_in_which_nothing_is_found() {
     assert!(ran.err.contains(": still.bvh"), "{ran:?}");
     ran.ok();
 }
+
+#[test]
+fn a_file_of_roles_begins_with_what_is_found() {
+    let names = [
+        "LASI", "RASI", "LPSI", "RPSI", "LKNE", "RKNE", "LANK", "RANK", "Zed",
+    ];
+    let header: Vec<String> = names
+        .iter()
+        .flat_map(|n| ["x", "y", "z"].map(|a| format!("{n}_{a}")))
+        .collect();
+    let row = |frame: usize| {
+        let value = |at: usize| format!("{}", 0.1 * at as f64 + 0.01 * frame as f64);
+        (0..header.len()).map(value).collect::<Vec<_>>().join(",")
+    };
+    let rows: Vec<String> = (0..8).map(row).collect();
+    let table = format!("{}\n{}\n", header.join(","), rows.join("\n"));
+    let folder = Folder::with(&[("lab.csv", table.as_str())]);
+    let text = folder
+        .morec(&["inspect", "lab.csv", "--roles-template"])
+        .ok();
+    assert!(
+        text.contains("left_shin\tLKNE\n") && text.contains("without a role: Zed"),
+        "{text}"
+    );
+    std::fs::write(folder.path().join("mine.tsv"), &text).unwrap();
+    folder
+        .morec(&["inspect", "lab.csv", "--roles", "mine.tsv"])
+        .ok();
+}

@@ -439,3 +439,68 @@ fn crossval_says_by_what_it_divides_and_refuses_one_person() {
     let said = run("one.tsv", "half").ok();
     assert!(said.starts_with("Left out: half of the labels"), "{said}");
 }
+
+#[test]
+fn labels_that_count_otherwise_are_read_wherever_labels_are() {
+    let (folder, takes) = studio(1);
+    let clip = &takes[0].clip.name;
+    let write = |name: &str, text: String| {
+        std::fs::write(folder.path().join(name), text).unwrap();
+    };
+    let secs = |start: f64| {
+        format!(
+            "clip\tclass\tstart_secs\tstop_secs\n{clip}\tbow\t{start}\t{}\n",
+            start + 1.0
+        )
+    };
+    write("found.tsv", secs(1.0));
+    write("plain.tsv", secs(1.0));
+    write("late.tsv", secs(3.5));
+    write(
+        "video.tsv",
+        format!("clip\tclass\tstart\tstop\n{clip}\tbow\t25\t50\n"),
+    );
+    let tier = |name: &str, start: f64| {
+        format!(
+            "\"IntervalTier\"\n\"{name}\"\n0\n9\n1\n{start}\n{}\n\"bow\"\n",
+            start + 1.0
+        )
+    };
+    let grid = "File type = \"ooTextFile\"\n\"TextGrid\"\n0\n9\n<exists>\n2\n";
+    write(
+        &format!("{clip}.TextGrid"),
+        format!("{grid}{}{}", tier("hand", 1.0), tier("foot", 5.0)),
+    );
+    let evaluate = |labels: &str, more: &[&str]| {
+        let args = [
+            "evaluate",
+            "--found",
+            "found.tsv",
+            "--clips",
+            "clips",
+            "--labels",
+            labels,
+        ];
+        folder.morec(&[&args[..], more].concat()).ok()
+    };
+    let plain = evaluate("plain.tsv", &[]);
+    assert!(plain.contains("1 of 1"), "{plain}");
+    assert_eq!(evaluate("late.tsv", &["--offset", "-2.5"]), plain);
+    assert_eq!(evaluate("video.tsv", &["--label-rate", "25"]), plain);
+    let grid = format!("{clip}.TextGrid");
+    assert_eq!(evaluate(&grid, &["--tier", "hand"]), plain);
+    assert_ne!(evaluate(&grid, &[]), plain);
+    let args = [
+        "evaluate",
+        "--found",
+        "found.tsv",
+        "--clips",
+        "clips",
+        "--labels",
+        "video.tsv",
+        "--offset",
+        "1",
+    ];
+    let refused = folder.morec(&args).fails();
+    assert!(refused.contains("--label-rate"), "{refused}");
+}

@@ -213,6 +213,8 @@ pub struct LabelContext<'a> {
     pub label_rate_hz: Option<f64>,
     /// Tiers that are read, of forms that have some; all if empty.
     pub tiers: &'a [String],
+    /// The number of the first frame of clips whose frames labels do not count from 0.
+    pub first_frames: Option<&'a BTreeMap<String, usize>>,
 }
 
 impl LabelContext<'_> {
@@ -220,6 +222,12 @@ impl LabelContext<'_> {
     pub(super) fn rate_of(&self, clip: &str) -> Option<f64> {
         let of_clip = || Some(length_of(clip, self.lengths?)?.rate_hz);
         self.label_rate_hz.or_else(of_clip)
+    }
+
+    /// Seconds at which frame 0 of labels lies before the clip's beginning.
+    pub(super) fn before(&self, clip: &str, rate_hz: f64) -> f64 {
+        let first = names_of_clip(clip).find_map(|name| self.first_frames?.get(name));
+        first.map_or(0.0, |first| *first as f64 / rate_hz)
     }
 
     pub(super) fn knows(&self, clip: &str) -> bool {

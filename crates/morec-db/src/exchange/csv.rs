@@ -120,6 +120,7 @@ impl Columns {
     ) -> Result<Option<Annotation>, ParseError> {
         let (clip, class) = (row.cell(self.file), row.cell(self.label));
         let filled = |pair: &(usize, usize)| !row.cell(pair.0).is_empty();
+        let mut before = 0.0;
         let extent = if self.whole.is_some_and(|column| row.cell(column) == "1") {
             None
         } else if let Some((start, stop)) = self.secs.filter(filled) {
@@ -129,6 +130,7 @@ impl Columns {
                 *read.absent.entry(clip.to_owned()).or_default() += 1;
                 return Ok(None);
             };
+            before = context.before(clip, rate_hz);
             Some((row.number(start)? / rate_hz, row.number(stop)? / rate_hz))
         } else {
             None
@@ -156,7 +158,7 @@ impl Columns {
         Ok(Some(Annotation {
             clip: clip.to_owned(),
             class: class.to_owned(),
-            extent,
+            extent: extent.map(|(start, stop)| (start - before, stop - before)),
             person: Some(cell(self.person))
                 .filter(|p| !p.is_empty())
                 .map(str::to_owned),

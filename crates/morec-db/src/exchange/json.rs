@@ -73,6 +73,10 @@ pub fn read(bytes: &[u8], context: &LabelContext) -> Result<ReadLabels, ParseErr
             }
             (None, None, _) => None,
         };
+        let in_frames = row.start_secs.zip(row.stop_secs).is_none();
+        let before = rate
+            .filter(|_| in_frames)
+            .map_or(0.0, |rate| context.before(&row.clip, rate));
         if let Some(extent) = extent {
             let stretch = read.stretch(Place::File, &row.class, extent);
             let stretch = stretch.map_err(|found| {
@@ -86,7 +90,7 @@ pub fn read(bytes: &[u8], context: &LabelContext) -> Result<ReadLabels, ParseErr
         read.annotations.push(Annotation {
             clip: row.clip,
             class: row.class,
-            extent,
+            extent: extent.map(|(start, stop)| (start - before, stop - before)),
             person: row.person,
             score: row.score,
             state: row.state.unwrap_or(SampleState::Accepted),

@@ -502,6 +502,106 @@ fn times_of_elan_between_those_that_are_known() {
     assert!(error.expected.contains("phase, hand"), "{error}");
 }
 
+/// A C3D file without points, with these events in its header.
+fn c3d(first_frame: u16, events: &[(f32, &str)]) -> Vec<u8> {
+    let mut bytes = vec![0; 1024];
+    bytes[..2].copy_from_slice(&[2, 0x50]);
+    bytes[6..8].copy_from_slice(&first_frame.to_le_bytes());
+    bytes[8..10].copy_from_slice(&(first_frame + 999).to_le_bytes());
+    bytes[20..24].copy_from_slice(&100f32.to_le_bytes());
+    bytes[298..300].copy_from_slice(&12345u16.to_le_bytes());
+    bytes[300..302].copy_from_slice(&(events.len() as u16).to_le_bytes());
+    for (at, (secs, name)) in events.iter().enumerate() {
+        bytes[304 + 4 * at..308 + 4 * at].copy_from_slice(&secs.to_le_bytes());
+        bytes[396 + 4 * at..396 + 4 * at + name.len()].copy_from_slice(name.as_bytes());
+    }
+    bytes[512..516].copy_from_slice(&[1, 0x50, 1, 84]);
+    bytes
+}
+
+#[test]
+fn events_of_c3d_are_stretches_between_them() {
+    let file = c3d(
+        101,
+        &[
+            (1.5, "RFS"),
+            (2.5, "RFS"),
+            (1.25, "w on"),
+            (1.75, "wOFF"),
+            (2.0, "LFS"),
+        ],
+    );
+    assert_eq!(
+        LabelFormat::of_file("walk.c3d", &file),
+        Some(LabelFormat::Audacity)
+    );
+    let labels = read(LabelFormat::Audacity, &file, Some("walk"), &lengths()).unwrap();
+    let said: Vec<String> = labels.warnings.iter().map(|w| w.text.clone()).collect();
+    // Times of a file count from its frame 1, those of a clip from its first.
+    let found: Vec<_> = labels
+        .annotations
+        .iter()
+        .map(|a| (a.class.as_str(), a.extent))
+        .collect();
+    assert_eq!(found, [("RFS", Some((0.5, 1.5)))], "{said:?}");
+    assert_eq!(said.len(), 4, "{said:?}");
+    assert!(
+        said.iter().any(|text| text.contains("`LFS` at 1.000 s")),
+        "{said:?}"
+    );
+    let pair = c3d(1, &[(0.5, "a on"), (1.0, "aoff"), (0.75, "b")]);
+    let labels = read(LabelFormat::Audacity, &pair, Some("walk"), &lengths()).unwrap();
+    assert!(
+        labels.annotations.is_empty(),
+        "off without a blank is a name of its own"
+    );
+    let none = read(
+        LabelFormat::Audacity,
+        &c3d(1, &[]),
+        Some("walk"),
+        &lengths(),
+    );
+    assert!(none.unwrap_err().expected.contains("events"));
+}
+
+#[test]
+fn frames_may_count_from_the_first_of_a_file() {
+    let first = std::collections::BTreeMap::from([("walk".to_owned(), 101)]);
+    let context = LabelContext {
+        label_rate_hz: Some(100.0),
+        first_frames: Some(&first),
+        ..LabelContext::default()
+    };
+    let tsv = "clip\tclass\tstart\tstop\nwalk.c3d\twave\t151\t201\nother\twave\t151\t201\n";
+    let csv = "file,label,start_frame,end_frame\nwalk,wave,151,201\nother,wave,151,201\n";
+    let json = r#"{"labels": [{"clip": "walk", "class": "wave", "start": 151, "stop": 201}, {"clip": "other", "class": "wave", "start": 151, "stop": 201}]}"#;
+    for (form, text) in [
+        (LabelFormat::Tsv, tsv),
+        (LabelFormat::Csv, csv),
+        (LabelFormat::Json, json),
+    ] {
+        let read = read_with(form, text.as_bytes(), &context).unwrap();
+        let extents: Vec<_> = read.annotations.iter().map(|a| a.extent.unwrap()).collect();
+        let pairs = extents.iter().zip([(0.5, 1.0), (1.51, 2.01)]);
+        let is_near =
+            |(a, b): (&(f64, f64), (f64, f64))| (a.0 - b.0).abs() + (a.1 - b.1).abs() < 1e-9;
+        assert!(
+            extents.len() == 2 && pairs.into_iter().all(is_near),
+            "{extents:?} of {text}"
+        );
+    }
+}
+
+#[test]
+fn textgrids_may_be_in_utf16() {
+    let text = "File type = \"ooTextFile\"\nObject class = \"TextGrid\"\n\n0\n3\n<exists>\n1\n\"IntervalTier\"\n\"hand\"\n0\n3\n1\n1.2\n2.4\n\"grüßen\"\n";
+    let wide: Vec<u8> = text.encode_utf16().flat_map(u16::to_be_bytes).collect();
+    let file = [&[0xFE, 0xFF], wide.as_slice()].concat();
+    let read = read(LabelFormat::Audacity, &file, Some("take_1"), &lengths()).unwrap();
+    assert_eq!(read.annotations.len(), 1);
+    assert_eq!(read.annotations[0].class, "grüßen");
+}
+
 proptest! {
     #[test]
     fn any_text_of_one_clip_is_read_or_refused(text in "(ooTextFile|-->|IntervalTier|\"|[0-9.:,\n]| ){0,60}") {

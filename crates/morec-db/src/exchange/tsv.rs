@@ -23,7 +23,8 @@ pub fn read(bytes: &[u8], context: &LabelContext) -> Result<ReadLabels, ParseErr
             (Extent::WholeClip, _) => None,
             (Extent::Frames(frames), Some(rate_hz)) => {
                 let span = TimeSpan::of_frames(frames.clone(), rate_hz);
-                Some((span.start_secs, span.stop_secs))
+                let before = context.before(&row.clip, rate_hz);
+                Some((span.start_secs - before, span.stop_secs - before))
             }
             (Extent::Frames(_), None) => {
                 *read.absent.entry(row.clip).or_default() += 1;

@@ -42,7 +42,7 @@ pub struct Args {
     #[arg(value_name = "DB")]
     db: PathBuf,
     /// Files of labels, or folders of them: TSV, CSV, JSON (morec's, BABEL's, Label Studio's), ELAN (.eaf), Audacity (.txt), BORIS
-    /// (TSV, CSV), Praat (.TextGrid), subtitles (.srt, .vtt)
+    /// (TSV, CSV), Praat (.TextGrid), subtitles (.srt, .vtt), events of C3D
     #[arg(value_name = "FILE|DIR")]
     labels: Vec<PathBuf>,
     /// Form of the files [default: by their endings and content]
@@ -104,7 +104,15 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         None if args.labels.is_empty() => {
             bail!("nothing to label: give a file, or --clip and --class")
         }
-        None => read(args, &lengths, &mut absent)?,
+        None => {
+            let clips = db.clips(&ClipFilter::default())?;
+            let files = clips.iter().map(|clip| PathBuf::from(&clip.path));
+            let c3d = files.filter(|file| {
+                file.extension()
+                    .is_some_and(|end| end.eq_ignore_ascii_case("c3d"))
+            });
+            read(args, &lengths, &c3d.collect::<Vec<_>>(), &mut absent)?
+        }
     };
     let classes = annotations.iter().map(|a| a.class.as_str());
     if let Some(doubt) = labels::doubt_of_none(classes) {
@@ -308,7 +316,13 @@ fn by_hand(args: &Args, class: &str, lengths: &ClipLengths) -> Result<Annotation
     })
 }
 
-fn read(args: &Args, lengths: &ClipLengths, absent: &mut Absent) -> Result<Vec<Annotation>> {
+fn read(
+    args: &Args,
+    lengths: &ClipLengths,
+    files: &[PathBuf],
+    absent: &mut Absent,
+) -> Result<Vec<Annotation>> {
+    let first_frames = args.reading.first_frames(files)?;
     let mut all = Vec::new();
     for path in &labels::files_of_labels(&args.labels)? {
         let shown = path.display().to_string();
@@ -330,6 +344,7 @@ fn read(args: &Args, lengths: &ClipLengths, absent: &mut Absent) -> Result<Vec<A
             lengths: Some(lengths),
             label_rate_hz: args.reading.label_rate,
             tiers: &args.reading.tier,
+            first_frames: Some(&first_frames),
         };
         let mut read =
             exchange::read_with(form, &bytes, &context).with_context(|| shown.clone())?;

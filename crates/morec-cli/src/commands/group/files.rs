@@ -41,7 +41,7 @@ pub fn run(paths: &[PathBuf], args: &Args) -> Result<ExitCode> {
             Some(_) => bail!("two clips are called {name}: labels could not tell them apart"),
         }
     })?;
-    let samples = samples(&clips, args, &params)?;
+    let samples = samples(paths, &clips, args, &params)?;
     let items = items(samples, &clips, &params);
     if items.is_empty() {
         bail!("nothing to group: no sample holds a tick of motion");
@@ -52,6 +52,7 @@ pub fn run(paths: &[PathBuf], args: &Args) -> Result<ExitCode> {
 
 /// Stretches to group: labelled samples, whole clips, or what lies between cuts.
 fn samples(
+    paths: &[PathBuf],
     clips: &BTreeMap<String, RowedClip>,
     args: &Args,
     params: &FeatureParams,
@@ -60,7 +61,7 @@ fn samples(
         let length = |(name, clip): (&String, &RowedClip)| (name.clone(), clip.length);
         return labelled(
             path,
-            &args.reading,
+            (&args.reading, paths),
             &args.settings.classes,
             &clips.iter().map(length).collect(),
         );

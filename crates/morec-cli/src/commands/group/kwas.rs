@@ -54,7 +54,7 @@ pub fn run(paths: &[PathBuf], args: &Args) -> Result<ExitCode> {
             let length = |(name, clip): (&String, &PosedClip)| (name.clone(), clip.length);
             labelled(
                 path,
-                &args.reading,
+                (&args.reading, paths),
                 &args.settings.classes,
                 &clips.iter().map(length).collect(),
             )?

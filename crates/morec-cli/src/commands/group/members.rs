@@ -1,7 +1,7 @@
 //! Items to group and their grouping by each method, for clips and databases alike.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Result, bail};
 use morec::TimeSpan;
@@ -106,11 +106,11 @@ impl GroupList {
 /// The samples of the table `path` that lie in clips of these lengths, of `classes` or of all.
 pub fn labelled(
     path: &Path,
-    reading: &LabelArgs,
+    (reading, files): (&LabelArgs, &[PathBuf]),
     classes: &[String],
     clips: &BTreeMap<String, ClipLength>,
 ) -> Result<Vec<GroupedSample>> {
-    let labels = labels::read(path, reading)?;
+    let labels = labels::read(path, reading, files)?;
     let resolved = labels.resolve(clips);
     for warning in labels.warnings.iter().chain(&resolved.warnings) {
         eprintln!("morec: {}: {warning}", path.display());
