@@ -174,6 +174,9 @@ impl JsonSource {
                 return SourceEvent::Quiet;
             }
         };
+        if let Some(said) = pose.left_out() {
+            self.notices.add(|| format!("line {number}"), said);
+        }
         if pose.shows_body() {
             self.lines.showed_body(connection);
         }

@@ -64,6 +64,8 @@ pub struct PoseLine {
     pub is_sideless: bool,
     /// Points that only other frames tell what they are, in the order of their numbers.
     pub points: Vec<Vec3>,
+    /// Names in `positions` that are of no part of the body.
+    pub unknown: Vec<String>,
     /// Empty if the line gave positions.
     pub rotations: Vec<Quat>,
 }
@@ -85,13 +87,17 @@ impl PoseLine {
             positions: [UNKNOWN; Role::COUNT],
             is_sideless: false,
             points: Vec::new(),
+            unknown: Vec::new(),
             rotations: Vec::new(),
         };
         if line.rotations.is_empty() {
             for (name, position) in &line.positions {
-                let role = pose.role_at(name)?;
-                if let Some(position) = position {
-                    pose.positions[role.index()] = Vec3::from(*position);
+                match (pose.role_at(name)?, position) {
+                    (Some(role), Some(position)) => {
+                        pose.positions[role.index()] = Vec3::from(*position);
+                    }
+                    (Some(_), None) => {}
+                    (None, _) => pose.unknown.push(shown(name)),
                 }
             }
             pose.number(line.points)?;
@@ -99,16 +105,29 @@ impl PoseLine {
             pose.turn(&line)?;
         }
         if pose.known() == 0 && pose.points.is_empty() {
+            if let Some(name) = pose.unknown.first() {
+                return Err(no_part("positions", name));
+            }
             let text = "expected `positions`, `points` or `rotations` of some part of the body, found none";
             return Err(text.to_owned());
         }
         Ok(pose)
     }
 
-    /// The role of a name in `positions`, by the hand of the line.
-    fn role_at(&mut self, name: &str) -> Result<Role, String> {
+    /// Says which names were left out, if any were.
+    pub fn left_out(&self) -> Option<String> {
+        let first = self.unknown.first()?;
+        let more = match self.unknown.len() - 1 {
+            0 => String::new(),
+            more => format!(" (and {more} more names are left out)"),
+        };
+        Some(format!("left out: {}{more}", no_part("positions", first)))
+    }
+
+    /// The role of a name in `positions`, by the hand of the line; none of a name that is of no part of the body.
+    fn role_at(&mut self, name: &str) -> Result<Option<Role>, String> {
         if let (None, Some(role)) = (self.hand, Role::from_name(name)) {
-            return Ok(role);
+            return Ok(Some(role));
         }
         match (hand_role(name, self.hand.unwrap_or(Hand::Right)), self.hand) {
             (Some((Some(of), _)), Some(hand)) if of != hand => {
@@ -119,14 +138,14 @@ impl PoseLine {
             }
             (Some((of, role)), hand) => {
                 self.is_sideless |= of.is_none() && hand.is_none();
-                Ok(role)
+                Ok(Some(role))
             }
             (None, Some(_)) => Err(format!(
                 "positions.{0}: no point of a hand is called {0}; there are {1}",
                 shown(name),
                 hand_names()
             )),
-            (None, None) => role("positions", name),
+            (None, None) => Ok(None),
         }
     }
 
@@ -149,7 +168,7 @@ impl PoseLine {
         let mut locals = [Quat::identity(); Role::COUNT];
         let mut named = [false; Role::COUNT];
         for (name, rotation) in &line.rotations {
-            let role = role("rotations", name)?;
+            let role = Role::from_name(name).ok_or_else(|| no_part("rotations", &shown(name)))?;
             let Some(rotation) = rotation else { continue };
             let rotation = rotation_of_xyzw(*rotation).ok_or_else(|| {
                 format!("rotations.{name}: expected [x, y, z, w] of length 1, found {rotation:?}")
@@ -233,15 +252,12 @@ fn hand_names() -> String {
     format!("wrist, {}", bare.join(", "))
 }
 
-/// The role of this name under `key`.
-fn role(key: &str, name: &str) -> Result<Role, String> {
-    Role::from_name(name).ok_or_else(|| {
-        let names = Role::BODY.map(Role::name).join(", ");
-        let name = shown(name);
-        format!(
-            "{key}.{name}: no part of the body is called {name}; there are {names}, and points of hands from left_palm to right_little_tip"
-        )
-    })
+/// What is wrong with a name under `key`.
+fn no_part(key: &str, name: &str) -> String {
+    let names = Role::BODY.map(Role::name).join(", ");
+    format!(
+        "{key}.{name}: no part of the body is called {name}; there are {names}, and points of hands from left_palm to right_little_tip"
+    )
 }
 
 /// A sender's text as it may be shown in a terminal: short, and nothing in it that a terminal obeys.
@@ -428,6 +444,19 @@ mod tests {
         assert_eq!(
             (pose.time_secs, pose.known()),
             (None, 1 << Role::Head.index())
+        );
+    }
+
+    #[test]
+    fn names_of_no_part_of_the_body_are_left_out_and_said() {
+        let line =
+            r#"{"positions": {"head": [0, 1.6, 0], "LeftToe": [0, 0, 0], "tail": [0, 0, 0]}}"#;
+        let pose = PoseLine::of_line(line).unwrap();
+        assert_eq!(pose.known(), 1 << Role::Head.index());
+        let said = pose.left_out().unwrap();
+        assert!(
+            said.contains("LeftToe") && said.contains("1 more"),
+            "{said}"
         );
     }
 

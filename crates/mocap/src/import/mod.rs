@@ -37,7 +37,7 @@ pub use options::{ImportOptions, Stated};
 pub use report::ImportReport;
 pub use rest::rest_frames;
 pub use signed_axis::SignedAxis;
-pub use take::Take;
+pub use take::{Take, points_by_role};
 
 #[cfg(test)]
 mod tests;

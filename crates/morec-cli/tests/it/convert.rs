@@ -120,6 +120,39 @@ fn an_ending_that_promises_another_format_is_refused() {
     assert!(ran.err.contains(".csv"), "{ran:?}");
 }
 
+/// What `convert` writes as lines of JSON is what `live` reads: by the parts of the body, whatever the file calls them and whichever
+/// way is up in it.
+#[test]
+fn lines_of_json_are_read_live() {
+    let clip = |name: &str| format!("{}/demo/{name}.mclip", env!("CARGO_MANIFEST_DIR"));
+    let folder = Folder::with(&[(
+        "labels.tsv",
+        "clip\tclass\tstart_secs\tstop_secs\nsignals_1\tx\t1.0\t2.5\nsignals_1\tx\t4.0\t5.5\n",
+    )]);
+    let train = |more: &[&str]| folder.morec(&[&["train", "--everyday", "never"], more].concat());
+    let signals = clip("signals_1");
+    let words = [
+        "--clips",
+        &signals,
+        "--labels",
+        "labels.tsv",
+        "-o",
+        "i.index",
+    ];
+    train(&words).ok();
+    let to = ["convert", &signals, "-o", "poses.jsonl"];
+    folder.morec(&to).ok();
+    let ran = folder.morec_fed(
+        &["live", "i.index", "--listen", "json:-", "--quiet"],
+        Some("poses.jsonl"),
+    );
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    let lines = std::fs::read_to_string(folder.path().join("poses.jsonl")).unwrap();
+    let frames = format!("{} frames", lines.lines().count());
+    assert!(ran.err.contains(&frames), "{}", ran.err);
+    assert!(!ran.err.contains("malformed"), "{}", ran.err);
+}
+
 #[test]
 fn folders_are_written_whole_in_any_form() {
     let folder = Folder::with(&[

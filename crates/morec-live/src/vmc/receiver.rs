@@ -463,7 +463,7 @@ impl<P: Peer> Taking<'_, P> {
         }
         self.learn();
         let (Some((mask, rig)), Some(actor)) = (self.sender.rig.clone(), self.sender.actor) else {
-            self.counts.incomplete += 1;
+            self.counts.incomplete += u64::from(!self.is_watched());
             return;
         };
         self.counts.incomplete += u64::from(fresh & mask != mask);
@@ -490,6 +490,12 @@ impl<P: Peer> Taking<'_, P> {
             self.sender.clock = SenderClock::default();
             self.counts.interruptions += 1;
         }
+    }
+
+    /// True while it is watched before its skeleton is believed: nothing is wrong with such frames.
+    fn is_watched(&self) -> bool {
+        let since_secs = self.sender.changed_secs;
+        since_secs.is_some_and(|since_secs| self.now_secs - since_secs < LEARN_SECS)
     }
 
     /// Learns which bones there are, and says so when it has changed.

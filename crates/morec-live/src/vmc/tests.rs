@@ -739,3 +739,22 @@ fn fingers_arrive_where_the_clip_has_them() {
         }
     }
 }
+
+#[test]
+fn frames_before_the_skeleton_is_known_are_no_faults() {
+    let mut heard = Heard::new(&VmcOptions::default());
+    let mut sender = VmcSender::new(Bundling::Bytes(1500), false);
+    heard.play(&mut sender, 0.0, 1.0, 60.0, |_| false);
+    assert!(heard.frames.len() > 40, "{}", heard.frames.len());
+    assert_eq!(heard.receiver.counts().incomplete, 0);
+    // A sender that never shows a body is one.
+    let mut head = Heard::new(&VmcOptions::default());
+    let mut packet = Vec::new();
+    let pose = [0.0, 1.6, 0.0, 0.0, 0.0, 0.0, 1.0].map(Arg::Float);
+    let args = [&[Arg::Text("Head")][..], &pose].concat();
+    write_message(&mut packet, "/VMC/Ext/Bone/Pos", &args);
+    for i in 0..60 {
+        head.packet(1, f64::from(i) / 60.0, &packet);
+    }
+    assert!(head.receiver.counts().incomplete > 20);
+}

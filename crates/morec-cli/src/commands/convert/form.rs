@@ -5,7 +5,7 @@ use std::path::Path;
 use anyhow::{Result, bail};
 use morec::clip::Clip;
 use morec::formats::{bvh, c3d, gltf, jsonl, trc};
-use morec::import::{ImportOptions, Take, normalize};
+use morec::import::{ImportOptions, Take, normalize, points_by_role};
 use morec::tables::{Content, write_csv, write_npz};
 
 use super::wanted::Wanted;
@@ -20,7 +20,7 @@ pub enum ClipForm {
     C3d,
     /// Points, tab-separated
     Trc,
-    /// Points, a line of JSON for each frame
+    /// Points by the parts of the body, a line of JSON for each frame, as `morec live` reads them; metres, Y up
     Jsonl,
     /// Binary glTF: skeleton and rotations, metres
     Glb,
@@ -91,10 +91,8 @@ pub fn write_clip(clip: &Clip, path: &Path) -> Result<()> {
 pub(super) fn write(clip: Clip, form: ClipForm, wanted: &Wanted, path: &Path) -> Result<()> {
     match form {
         ClipForm::Bvh => output::write_whole(path, |out| bvh::write(&clip, out)),
-        ClipForm::C3d | ClipForm::Trc | ClipForm::Jsonl => {
-            write_points(&points_of(clip, wanted)?, form, path)
-        }
-        ClipForm::Glb | ClipForm::Vrma | ClipForm::Npz | ClipForm::Csv => {
+        ClipForm::C3d | ClipForm::Trc => write_points(&points_of(clip, wanted)?, form, path),
+        ClipForm::Jsonl | ClipForm::Glb | ClipForm::Vrma | ClipForm::Npz | ClipForm::Csv => {
             let take = normalize(clip, &wanted.import)?;
             write_take(&take, form, wanted.content, path)
         }
@@ -105,8 +103,10 @@ pub(super) fn write(clip: Clip, form: ClipForm, wanted: &Wanted, path: &Path) ->
 pub fn write_take(take: &Take, form: ClipForm, content: Content, path: &Path) -> Result<()> {
     match form {
         ClipForm::Bvh => output::write_whole(path, |out| bvh::write(&take.clip, out)),
-        ClipForm::C3d | ClipForm::Trc | ClipForm::Jsonl => {
-            write_points(&take.clip.to_points(Some(1.0)), form, path)
+        ClipForm::C3d | ClipForm::Trc => write_points(&take.clip.to_points(Some(1.0)), form, path),
+        ClipForm::Jsonl => {
+            let points = points_by_role(&take.clip, &take.roles);
+            output::write_whole(path, |out| jsonl::write(&points, out))
         }
         ClipForm::Glb => output::write_whole(path, |out| gltf::write(&take.clip, out)),
         ClipForm::Vrma => {
@@ -123,8 +123,7 @@ pub fn write_take(take: &Take, form: ClipForm, content: Content, path: &Path) ->
 fn write_points(points: &Clip, form: ClipForm, path: &Path) -> Result<()> {
     output::write_whole(path, |out| match form {
         ClipForm::C3d => c3d::write(points, out),
-        ClipForm::Trc => trc::write(points, out),
-        _ => jsonl::write(points, out),
+        _ => trc::write(points, out),
     })
 }
 

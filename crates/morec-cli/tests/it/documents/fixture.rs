@@ -14,6 +14,9 @@ const CLASSES: [(&str, &str); 3] = [
     ("circle", "traveling"),
 ];
 
+/// A clip of both kinds of folders.
+pub const CLIP: &str = "new/signals_3.bvh";
+
 /// A folder that each document gets a copy of.
 pub struct Fixture(Folder);
 

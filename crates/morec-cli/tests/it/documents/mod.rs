@@ -8,6 +8,8 @@
 //! - `<!-- check: output -->`: it also runs on the real clips, where they are, and prints the lines that it shows;
 //! - `<!-- check: output everywhere -->`: it prints the lines that it shows, whatever clips there are;
 //! - `<!-- check: none -->`: nothing is checked.
+//!
+//! `morec live` listens to a clip wherever its index is in the folder; elsewhere, and of `morec send`, options are checked.
 
 mod blocks;
 mod fixture;
@@ -74,9 +76,29 @@ fn prelude(mode: Mode) -> &'static str {
 set -e
 morec() {
     case "$1" in
-        live | send) "$MOREC" "$@" --help >/dev/null ;;
+        send) "$MOREC" "$@" --help >/dev/null ;;
+        live) if [ -f "$2" ]; then live "$@"; else "$MOREC" "$@" --help >/dev/null; fi ;;
         *) "$MOREC" "$@" ;;
     esac
+}
+# Listens to a clip in place of a tracker or a camera, and runs `true` in place of programs.
+live() {
+    left=$#
+    option=
+    while [ "$left" -gt 0 ]; do
+        word=$1
+        shift
+        case "$option $word" in
+            "--listen json:-") ;;
+            "--listen "*) word="clip://$CLIP?speed=0" ;;
+            "--on "*) word="${word%%=*}=true" ;;
+            "--emit ws:"*) word=ws://127.0.0.1:0 ;;
+        esac
+        option=$word
+        set -- "$@" "$word"
+        left=$((left - 1))
+    done
+    "$MOREC" "$@" --quiet
 }
 cargo() { [ "$*" != "run --release -- demo" ] || "$MOREC" demo --quiet; }
 "#
@@ -96,6 +118,7 @@ fn run(block: &Block, mode: Mode, folder: &Path) -> Result<String, String> {
     let output = Command::new("sh")
         .args(["-c", &script])
         .env("MOREC", env!("CARGO_BIN_EXE_morec"))
+        .env("CLIP", fixture::CLIP)
         .current_dir(folder)
         .stdin(Stdio::null())
         .output()
@@ -219,6 +242,10 @@ fn a_command_that_does_not_work_is_noticed() {
         Mode::Options
     ));
     assert!(fails("morec live x.index --no-such-option", Mode::Run));
+    assert!(fails(
+        "morec inspect --json > x.index\nmorec live x.index --listen webcam",
+        Mode::Run
+    ));
     assert!(fails("morec no-such-command", Mode::Options));
     let shown = &blocks("```console\n$ morec --version\nmorec 1\n…\nend\n```\n")[0];
     assert!(compare(shown, "begin\n morec 1\nmore\nend\n").is_ok());
