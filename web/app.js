@@ -1,8 +1,10 @@
 // The page: buttons, pictures and lists around `teaching.js`.
 import * as morec from "./vendor/morec/morec.js";
 import { trainInWorker } from "./vendor/morec/worker.js";
+import { keep, place } from "./kept.js";
+import { Nearness } from "./nearness.js";
 import { outlets } from "./outlets.js";
-import { camera, drawLandmarks, film, inTurn, recorded } from "./sources.js";
+import { camera, drawLandmarks, film, inTurn, inWords, recorded } from "./sources.js";
 import { Teaching } from "./teaching.js";
 
 const MEDIAPIPE = "./vendor/mediapipe";
@@ -12,36 +14,46 @@ const at = (id) => document.getElementById(id);
 const teaching = new Teaching(morec, trainInWorker);
 const drawing = at("drawing").getContext("2d");
 const turns = inTurn();
+const near = new Nearness();
 /** Sources that run or wait for their turn. */
 let running = 0;
 let busy = false;
 let send = () => {};
 
 const say = (text) => (at("state").textContent = text);
+/** Beside the buttons of sources. */
+const saySource = (text) => (at("source-state").textContent = text);
+/** Over the picture, for somebody who stands away from it. */
+const sayLarge = (text) => {
+  if (at("large").textContent !== text) at("large").textContent = text;
+};
 const wait = (secs) => new Promise((done) => setTimeout(done, 1000 * secs));
 
-/** Runs `job`; what goes wrong is said. */
-const handled = (job) => async (...given) => {
+/** Runs `job`; what goes wrong is said, in words. */
+const handled = (job, said = say) => async (...given) => {
   try {
     await job(...given);
   } catch (error) {
-    say(String(error?.message ?? error));
+    said(inWords(error));
   } finally {
     show();
   }
 };
-const on = (id, type, job) => at(id).addEventListener(type, handled(job));
+const on = (id, type, job, said) => at(id).addEventListener(type, handled(job, said));
 
 async function run(source) {
   running++;
+  saySource("");
   show();
   try {
     await turns.run(async (signal) => {
       try {
         await source((secs, positions, seen) => {
           const first = !teaching.hasPoses;
+          near.pass(secs);
           teaching.pose(secs, positions);
           if (first) show();
+          showNearness();
           draw(positions, seen);
         }, signal);
       } finally {
@@ -72,6 +84,27 @@ function draw(positions, seen) {
     drawing.arc(canvas.width / 2 + (place[0] - middle[0]) * scale, canvas.height / 2 - (place[1] - middle[1]) * scale, 5, 0, 7);
     drawing.fill();
   }
+}
+
+/** A bar for each motion of the index, and the one that was recognised. */
+function showNearness() {
+  const rows = near.rows;
+  const bars = at("bars");
+  if (bars.children.length !== rows.length) {
+    bars.replaceChildren(...rows.map(() => {
+      const row = document.createElement("li");
+      row.append(document.createElement("meter"), " ", document.createElement("span"));
+      return row;
+    }));
+  }
+  rows.forEach(({ name, share, word }, number) => {
+    const [meter, text] = bars.children[number].children;
+    meter.value = share;
+    meter.setAttribute("aria-label", name);
+    const said = word ? `${name}: ${word}` : name;
+    if (text.textContent !== said) text.textContent = said;
+  });
+  if (!busy) sayLarge(near.recognised);
 }
 
 /** What can be done, and what there is. */
@@ -118,15 +151,18 @@ async function record() {
   try {
     for (let left = COUNTDOWN_SECS; left > 0; left--) {
       say(`${name} in ${left} …`);
+      sayLarge(String(left));
       await wait(1);
     }
     say(`Perform ${name} now.`);
+    sayLarge(name);
     teaching.record();
     await wait(secs);
     teaching.keep(name);
     say(`Kept: ${teaching.classes().get(name.trim()).length} of ${name}. Two of each are enough.`);
   } finally {
     busy = false;
+    sayLarge("");
   }
 }
 
@@ -156,9 +192,9 @@ const onFile = (id, job) => on(id, "change", async () => {
   const [file] = at(id).files;
   at(id).value = "";
   if (file) await job(file);
-});
+}, id === "source-file" ? saySource : say);
 
-on("camera", "click", () => run(camera(at("video"), MEDIAPIPE, at("track").value)));
+on("camera", "click", () => run(camera(at("video"), MEDIAPIPE, at("track").value)), saySource);
 on("track", "change", () => turns.stop());
 on("stop", "click", () => turns.stop());
 onFile("source-file", async (file) => run(file.type.startsWith("video/") ? film(at("video"), MEDIAPIPE, at("track").value, file) : recorded(await file.text())));
@@ -175,7 +211,13 @@ onFile("samples-file", async (file) => teaching.restore(await file.text()));
 on("save-index", "click", () => download(teaching.index.toBytes(), "motions.index"));
 onFile("index-file", async (file) => teaching.load(new Uint8Array(await file.arrayBuffer())));
 
+let shownIndex = null;
 teaching.addEventListener("change", () => {
+  if (teaching.index !== shownIndex) {
+    shownIndex = teaching.index;
+    near.begin(shownIndex?.classes ?? []);
+    showNearness();
+  }
   listClasses();
   show();
 });
@@ -187,6 +229,7 @@ teaching.addEventListener("diagnosis", ({ detail }) => {
 });
 teaching.addEventListener("motion", ({ detail }) => {
   send(detail);
+  near.take(detail);
   if (detail.phase !== "end") return;
   const row = document.createElement("li");
   row.className = "now";
@@ -201,3 +244,10 @@ try {
   say(`socket: ${error.message}`);
 }
 show();
+try {
+  const kept = await place();
+  if (kept) await keep(teaching, kept, (error) => say(inWords(error)));
+} catch (error) {
+  // A browser that keeps nothing, as in a private window: the page works all the same.
+  console.warn(error);
+}

@@ -4,6 +4,7 @@
 import { posesOf } from "./teaching.js";
 
 export { camera, drawLandmarks, film, inTurn } from "./vendor/camera.js";
+export { inWords } from "./vendor/words.js";
 export { handsOf, partsOf } from "./vendor/mediapipe.js";
 
 const aborted = (signal) => new Promise((done) => signal.addEventListener("abort", done, { once: true }));

@@ -172,10 +172,23 @@ export class Teaching extends EventTarget {
   }
 
   restore(text) {
-    const { morec_samples: version, samples } = JSON.parse(text);
-    if (version !== 1 || !Array.isArray(samples)) throw new Error("This is no file of samples.");
+    const samples = samplesOf(text);
     this.#change(() => (this.samples = samples));
   }
+
+  /** Begins with samples that were saved: nothing was there before them that could come back. */
+  begin(text) {
+    this.samples = samplesOf(text);
+    this.#undone = [];
+    this.#emit("change");
+  }
+}
+
+/** The samples of a saved text. */
+function samplesOf(text) {
+  const { morec_samples: version, samples } = JSON.parse(text);
+  if (version !== 1 || !Array.isArray(samples)) throw new Error("This is no file of samples.");
+  return samples;
 }
 
 /** Poses as lines of JSON, which morec reads as a clip. */

@@ -99,7 +99,11 @@ test("the page teaches, trains, recognises, saves and loads", { skip, timeout: 1
   const [download] = await Promise.all([page.waitForEvent("download"), page.locator("#save-index").click()]);
   const bytes = readFileSync(await download.path());
   assert.deepEqual(morec.Index.fromBytes(bytes).classes.toSorted(), ["bow", "wave"]);
+  // What was taught is there when the page is opened again, the index with it.
   await page.reload();
+  await page.getByText(/Recognises (wave, bow|bow, wave)/).waitFor();
+  assert.equal(await page.locator("#classes li").count(), 2);
+  assert.equal(await page.locator("#bars li").count(), 2);
   await page.locator("#index-file").setInputFiles({ name: "motions.index", mimeType: "application/octet-stream", buffer: bytes });
   await page.getByText(/Recognises/).waitFor();
   assert.deepEqual(errors, []);
@@ -162,7 +166,7 @@ test("events go to the page that shows this one, and to a socket", { skip }, asy
 
 test("without a body, and with a file that is none, the page says what is wrong", { skip }, async () => {
   await page.locator("#source-file").setInputFiles({ name: "no.jsonl", mimeType: "application/json", buffer: Buffer.from("no poses") });
-  await page.waitForFunction(() => document.getElementById("state").textContent.length > 0);
+  await page.waitForFunction(() => /not what was expected/.test(document.getElementById("source-state").textContent));
   await page.locator("#index-file").setInputFiles({ name: "no.index", mimeType: "application/octet-stream", buffer: Buffer.from("no index") });
   await page.waitForFunction(() => /index/.test(document.getElementById("state").textContent));
 });

@@ -18,7 +18,7 @@ use crate::websocket::greet::{Manners, PATIENCE, greet};
 use crate::{Address, LiveError, Notices};
 
 /// The page's own files: path, type, content.
-const PAGE: [(&str, &str, &str); 4] = [
+const PAGE: [(&str, &str, &str); 5] = [
     ("/", "text/html", include_str!("webcam/index.html")),
     (
         "/page.js",
@@ -34,6 +34,11 @@ const PAGE: [(&str, &str, &str); 4] = [
         "/mediapipe.js",
         "text/javascript",
         include_str!("webcam/mediapipe.js"),
+    ),
+    (
+        "/words.js",
+        "text/javascript",
+        include_str!("webcam/words.js"),
     ),
 ];
 /// Where the page finds MediaPipe's files.

@@ -2,6 +2,7 @@
 // `take(secs, positions, seen)` for each pose until the signal is aborted or the source ends: places of parts by name, metres, Y up; what
 // `drawLandmarks` draws.
 import { tracker } from "./mediapipe.js";
+import { devices } from "./words.js";
 
 /** What plays in `video`: `what` MediaPipe, whose files are in `folder`, tracks of it. */
 const pictures = (video, folder, what) => async (take, signal) => {
@@ -24,7 +25,7 @@ const pictures = (video, folder, what) => async (take, signal) => {
 
 /** The camera, shown in `video`. */
 export const camera = (video, folder, what) => async (take, signal) => {
-  const stream = await navigator.mediaDevices.getUserMedia({ video: { width: 640, height: 480 }, audio: false });
+  const stream = await devices().getUserMedia({ video: { width: 640, height: 480 }, audio: false });
   try {
     video.srcObject = stream;
     await video.play();

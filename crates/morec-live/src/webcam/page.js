@@ -1,5 +1,6 @@
 // The page of `--listen webcam`: poses go to morec as lines of JSON.
 import { camera, drawLandmarks, inTurn } from "./camera.js";
+import { inWords } from "./words.js";
 
 const at = (id) => document.getElementById(id);
 const say = (text) => (at("state").textContent = text);
@@ -34,7 +35,7 @@ const turns = inTurn();
 const run = () => turns.run((signal) => {
   say(socket?.readyState === WebSocket.OPEN ? "morec listens." : "Starting the camera …");
   return camera(at("video"), "mediapipe", at("track").value)(take, signal);
-}).catch((error) => say(String(error?.message ?? error)));
+}).catch((error) => say(inWords(error)));
 
 at("track").value = document.body.dataset.track;
 at("track").addEventListener("change", run);

@@ -43,6 +43,7 @@ fn the_page_and_mediapipe_are_served_and_nothing_else_is() {
         ("/page.js", "camera.js"),
         ("/camera.js?1", "landmarks"),
         ("/mediapipe.js", "Handedness"),
+        ("/words.js", "NotAllowedError"),
         ("/mediapipe/pose.js", "let pose;"),
     ] {
         let text = get(at, path);
