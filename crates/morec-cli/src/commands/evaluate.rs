@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::Context;
+use morec::crossval::measure_as_taught;
 use morec::formats::Warning;
 use morec::import::ImportOptions;
 use morec::labels::read_detections;
@@ -85,8 +86,18 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let unknown = lengths(&args.unknown, &args.read)?;
     let unknown_names: BTreeSet<String> = unknown.keys().cloned().collect();
     clips.extend(unknown);
-    let resolved = labels.resolve(&clips);
+    let mut resolved = labels.resolve(&clips);
     warn(&args.labels, &resolved.warnings);
+    let of_whole_clips = resolved.samples.iter().any(|s| s.whole_clip);
+    let moving = match of_whole_clips || args.index.is_some() {
+        true => args.moving_clips()?,
+        false => Vec::new(),
+    };
+    if measure_as_taught(&mut resolved.samples, &moving) > 0 {
+        eprintln!(
+            "morec: labels of whole clips are measured as they teach, without the still ends"
+        );
+    }
     let (founds, absent) = table.resolve(&clips);
     warn(&args.found, &absent);
     let settings = &args.settings;
@@ -96,10 +107,9 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let mut performances = Vec::new();
     if let Some(index) = &args.index {
         let model = open_index(index)?.model;
-        let clips = args.moving_clips()?;
-        measures.explain(&model, &clips);
+        measures.explain(&model, &moving);
         if args.report.is_some() {
-            performances = measures.performances(&model, &clips);
+            performances = measures.performances(&model, &moving);
         }
     }
     let (evaluation, timelines) = (&measures.evaluation, &measures.timelines);

@@ -139,3 +139,34 @@ fn a_wrong_command_line_is_exit_code_2() {
     let folder = folder();
     assert_eq!(evaluate(folder.path(), &["--loud"]).status.code(), Some(2));
 }
+
+/// A label of a whole clip teaches without its still ends, and so it is measured.
+#[test]
+fn labels_of_whole_clips_are_measured_as_they_teach() {
+    use morec::synth::{Person, Script};
+
+    let folder = tempfile::tempdir().unwrap();
+    let person = Person::draw(3, 0);
+    let script = Script::new(3, person).rest(2.0).play("wave");
+    let take = script.rest_until(8.0).film("wave_1", 30.0).unwrap();
+    let mut bytes = Vec::new();
+    morec::formats::bvh::write(&take.clip, &mut bytes).unwrap();
+    fs::create_dir(folder.path().join("clips")).unwrap();
+    fs::write(folder.path().join("clips/wave_1.bvh"), bytes).unwrap();
+    fs::write(
+        folder.path().join("labels.tsv"),
+        "clip\tclass\nwave_1\twave\n",
+    )
+    .unwrap();
+    let span = take.labels[0].span;
+    let (start, stop) = (span.start_secs, span.stop_secs);
+    let found = format!("clip\tclass\tstart_secs\tstop_secs\nwave_1\twave\t{start}\t{stop}\n");
+    fs::write(folder.path().join("found.tsv"), found).unwrap();
+    let output = evaluate(folder.path(), &["--json"]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    assert!(text(&output.stderr).contains("without the still ends"));
+    let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let overlaps = json["overlap"].as_array().unwrap();
+    let half = overlaps.iter().find(|o| o["min_iou"] == 0.5).unwrap();
+    assert_eq!(half["f1"], 1.0, "{json:#}");
+}

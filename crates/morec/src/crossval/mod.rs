@@ -33,6 +33,7 @@
 //! ```
 
 mod folds;
+mod whole;
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -52,6 +53,7 @@ use crate::train::{
 
 use folds::thin;
 pub use folds::{Fold, FoldBy, folds};
+pub use whole::{measure_as_taught, taught_span};
 
 /// Data of a cross-validation.
 #[derive(Debug, Clone)]
@@ -412,7 +414,7 @@ impl FoldTest<'_> {
             .map(|s| GroundTruth {
                 clip: test.name.clone(),
                 class: s.class.clone(),
-                span: s.span.map(in_copy),
+                span: whole::taught_part(s, clip).map(in_copy),
             })
             .collect();
         let model = self.recognizers.model();
