@@ -118,6 +118,8 @@ fn is_broken_pipe(error: &anyhow::Error) -> bool {
 }
 
 #[cfg(test)]
+mod advice;
+#[cfg(test)]
 mod studio_lines;
 #[cfg(test)]
 mod vocabulary;

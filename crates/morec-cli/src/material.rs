@@ -19,6 +19,7 @@ use crate::labels::{self, LabelArgs};
 
 /// Training data: clips, labels, background.
 #[derive(Args, Debug)]
+#[command(next_help_heading = "Clips and labels")]
 pub struct MaterialArgs {
     /// Clips, or folders of clips, that the labels refer to
     #[arg(long, value_name = "DIR|CLIP", num_args = 1.., required_unless_present = "db")]

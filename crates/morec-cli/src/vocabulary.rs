@@ -185,3 +185,49 @@ fn help_fits_eighty_columns() {
     command.build();
     check(&mut command, "morec");
 }
+
+/// What must be given stands in the first group of a help that has several; what only says how to read files, in the last.
+#[test]
+fn what_is_required_comes_first_and_groups_hold_together() {
+    fn check(command: &Command, path: &str) {
+        let arguments = || command.get_arguments().filter(|arg| !arg.is_hide_set());
+        let mut groups: Vec<Option<&str>> = Vec::new();
+        for arg in arguments().filter(|arg| !arg.is_positional()) {
+            let heading = arg.get_help_heading();
+            if !groups.contains(&heading) {
+                groups.push(heading);
+            }
+        }
+        let first = groups.iter().find(|heading| heading.is_some());
+        for arg in arguments().filter(|arg| arg.is_required_set() && !arg.is_positional()) {
+            let heading = arg.get_help_heading();
+            let is_first = heading.is_none() || first == Some(&heading);
+            assert!(is_first, "{path}: {} is in {heading:?}", arg.get_id());
+        }
+        for id in ["output", "json", "report"] {
+            let heading = arguments()
+                .find(|arg| arg.get_id() == id)
+                .map(|arg| arg.get_help_heading());
+            assert_ne!(heading, Some(Some("Reading clips")), "{path}: --{id}");
+        }
+        for below in command.get_subcommands() {
+            check(below, &format!("{path} {}", below.get_name()));
+        }
+    }
+    let mut command = super::Cli::command();
+    command.build();
+    check(&command, "morec");
+    let train = command.find_subcommand("train").unwrap();
+    let heading = |id: &str| {
+        let mut arguments = train.get_arguments();
+        arguments
+            .find(|arg| arg.get_id() == id)
+            .unwrap()
+            .get_help_heading()
+    };
+    assert_eq!(heading("output"), None);
+    assert_eq!(heading("clips"), Some("Clips and labels"));
+    assert_eq!(heading("labels"), Some("Clips and labels"));
+    assert_eq!(heading("mirror"), Some("Training"));
+    assert_eq!(heading("file_rate"), Some("Reading clips"));
+}

@@ -15,6 +15,7 @@ use crate::{OperationError, TrainSettings, text};
 /// How a cross-validation divides its samples, and what else it tests.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, clap::Args)]
 #[serde(default, deny_unknown_fields)]
+#[command(next_help_heading = "Cross-validation")]
 pub struct CrossvalSettings {
     /// Part that is left out of training in turn
     #[arg(long, value_enum, default_value = "person")]
@@ -103,14 +104,19 @@ pub struct CrossvalMeasures {
 }
 
 impl CrossvalSettings {
+    /// The part that is left out in turn, with the seed of the shuffle.
+    pub fn fold_by(&self) -> FoldBy {
+        match self.by {
+            LeftOut::Half => FoldBy::Half { seed: self.seed },
+            LeftOut::Clip => FoldBy::Clip,
+            LeftOut::Person => FoldBy::Person,
+            LeftOut::Own => FoldBy::Own,
+        }
+    }
+
     fn options(&self) -> CrossvalOptions {
         CrossvalOptions {
-            by: match self.by {
-                LeftOut::Half => FoldBy::Half { seed: self.seed },
-                LeftOut::Clip => FoldBy::Clip,
-                LeftOut::Person => FoldBy::Person,
-                LeftOut::Own => FoldBy::Own,
-            },
+            by: self.fold_by(),
             samples_per_class: self.samples,
             perturbations: self.perturb.clone(),
             sensitivities: self.sensitivities.clone(),

@@ -18,6 +18,7 @@ use crate::{OperationError, text};
 /// How an index is trained.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, clap::Args)]
 #[serde(default, deny_unknown_fields)]
+#[command(next_help_heading = "Training")]
 pub struct TrainSettings {
     /// Learn only these classes, separated by commas [default: every class of the labels]
     #[arg(long, value_delimiter = ',', value_name = "CLASSES")]

@@ -49,10 +49,10 @@ pub struct Args {
     #[arg(long, value_name = "DIR|CLIP", num_args = 1..)]
     unknown: Vec<PathBuf>,
     /// Print one JSON object instead of tables
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     json: bool,
     /// Write a page of HTML too, one file without outside links
-    #[arg(long, value_name = "HTML")]
+    #[arg(long, value_name = "HTML", help_heading = "Output")]
     report: Option<PathBuf>,
 }
 
@@ -224,23 +224,23 @@ fn write_perturbed(
     }
     let mut table = TextTable::new([
         "copy",
-        "accuracy",
-        "F1",
-        "event F1",
         "found",
+        "event F1",
+        "F1",
         "alarms/min",
         "delay",
+        "accuracy",
     ]);
     let copies = perturbed.iter().map(|(p, e)| (p.to_string(), e));
     for (name, e) in std::iter::once(("as it is".to_owned(), clean)).chain(copies) {
         table.row(vec![
             name,
-            figures::figure(e.thesis.accuracy),
-            figures::figure(e.f1_at(MEASURED_OVERLAP)),
-            figures::figure(e.events.f1),
             format!("{} of {}", e.events.matched, e.totals.samples),
+            figures::figure(e.events.f1),
+            figures::figure(e.f1_at(MEASURED_OVERLAP)),
             figures::figure(e.false_alarms.per_minute),
             figures::secs(e.delay.median_secs),
+            figures::figure(e.thesis.accuracy),
         ]);
     }
     writeln!(out, "\ncopies that are worse in one way")?;

@@ -16,11 +16,11 @@ use crate::json::write_json;
 use crate::output;
 use crate::progress::SlowProgress;
 use draw::Drawing;
-use report::{FileReport, InspectReport};
+use report::{FileReport, InspectReport, Summary};
 
 /// Show what a clip is: skeleton, roles, rate, units, repairs
 ///
-/// One clip is shown joint by joint, several in a few lines each; a folder stands for all clips in it and below.
+/// One clip is shown joint by joint, several in a few lines each and a summary; a folder stands for all clips in it and below.
 /// Unit, up axis and rest pose are inferred from the motion; how they were taken is how every other command
 /// takes them. Exit code 1 if a file could not be read (the others are shown), or a folder holds motion in a format that is
 /// not read (it is named).
@@ -95,6 +95,7 @@ pub fn run(args: Args) -> Result<ExitCode> {
     let mut progress = SlowProgress::new(paths.len(), "reading clips");
     let mut failed = left_out;
     let mut reports: Vec<FileReport> = Vec::new();
+    let mut summary = Summary::default();
     for path in paths {
         let (report, drawings) = match inspect(&path, &args.read, &options) {
             Ok((report, takes)) => {
@@ -107,6 +108,7 @@ pub fn run(args: Args) -> Result<ExitCode> {
                 (FileReport::failed(&path, &error), Vec::new())
             }
         };
+        summary.add(&report);
         if args.json {
             reports.push(report);
         } else {
@@ -119,6 +121,8 @@ pub fn run(args: Args) -> Result<ExitCode> {
     if args.json {
         let mut out = crate::console::stdout();
         write_json(&mut out, &reports)?;
+    } else {
+        summary.write(&mut crate::console::stdout())?;
     }
     Ok(if failed {
         ExitCode::FAILURE

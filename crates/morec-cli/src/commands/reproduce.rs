@@ -23,8 +23,6 @@ use crate::table::TextTable;
     \x20          --unknown exercises/clips -o reproduction/"
 )]
 pub struct Args {
-    #[command(flatten)]
-    material: MaterialArgs,
     /// Clips or folders that hold none of the classes, also by file stem: what is recognised in them is a false
     /// alarm
     #[arg(long, value_name = "DIR|CLIP", num_args = 1..)]
@@ -35,6 +33,8 @@ pub struct Args {
     /// Folder for reproduction.html, reproduction.json, the pictures as SVG files and the confidence maps as TSV
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
+    #[command(flatten)]
+    material: MaterialArgs,
 }
 
 /// Runs the command.

@@ -26,14 +26,14 @@ use crate::table::TextTable;
     Example: morec train --clips takes/ --labels labels.tsv --background walks/ -o signs.index"
 )]
 pub struct Args {
-    #[command(flatten)]
-    material: MaterialArgs,
     /// File to write the index to
     #[arg(short, long, value_name = "INDEX")]
     output: PathBuf,
     /// Print one JSON object: the report of training
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    material: MaterialArgs,
 }
 
 /// Trains as `args` say, for an index that is to be written to `output`; returns what was learned, how, and from what.

@@ -338,3 +338,116 @@ fn a_file_of_roles_begins_with_what_is_found() {
         .morec(&["inspect", "lab.csv", "--roles", "mine.tsv"])
         .ok();
 }
+
+/// Points of a clip whose X points the other way, as a file: a recording in left-handed coordinates.
+fn mirrored(clip: &morec::clip::Clip) -> Vec<u8> {
+    let mut points = clip.to_points(None);
+    for track in &mut points.tracks {
+        track.positions.iter_mut().for_each(|at| at.x = -at.x);
+    }
+    let mut bytes = Vec::new();
+    morec::formats::jsonl::write(&points, &mut bytes).unwrap();
+    bytes
+}
+
+#[test]
+fn what_inspect_calls_an_error_is_said_wherever_the_clip_is_read() {
+    let (folder, takes) = crate::db::studio(2);
+    for take in &takes {
+        let file = folder.path().join(format!("clips/{}.bvh", take.clip.name));
+        std::fs::remove_file(&file).unwrap();
+        std::fs::write(file.with_extension("jsonl"), mirrored(&take.clip)).unwrap();
+    }
+    let clip = format!("clips/{}.jsonl", takes[0].clip.name);
+    let inspected = folder.morec(&["inspect", &clip]).ok();
+    let error = "left and right are exchanged or one axis points the wrong way";
+    assert!(
+        inspected.contains("  error ") && inspected.contains(error),
+        "{inspected}"
+    );
+    let train = [
+        "train",
+        "--clips",
+        "clips",
+        "--labels",
+        "labels.tsv",
+        "--everyday",
+        "never",
+        "-o",
+        "x.index",
+    ];
+    for args in [
+        &train[..],
+        &["recognize", "x.index", &clip],
+        &[
+            "crossval",
+            "--clips",
+            "clips",
+            "--labels",
+            "labels.tsv",
+            "--everyday",
+            "never",
+            "--by",
+            "half",
+        ],
+        &["cut", &clip],
+        &["play", &clip, "-o", "clip.html"],
+        &["db", "import", "m.mdb", "clips"],
+        &["db", "label", "m.mdb", "labels.tsv"],
+        &[
+            "train",
+            "--db",
+            "m.mdb",
+            "--everyday",
+            "never",
+            "-o",
+            "y.index",
+        ],
+    ] {
+        let ran = folder.morec(args);
+        assert_eq!(ran.code, Some(0), "{ran:?}");
+        let quiet = args.contains(&"label");
+        let said = ran.out + &ran.err;
+        assert!(quiet || said.contains(error), "{args:?}: {said}");
+    }
+}
+
+#[test]
+fn a_folder_ends_in_a_summary_of_what_is_there_and_what_is_odd() {
+    let (folder, takes) = crate::db::studio(2);
+    let odd = folder.path().join("clips/odd.jsonl");
+    std::fs::write(odd, mirrored(&takes[0].clip)).unwrap();
+    std::fs::write(folder.path().join("clips/wave.bvh"), WAVE_BVH).unwrap();
+    std::fs::write(folder.path().join("clips/broken.bvh"), "HIERARCHY").unwrap();
+    let ran = folder.morec(&["inspect", "clips"]);
+    assert_eq!(ran.code, Some(1), "{ran:?}");
+    let summary: Vec<&str> = ran.out.split("\n\n").last().unwrap().lines().collect();
+    // All but a text.
+    let files = std::fs::read_dir(folder.path().join("clips"))
+        .unwrap()
+        .count()
+        - 1;
+    let clips = files - 1;
+    let head = format!("{files} files, {clips} clips, ");
+    assert!(summary[0].starts_with(&head), "{summary:#?}");
+    let joints = takes[0].clip.skeleton.len();
+    let most = format!("  skeleton of {joints} joints in {} clips", takes.len());
+    assert_eq!(summary[1], most);
+    assert!(
+        summary[2..4]
+            .iter()
+            .any(|line| line.ends_with("in 1 clip: wave")),
+        "{summary:#?}"
+    );
+    let odd = summary
+        .iter()
+        .find(|line| line.starts_with("  look at odd: "));
+    assert!(
+        odd.unwrap().contains("left and right are exchanged"),
+        "{summary:#?}"
+    );
+    assert_eq!(summary.last(), Some(&"  1 file could not be read"));
+    // One clip needs none.
+    let one = folder.morec(&["inspect", "clips/wave.bvh"]).ok();
+    assert!(!one.contains("files, "), "{one}");
+}

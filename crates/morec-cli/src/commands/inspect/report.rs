@@ -1,5 +1,7 @@
 //! Report of `inspect` on a file, as text and as JSON.
 
+mod summary;
+
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
@@ -11,6 +13,8 @@ use morec::formats::Warning;
 use morec::import::{ImportReport, Take};
 use morec::roles::{Role, RoleMap};
 use serde::Serialize;
+
+pub use summary::Summary;
 
 /// A file, read or not.
 #[derive(Serialize)]
