@@ -16,7 +16,8 @@ use crate::json::write_json;
 use crate::output;
 use crate::progress::SlowProgress;
 use draw::Drawing;
-use report::{FileReport, InspectReport, Summary};
+use report::summary::FolderSummary;
+use report::{FileReport, InspectReport};
 
 /// Show what a clip is: skeleton, roles, rate, units, repairs
 ///
@@ -95,7 +96,7 @@ pub fn run(args: Args) -> Result<ExitCode> {
     let mut progress = SlowProgress::new(paths.len(), "reading clips");
     let mut failed = left_out;
     let mut reports: Vec<FileReport> = Vec::new();
-    let mut summary = Summary::default();
+    let mut summary = FolderSummary::default();
     for path in paths {
         let (report, drawings) = match inspect(&path, &args.read, &options) {
             Ok((report, takes)) => {

@@ -1,6 +1,6 @@
 //! Report of `inspect` on a file, as text and as JSON.
 
-mod summary;
+pub mod summary;
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -13,8 +13,6 @@ use morec::formats::Warning;
 use morec::import::{ImportReport, Take};
 use morec::roles::{Role, RoleMap};
 use serde::Serialize;
-
-pub use summary::Summary;
 
 /// A file, read or not.
 #[derive(Serialize)]

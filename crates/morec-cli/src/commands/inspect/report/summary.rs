@@ -8,25 +8,22 @@ use morec::labels::some_of;
 
 use super::{ClipReport, FileReport, significant};
 
-/// Names of joints, in order.
-type Skeleton = Vec<String>;
-
 /// What was inspected so far.
 #[derive(Default)]
-pub struct Summary {
+pub struct FolderSummary {
     files: usize,
     failed: usize,
     clips: usize,
     secs: f64,
     formats: BTreeMap<&'static str, usize>,
     rates: BTreeMap<String, usize>,
-    /// Names of the clips of each.
-    skeletons: BTreeMap<Skeleton, Vec<String>>,
+    /// Names of the clips of each, by the names of its joints.
+    skeletons: BTreeMap<Vec<String>, Vec<String>>,
     /// Clips that are to be looked at, and why.
     odd: Vec<(String, String)>,
 }
 
-impl Summary {
+impl FolderSummary {
     /// Adds a file.
     pub fn add(&mut self, file: &FileReport) {
         self.files += 1;
@@ -97,14 +94,14 @@ impl Summary {
 
     /// The skeleton of most clips first; the clips of the others are named.
     fn write_skeletons(&self, out: &mut dyn Write) -> io::Result<()> {
-        let mut skeletons: Vec<(&Skeleton, &Vec<String>)> = self.skeletons.iter().collect();
+        let mut skeletons: Vec<(&Vec<String>, &Vec<String>)> = self.skeletons.iter().collect();
         skeletons.sort_by_key(|(_, clips)| std::cmp::Reverse(clips.len()));
-        for (at, (skeleton, clips)) in skeletons.into_iter().enumerate() {
+        for (at, (joints, clips)) in skeletons.into_iter().enumerate() {
             let named = match at {
                 0 => String::new(),
                 _ => format!(": {}", some_of(clips)),
             };
-            let joints = count(skeleton.len(), "joint");
+            let joints = count(joints.len(), "joint");
             let clips = count(clips.len(), "clip");
             writeln!(out, "  skeleton of {joints} in {clips}{named}")?;
         }
