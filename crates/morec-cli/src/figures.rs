@@ -39,7 +39,7 @@ pub fn write_misses(out: &mut impl Write, misses: &[Miss]) -> io::Result<()> {
     writeln!(out, "\nsamples without a detection of their own, and why")?;
     for miss in misses {
         let at = miss.sensitivity.map_or(String::new(), |rate| {
-            format!("; near enough at --sensitivity {rate}")
+            format!("; found with --sensitivity {rate}")
         });
         writeln!(
             out,

@@ -6,6 +6,7 @@
 mod bones;
 mod deviation;
 mod reason;
+mod tried;
 
 #[cfg(test)]
 mod tests;
@@ -44,8 +45,8 @@ pub struct Miss {
     pub span: TimeSpan,
     /// Reason why it was not reported.
     pub reason: Reason,
-    /// The least rate of false alarms a minute at which it would have been near enough, if the threshold was the
-    /// reason and a higher rate would have helped.
+    /// The least noted rate of false alarms a minute at which it is reported, if the threshold was the reason and one of
+    /// them helps: each is tried.
     pub sensitivity: Option<f64>,
 }
 
@@ -54,7 +55,7 @@ const BELONGS: f64 = 0.5;
 
 /// Says of each of `sought`, labelled stretches of `clip`, why it was missed; `found` is what was recognised. Empty for the method of 2009,
 /// whose decisions are in its own report. `rest` are the frames that a conversion left at the start.
-/// O(frames · template rows · d).
+/// O(frames · template rows · d), again for each rate of false alarms that may help.
 pub fn explain(
     model: &Model,
     clip: (&Clip, &RoleMap, &Span),
@@ -64,6 +65,7 @@ pub fn explain(
     let Model::Templates(model) = model else {
         return Vec::new();
     };
+    let (whole, played) = (model, clip);
     let (clip, roles, rest) = clip;
     if sought.is_empty() {
         return Vec::new();
@@ -93,8 +95,11 @@ pub fn explain(
         open: None,
         whole: WholeMotions::of(&model, &rows),
     };
-    let reasons = sought.iter().map(|s| miss(s, stream.reason(s)));
-    reasons.collect()
+    let reasons = sought.iter().map(|s| stream.reason(s));
+    let (reasons, wanted): (Vec<Reason>, Vec<Option<f64>>) = reasons.unzip();
+    let rates = tried::least_that_help(whole, played, sought, wanted);
+    let said = sought.iter().zip(reasons.into_iter().zip(rates));
+    said.map(|(sought, reason)| miss(sought, reason)).collect()
 }
 
 /// A stream that was compared with a model.

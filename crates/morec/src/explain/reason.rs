@@ -117,28 +117,32 @@ impl Reason {
         match self {
             Self::NoSuchClass => "class not in the index",
             Self::Unseen => "no bone in common",
-            Self::NoMatch => "no match",
-            Self::Far { .. } => "not near enough",
-            Self::Still { .. } => "hardly moves",
-            Self::Unlike { .. } => "unlike the teacher",
-            Self::Whole { other: Some(_), .. } => "more similar to another class",
-            Self::Whole { other: None, .. } => "not similar enough to the samples",
-            Self::Background { .. } => "background is nearer",
-            Self::OtherClass { .. } => "another class is as near or nearer",
+            Self::NoMatch => "too slow or too fast",
+            Self::Far { .. } => "too different from the samples",
+            Self::Still { .. } => "too little movement",
+            Self::Unlike { .. } => "performed unlike the samples",
+            Self::Whole { other: Some(_), .. }
+            | Self::OtherClass { .. }
+            | Self::GoesOnUnlike {
+                nearer: Some(_), ..
+            } => "similar to another class",
+            Self::Whole { other: None, .. } => "too different as a whole motion",
+            Self::Background { .. } => "similar to background motion",
             Self::GoesOnUnlike { .. } => "goes on unlike the samples",
             Self::Short { .. } => "too short",
-            Self::Refused { .. } => "refused by the verifier",
-            Self::Neighbour { .. } => "taken by a neighbour",
-            Self::Elsewhere => "ends elsewhere",
+            Self::Refused { .. } => "not clear enough",
+            Self::Neighbour { .. } => "part of another motion",
+            Self::Elsewhere => "ends outside the label",
         }
     }
 }
 
-/// Where `what` is at `multiple` times the distance. What is out of reach of every template has a distance that stands for none.
-fn apart(what: &str, multiple: f64) -> String {
-    match multiple < 100.0 {
-        true => format!("{what} at {multiple:.1} times its distance"),
-        false => format!("{what} out of reach"),
+/// By how much a limit was missed, in words; what is out of reach of every template has a distance that stands for none.
+fn over(distance: f32, threshold: f32) -> String {
+    let percent = 100.0 * (distance / threshold - 1.0);
+    match percent < 1000.0 {
+        true => format!("{percent:.0} % over the limit"),
+        false => "far over the limit".to_owned(),
     }
 }
 
@@ -148,82 +152,61 @@ impl fmt::Display for Reason {
             Self::NoSuchClass => f.write_str("the index does not know the class"),
             Self::Unseen => f.write_str("the clip shows none of the bones that the index uses"),
             Self::NoMatch => f.write_str(
-                "no template matches it: slower than half or faster than twice the speed of every sample",
+                "less than half as fast as every sample, or more than twice: samples at that speed teach it",
             ),
             Self::Far {
                 distance,
                 threshold,
                 bones,
             } => {
-                write!(f, "not near enough: distance {distance:.2}, threshold {threshold:.2}")?;
+                let over = over(*distance, *threshold);
+                write!(f, "too different from the samples, {over}")?;
                 for (i, off) in bones.iter().enumerate() {
-                    let before = if i == 0 { "; differs in" } else { "," };
+                    let before = if i == 0 { "; most in" } else { "," };
                     let bone = off.bone.replace('_', " ");
-                    write!(f, "{before} {bone} by {:.0}°", off.degrees)?;
+                    write!(f, "{before} {bone} ({:.0}°)", off.degrees)?;
                 }
                 Ok(())
             }
-            Self::Still { share, most } => write!(
-                f,
-                "hardly moves, or moves otherwise: {share:.2} of the distance of a body that stands still, below {most:.2} counts"
+            Self::Still { .. } => f.write_str("too little movement to be told from standing still"),
+            Self::Unlike { .. } => f.write_str(
+                "performed unlike the samples: it counts once four recognised motions show a performer unlike the teacher, or with \
+                 --performer anyone",
             ),
-            Self::Unlike { distance, threshold } => write!(
-                f,
-                "performed unlike the samples: distance {distance:.2}, {threshold:.2} counts once four recognised motions show a \
-                 performer unlike the teacher, or with --performer anyone"
-            ),
-            Self::Whole {
-                score,
-                bound,
-                other,
-            } => {
+            Self::Whole { score, bound, other } => {
                 if let Some(other) = other {
-                    write!(f, "the whole motion is more similar to {other}: ")?;
+                    write!(f, "as a whole motion more similar to {other}")?;
                 } else {
-                    f.write_str("the whole motion is not similar enough to the samples: ")?;
+                    f.write_str("as a whole motion not similar enough to the samples")?;
                 }
-                write!(f, "score {score:.2}, reported above {bound:.2}")
+                write!(f, " (score {score:.2}, reported above {bound:.2})")
             }
-            Self::Background { distance, negative } => write!(
-                f,
-                "background motion is nearer: {negative:.2} against {distance:.2}"
-            ),
+            Self::Background { .. } => {
+                f.write_str("more similar to background motion than to the samples")
+            }
             Self::OtherClass {
                 class,
                 distance,
                 other,
             } => {
-                let near = if other < distance {
-                    "nearer"
-                } else {
-                    "about as near"
-                };
-                write!(f, "{class} is {near}: {other:.2} against {distance:.2}")
+                let how = if other < distance { "more" } else { "about as" };
+                let than = if other < distance { "than" } else { "as" };
+                write!(f, "{how} similar to {class} {than} to its own samples")
             }
-            Self::GoesOnUnlike { share, nearer } => match nearer {
-                Some((class, other)) => write!(
-                    f,
-                    "{class} is nearer, which goes on as well: {other:.2} against {share:.2} of the distance from anything else"
-                ),
-                None => write!(
-                    f,
-                    "goes on unlike its samples: {share:.2} of the distance from anything else, below 1 counts"
-                ),
+            Self::GoesOnUnlike { nearer, .. } => match nearer {
+                Some((class, _)) => write!(f, "goes on more like {class} than like its own samples"),
+                None => f.write_str("goes on unlike its samples"),
             },
             Self::Short { secs, least_secs } => write!(
                 f,
                 "lasts {secs:.1} s: an activity is recognised from {least_secs:.1} s on"
             ),
             Self::Refused {
-                score,
-                other,
-                background,
-            } => write!(
-                f,
-                "refused by the verifier (score {score:.2}): {}, {}",
-                apart("other classes", *other),
-                apart("background", *background)
-            ),
+                other, background, ..
+            } => {
+                let what = if other < background { "another class" } else { "background motion" };
+                write!(f, "not clear enough: nearly as similar to {what} as to its own samples")
+            }
             Self::Neighbour {
                 same,
                 class,
@@ -233,7 +216,7 @@ impl fmt::Display for Reason {
                 let (from, to) = (span.start_secs, span.stop_secs);
                 write!(f, "taken as {what}, reported from {from:.2} s to {to:.2} s")
             }
-            Self::Elsewhere => f.write_str("near enough, but its best match ends outside the sample"),
+            Self::Elsewhere => f.write_str("similar enough, but the motion that matches ends outside the label"),
         }
     }
 }

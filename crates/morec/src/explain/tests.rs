@@ -174,6 +174,24 @@ fn a_motion_that_is_not_like_the_samples_as_a_whole_is_named_as_such() {
 }
 
 #[test]
+fn a_sensitivity_that_changes_nothing_is_not_named() {
+    let takes = takes();
+    let strict = |model: &mut TemplateModel| {
+        let look = model.look.as_mut().unwrap();
+        look.bound = 99.0;
+        look.operating = vec![OperatingPoint {
+            alarms_per_minute: 1.0,
+            threshold: 0.1,
+        }];
+        // Whatever the bound: too little movement.
+        model.decode.rest_gate = 1e-4;
+    };
+    let miss = reason(&changed(&takes[1..], strict), &takes[0], None);
+    assert!(matches!(miss.reason, Reason::Whole { .. }), "{miss:?}");
+    assert_eq!(miss.sensitivity, None);
+}
+
+#[test]
 fn a_detection_that_took_the_place_is_named() {
     let takes = takes();
     let model = trained(&takes[1..], |_| {});
@@ -316,14 +334,72 @@ fn a_distance_that_nothing_has_is_no_number() {
         other,
         background: 1.25,
     };
-    let text = refused(3e29).to_string();
     assert!(
-        text.contains("other classes out of reach, background at 1.2"),
-        "{text}"
+        refused(3e29)
+            .to_string()
+            .contains("as similar to background motion as")
     );
     assert!(
-        refused(2.0)
+        refused(1.2)
             .to_string()
-            .contains("other classes at 2.0 times")
+            .contains("as similar to another class as")
+    );
+    let far = Reason::Far {
+        distance: 1e30,
+        threshold: 1.8,
+        bones: Vec::new(),
+    };
+    assert_eq!(
+        far.to_string(),
+        "too different from the samples, far over the limit"
+    );
+}
+
+/// Reasons are read by people who know motions and not the method: what is compared, and no distances.
+#[test]
+fn reasons_are_in_the_words_of_whoever_labels() {
+    let reasons = [
+        Reason::Still {
+            share: 0.7,
+            most: 0.6,
+        },
+        Reason::Background {
+            distance: 2.0,
+            negative: 1.5,
+        },
+        Reason::OtherClass {
+            class: "clap".to_owned(),
+            distance: 2.0,
+            other: 1.0,
+        },
+        Reason::GoesOnUnlike {
+            share: 1.2,
+            nearer: Some(("walk".to_owned(), 0.5)),
+        },
+        Reason::Refused {
+            score: -0.5,
+            other: 1.1,
+            background: 3.0,
+        },
+        Reason::Far {
+            distance: 2.04,
+            threshold: 1.82,
+            bones: vec![BoneOff {
+                bone: "right_forearm",
+                degrees: 42.3,
+            }],
+        },
+    ];
+    let said = reasons.map(|reason| reason.to_string());
+    assert_eq!(
+        said,
+        [
+            "too little movement to be told from standing still",
+            "more similar to background motion than to the samples",
+            "more similar to clap than to its own samples",
+            "goes on more like walk than like its own samples",
+            "not clear enough: nearly as similar to another class as to its own samples",
+            "too different from the samples, 12 % over the limit; most in right forearm (42°)",
+        ]
     );
 }

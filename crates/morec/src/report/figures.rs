@@ -4,13 +4,19 @@ use super::html::{Figure, secs};
 use crate::eval::{Evaluation, MEASURED_OVERLAP};
 
 pub(super) fn push(out: &mut String, e: &Evaluation) {
-    out.push_str("<h2>Figures</h2>\n<div class=\"cards\">\n");
-    let t = &e.thesis;
-    let counts = format!(
-        "{} right, {} wrong, {} missed, {} rightly left alone",
-        t.true_positives, t.false_positives, t.false_negatives, t.true_negatives
+    let events = &e.events;
+    out.push_str(&format!(
+        "<h2>Figures</h2>\n<p>{} of {} samples found, {} false or double.</p>\n<div class=\"cards\">\n",
+        events.matched,
+        events.matched + events.missed,
+        events.spurious
+    ));
+    let detail = format!(
+        "precision {}, recall {}; middles within a sample",
+        Figure(events.precision),
+        Figure(events.recall)
     );
-    card(out, "Thesis accuracy", Figure(t.accuracy), &counts);
+    card(out, "F1 of events", Figure(events.f1), &detail);
     if let Some(half) = e.overlap.iter().find(|o| o.min_iou == MEASURED_OVERLAP) {
         let detail = format!(
             "precision {}, recall {}",
@@ -51,6 +57,12 @@ pub(super) fn push(out: &mut String, e: &Evaluation) {
         Figure(c.p_r)
     );
     card(out, "Samples recognised (P_C)", Figure(c.p_c), &detail);
+    let t = &e.thesis;
+    let counts = format!(
+        "{} right, {} wrong, {} missed, {} rightly left alone",
+        t.true_positives, t.false_positives, t.false_negatives, t.true_negatives
+    );
+    card(out, "Thesis accuracy", Figure(t.accuracy), &counts);
     out.push_str("</div>\n");
     push_overlap_table(out, e);
 }

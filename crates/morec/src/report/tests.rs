@@ -239,7 +239,7 @@ fn curves_and_reasons_are_shown_where_they_are_known() {
     }
     .html();
     check_nesting(&html);
-    assert!(html.contains("&lt;y&gt; is nearer: 1.00 against 2.00"));
+    assert!(html.contains("more similar to &lt;y&gt; than to its own samples"));
     // Two performances, sensitivity, reliability, white noise.
     assert_eq!(html.matches("<svg").count(), 5);
     // The one that is farther off comes first, with its worst moment.
