@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use morec::clip::{Clip, Gap, JointTrack, Points};
 use morec::formats::{Limits, bvh, c3d, from_positions as clip_of_positions, jsonl, trc};
-use morec::import::normalize;
+use morec::import::{normalize, points_by_role};
 use morec::kinematics::WorldPose;
 use morec::math::Vec3;
 use morec::roles::Role;
@@ -287,7 +287,7 @@ fn written(data: &ClipData, path: &Path) -> Result<Vec<u8>, String> {
         "bvh" => bvh::write(&data.clip, &mut bytes),
         "trc" => trc::write(&points(), &mut bytes),
         "c3d" => c3d::write(&points(), &mut bytes),
-        "jsonl" => jsonl::write(&points(), &mut bytes),
+        "jsonl" => jsonl::write(&points_by_role(&data.clip, &data.roles), &mut bytes),
         "mclip" => {
             let stored = compress(&data.clip, &SmoothParams::database(), &());
             return stored

@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::path::PathBuf;
 
 use morec::clip::Clip;
+use morec::diagnosis::errors_of_clip;
 use morec::import::Take;
 use morec::roles::RoleMap;
 
@@ -18,7 +19,7 @@ pub struct ClipData {
     pub rest: Range<usize>,
     /// Report of the import, as JSON.
     pub facts: String,
-    /// Repairs and oddities, a sentence each.
+    /// Repairs and oddities, and what spoils training and recognition, a sentence each.
     pub warnings: Vec<String>,
     /// The file it is from.
     pub path: Option<PathBuf>,
@@ -28,10 +29,12 @@ pub struct ClipData {
 
 impl From<Take> for ClipData {
     fn from(take: Take) -> Self {
+        let errors = errors_of_clip(&take.clip, &take.roles, take.rest());
+        let repairs = take.warnings.iter().map(ToString::to_string);
         Self {
+            warnings: repairs.chain(errors).collect(),
             facts: serde_json::to_string(&take.report).unwrap_or_default(),
             rest: take.report.rest_frames,
-            warnings: take.warnings.iter().map(ToString::to_string).collect(),
             clip: take.clip,
             roles: take.roles,
             path: None,

@@ -3,7 +3,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use morec::TimeSpan;
+use morec::crossval::measure_as_taught;
 use morec::labels::{ClipLength, Extent, FoundRow, FoundTable, ReportedAt, read_detections};
+use morec::train::TrainClip;
 use morec_ops::EvaluateSettings;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
@@ -40,7 +42,18 @@ pub fn evaluate<'py>(
     let unknown = lengths(unknown)?;
     let names: BTreeSet<String> = unknown.keys().cloned().collect();
     all.extend(unknown);
-    let resolved = labels.resolve(&all);
+    let mut resolved = labels.resolve(&all);
+    let of_whole_clips = resolved.samples.iter().any(|s| s.whole_clip);
+    // Lengths alone do not say where the motion is.
+    let moving: Vec<TrainClip> = match clips.extract::<Vec<Bound<'_, PyClip>>>() {
+        Ok(clips) if of_whole_clips || index.is_some() => {
+            let taught = |clip: &Bound<'_, PyClip>| train_clip(&clip.get().data, &BTreeSet::new());
+            clips.iter().map(taught).collect()
+        }
+        Err(error) if index.is_some() => return Err(error.into()),
+        _ => Vec::new(),
+    };
+    py.detach(|| measure_as_taught(&mut resolved.samples, &moving));
     warn(py, resolved.warnings.iter().map(|w| format!("truth: {w}")))?;
     let (founds, absent) = table.resolve(&all);
     warn(py, absent.iter().map(|w| format!("found: {w}")))?;
@@ -49,12 +62,7 @@ pub fn evaluate<'py>(
     warn(py, &measures.notes)?;
     if let Some(index) = index {
         let model = &index.get().index.model;
-        let clips: Vec<Bound<'_, PyClip>> = clips.extract()?;
-        let clips = clips
-            .iter()
-            .map(|clip| train_clip(&clip.get().data, &BTreeSet::new()));
-        let clips: Vec<_> = clips.collect();
-        py.detach(|| measures.explain(model, &clips));
+        py.detach(|| measures.explain(model, &moving));
     }
     plain(py, &measures)
 }

@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use js_sys::Function;
 use morec::classify::Classifier;
+use morec::diagnosis::errors_of_clip;
 use morec::files::FileReader;
 use morec::formats::{Limits, from_positions};
 use morec::import::{SignedAxis, normalize};
@@ -96,10 +97,13 @@ impl JsClip {
         self.take.clip.duration_secs()
     }
 
-    /// Repairs and oddities, a sentence each.
+    /// Repairs and oddities, and what spoils training and recognition, a sentence each.
     #[wasm_bindgen(getter)]
     pub fn warnings(&self) -> Vec<String> {
-        self.take.warnings.iter().map(ToString::to_string).collect()
+        let Take { clip, roles, .. } = &self.take;
+        let errors = errors_of_clip(clip, roles, self.take.rest());
+        let repairs = self.take.warnings.iter().map(ToString::to_string);
+        repairs.chain(errors).collect()
     }
 
     /// Time of every frame, seconds.
