@@ -11,6 +11,7 @@ use morec_db::{DbError, MotionDb};
 
 use super::load::ClipMotion;
 use super::progress::{JobError, JobProgress};
+use super::unlearned::Unlearned;
 use super::{nearest, similar};
 use crate::stretch::Stretch;
 
@@ -59,8 +60,8 @@ pub enum Partner {
     Given(Stretch, bool),
     /// The one most like it in the database.
     Nearest,
-    /// The nearest accepted label of a class.
-    NearestOf(String),
+    /// The nearest accepted label of a class, but for some.
+    NearestOf(String, Unlearned),
 }
 
 /// Aligns `of` with another stretch of the database at `path`.
@@ -71,7 +72,12 @@ pub fn align(
     progress: &JobProgress,
 ) -> Result<Arc<Aligned>, JobError> {
     let none = match &with {
-        Partner::NearestOf(class) => format!("There is no other label of {class} to compare with"),
+        Partner::NearestOf(class, but) if *but != Unlearned::default() => {
+            format!("No other label of {class} taught what was tested here")
+        }
+        Partner::NearestOf(class, _) => {
+            format!("There is no other label of {class} to compare with")
+        }
         _ => "Nothing like it is in the database".to_owned(),
     };
     match aligned(path, of, with, progress) {
@@ -90,10 +96,12 @@ fn aligned(
     let mut db = MotionDb::open(path)?;
     let (with, mirrored) = match with {
         Partner::Given(stretch, mirrored) => (stretch, mirrored),
-        Partner::NearestOf(class) => match nearest::label_of(&mut db, &of, &class, progress)? {
-            Some(stretch) => (stretch, false),
-            None => return Ok(None),
-        },
+        Partner::NearestOf(class, but) => {
+            match nearest::label_of(&mut db, &of, &class, &but, progress)? {
+                Some(stretch) => (stretch, false),
+                None => return Ok(None),
+            }
+        }
         Partner::Nearest => {
             let hits = similar::hits(&mut db, &of, true, 1, progress)?;
             let Some(hit) = hits.into_iter().flatten().next() else {

@@ -16,6 +16,7 @@ use morec_ops::{CrossvalSettings, LeftOut, Method, OperationError, TrainSettings
 
 use super::progress::{JobError, JobProgress};
 use super::train::material;
+use super::unlearned::Unlearned;
 
 /// Result of a cross-validation.
 pub struct CrossvalResult {
@@ -29,6 +30,8 @@ pub struct CrossvalResult {
     pub thesis: bool,
     /// Classes of which nothing is left to learn from when their part is left out: they are not tested.
     pub untested: Vec<String>,
+    /// For each tested clip, by name, the labels that did not teach what tested it.
+    pub unlearned: BTreeMap<String, Unlearned>,
 }
 
 /// What holds all of a class that cannot be tested: "one person".
@@ -120,7 +123,7 @@ impl CrossvalResult {
         let miss = self.misses.iter().find(same)?;
         Some(match miss.sensitivity {
             Some(alarms) => format!(
-                "{}; at {alarms:.2} false alarms a minute it would have been near enough",
+                "{}; at {alarms:.2} false alarms a minute it is found",
                 miss.reason
             ),
             None => miss.reason.to_string(),
@@ -172,6 +175,7 @@ pub fn judge(
         };
         let tested = how.crossval(&tested, train, progress)?.tested;
         let untested = untested(by, &data.clips, &data.samples);
+        let unlearned = Unlearned::of_folds(how.fold_by(), &data.clips, &data.samples);
         let tested = without(tested, &untested);
         let (streams, truths, founds) = (&tested.streams, &tested.truths, &tested.founds);
         Ok(CrossvalResult {
@@ -181,6 +185,7 @@ pub fn judge(
             timelines: timelines(streams, truths, founds)?,
             misses: tested.misses,
             by,
+            unlearned,
         })
     };
     let judged = judged().map_err(|error| JobError::of("Not judged", error))?;
@@ -265,6 +270,7 @@ mod tests {
             by: LeftOut::Half,
             thesis: false,
             untested: Vec::new(),
+            unlearned: BTreeMap::new(),
         };
         result.moments()
     }

@@ -9,6 +9,7 @@ use morec_db::labels::{SampleFilter, SampleState};
 use morec_db::{ClipId, DbError, MotionDb};
 
 use super::progress::JobProgress;
+use super::unlearned::Unlearned;
 use crate::stretch::Stretch;
 
 /// Rows that a stretch of any length becomes where it is compared at an even pace.
@@ -17,11 +18,12 @@ const POINTS: usize = 16;
 const WARPED: usize = 24;
 
 /// The accepted label of `class` that is nearest to `of` along the warping path, by the directions of the bones that both
-/// show; labels that overlap `of` are left out. `None` if there is none, or nothing to compare.
+/// show; labels that overlap `of`, or are among `but`, are left out. `None` if there is none, or nothing to compare.
 pub fn label_of(
     db: &mut MotionDb,
     of: &Stretch,
     class: &str,
+    but: &Unlearned,
     progress: &JobProgress,
 ) -> Result<Option<Stretch>, DbError> {
     let params = FeatureParams::default();
@@ -30,7 +32,10 @@ pub fn label_of(
         state: Some(SampleState::Accepted),
         ..SampleFilter::default()
     })?;
-    let stretches = samples.iter().map(Stretch::from);
+    let taught = samples
+        .iter()
+        .filter(|s| !but.holds(&s.clip_name, s.span()));
+    let stretches = taught.map(Stretch::from);
     let others: Vec<Stretch> = stretches.filter(|s| !overlap(s, of)).collect();
     let clip_rows = db.rows(&params, progress)?;
     let rows: BTreeMap<ClipId, (&Rows, BoneSet)> = clip_rows

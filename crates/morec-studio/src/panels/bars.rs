@@ -29,7 +29,7 @@ pub fn top(ctx: &Context, state: &State, out: Out) {
                     right(ui, state, out);
                     let width = ui.available_width();
                     if width > 90.0 {
-                        title(ui, state, &c);
+                        title(ui, state, &c, out);
                     }
                 });
             });
@@ -183,7 +183,8 @@ fn named(snapshot: &Snapshot, step: &HistoryStep) -> String {
     }
 }
 
-fn title(ui: &mut Ui, state: &State, c: &Colours) {
+/// The database's name; of one that nobody has named and that holds work, a way to keep it.
+fn title(ui: &mut Ui, state: &State, c: &Colours, out: Out) {
     let Some(store) = &state.store else { return };
     let name = store
         .path()
@@ -196,6 +197,15 @@ fn title(ui: &mut Ui, state: &State, c: &Colours) {
         false => name,
     };
     ui.add_space(6.0);
+    if state.is_unsaved() {
+        if ui.button("Save as …").clicked() {
+            out.push(Command::File(FileCommand::AskSave));
+        }
+        let text = RichText::new("⚠ Not saved yet").color(c.warn);
+        ui.add(egui::Label::new(text).truncate())
+            .on_hover_text("This database has no file of its own.");
+        return;
+    }
     ui.add(egui::Label::new(RichText::new(text).color(c.muted)).truncate())
         .on_hover_text(match store.temporary {
             true => "Lies in a temporary folder: File, Save a copy as".to_owned(),

@@ -31,12 +31,12 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
         |value: Option<f64>| value.map_or("–".to_owned(), |v| format!("{:.0} %", 100.0 * v));
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 26.0;
-        widgets::figure(ui, share(e.events.f1), "F1 of events");
         let recognised = format!("{} of {}", judged.recognised(), e.totals.samples);
         widgets::figure(ui, recognised, "labels recognised");
         widgets::figure(ui, judged.missed().to_string(), "missed");
         let alarms = judged.false_detections().to_string();
         widgets::figure(ui, alarms, "false detections");
+        widgets::figure(ui, share(e.events.f1), "F1 of events");
         widgets::figure(
             ui,
             format::duration(e.totals.known_secs),

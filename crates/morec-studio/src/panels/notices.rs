@@ -1,6 +1,6 @@
-//! Notices of errors, shown until they are dismissed; what is not saved, until it is.
+//! Notices of errors, over the room until they are dismissed or what caused them is over; databases that were left.
 
-use egui::{Align, Color32, Context, Frame, Layout, Margin, TopBottomPanel, Ui};
+use egui::{Align, Align2, Area, Color32, Context, Frame, Id, Layout, Margin, Order, Ui};
 
 use super::Out;
 use crate::format;
@@ -10,15 +10,31 @@ use crate::unsaved::Leftover;
 
 /// Number of notices that are shown at once.
 const SHOWN: usize = 3;
+/// Widest they are, points.
+const WIDEST: f32 = 560.0;
 
+/// Draws them over the lower right corner: no control moves when one comes.
 pub fn show(ctx: &Context, state: &State, out: Out) {
-    leftovers(ctx, state, out);
-    unsaved(ctx, state, out);
-    if state.notices.is_empty() {
+    if state.notices.is_empty() && state.leftovers.is_empty() {
         return;
     }
     let c = Colours::of(state.dark);
-    strip(ctx, "notices", (&c, c.bad), |ui| {
+    let width = WIDEST.min(ctx.content_rect().width() - 40.0);
+    Area::new(Id::new("notices"))
+        .order(Order::Middle)
+        .anchor(Align2::RIGHT_BOTTOM, [-12.0, -36.0])
+        .show(ctx, |ui| {
+            ui.set_width(width);
+            leftovers(ui, state, &c, out);
+            errors(ui, state, &c, out);
+        });
+}
+
+fn errors(ui: &mut Ui, state: &State, c: &Colours, out: Out) {
+    if state.notices.is_empty() {
+        return;
+    }
+    card(ui, c, c.bad, |ui| {
         for (at, notice) in state.notices.iter().enumerate().take(SHOWN) {
             line(ui, c.bad, &notice.text, |ui| {
                 if ui.button("Dismiss").clicked() {
@@ -32,17 +48,14 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
     });
 }
 
-/// A strip below the bar at the top.
-fn strip(
-    ctx: &Context,
-    name: &'static str,
-    (c, colour): (&Colours, Color32),
-    add: impl FnOnce(&mut Ui),
-) {
-    let frame = Frame::new()
+/// A coloured field for lines.
+fn card(ui: &mut Ui, c: &Colours, colour: Color32, add: impl FnOnce(&mut Ui)) {
+    Frame::new()
         .fill(c.panel.lerp_to_gamma(colour, 0.16))
-        .inner_margin(Margin::symmetric(12, 6));
-    TopBottomPanel::top(name).frame(frame).show(ctx, add);
+        .stroke((1.0, colour))
+        .corner_radius(6.0)
+        .inner_margin(Margin::symmetric(12, 8))
+        .show(ui, add);
 }
 
 /// A sentence at the left, buttons at the right.
@@ -54,22 +67,6 @@ fn line(ui: &mut Ui, colour: Color32, text: &str, buttons: impl FnOnce(&mut Ui))
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                 ui.add(egui::Label::new(text).wrap());
             });
-        });
-    });
-}
-
-/// What was done is in a database without a name of its own.
-fn unsaved(ctx: &Context, state: &State, out: Out) {
-    if !state.is_unsaved() {
-        return;
-    }
-    let c = Colours::of(state.dark);
-    strip(ctx, "unsaved", (&c, c.warn), |ui| {
-        let text = "Not saved yet: this database has no file of its own.";
-        line(ui, c.warn, text, |ui| {
-            if ui.button("Save as …").clicked() {
-                out.push(Command::File(FileCommand::AskSave));
-            }
         });
     });
 }
@@ -87,12 +84,11 @@ pub fn contents(left: &Leftover) -> String {
 }
 
 /// Databases that earlier runs left without saving them.
-fn leftovers(ctx: &Context, state: &State, out: Out) {
+fn leftovers(ui: &mut Ui, state: &State, c: &Colours, out: Out) {
     if state.leftovers.is_empty() {
         return;
     }
-    let c = Colours::of(state.dark);
-    strip(ctx, "leftovers", (&c, c.warn), |ui| {
+    card(ui, c, c.warn, |ui| {
         for (at, left) in state.leftovers.iter().enumerate().take(SHOWN) {
             let when = left.changed_secs.map(format::utc).unwrap_or_default();
             let what = match left.contents {
@@ -106,6 +102,10 @@ fn leftovers(ctx: &Context, state: &State, out: Out) {
                 }
                 if ui.button("Open it").clicked() {
                     out.push(Command::File(FileCommand::OpenLeftover(at)));
+                }
+                let later = ui.button("Later");
+                if later.on_hover_text("Ask again at the next start").clicked() {
+                    out.push(Command::File(FileCommand::LeaveLeftover(at)));
                 }
             });
         }

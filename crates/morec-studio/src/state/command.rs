@@ -122,6 +122,8 @@ pub enum FileCommand {
     Close,
     /// Opens the database of this place that an earlier run left.
     OpenLeftover(usize),
+    /// One of the databases that were left stays until the next start.
+    LeaveLeftover(usize),
     /// Asks whether it shall be removed for good; the next does so, if that was asked.
     AskDiscard(Option<usize>),
     DiscardLeftover(usize),

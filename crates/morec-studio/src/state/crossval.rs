@@ -1,9 +1,12 @@
 //! A cross-validation as it is shown: the confusion matrix, the list of mistakes, the moment that was chosen.
 
+use std::collections::BTreeMap;
+
 use morec::eval::Evaluation;
 use morec_ops::LeftOut;
 
 use crate::jobs::judge::{CrossvalResult, Moment};
+use crate::jobs::unlearned::Unlearned;
 
 /// A cross-validation, ready to be shown.
 ///
@@ -16,6 +19,8 @@ pub struct CrossvalView {
     pub thesis: bool,
     /// See [`CrossvalResult::untested`].
     pub untested: Vec<String>,
+    /// See [`CrossvalResult::unlearned`].
+    pub unlearned: BTreeMap<String, Unlearned>,
     /// Classes of the rows; the row of false detections follows them.
     pub rows: Vec<String>,
     /// Classes of the columns; the column of missed labels follows them.
@@ -36,6 +41,7 @@ impl From<CrossvalResult> for CrossvalView {
             by: judged.by,
             thesis: judged.thesis,
             untested: judged.untested,
+            unlearned: judged.unlearned,
             evaluation: judged.evaluation,
         };
         let count = |row, column| view.of_cell(row, column).len();

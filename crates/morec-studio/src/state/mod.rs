@@ -57,11 +57,20 @@ pub use similar::SimilarCommand;
 pub use timeline::{Drag, Grip, TimelineState};
 pub use train::Train;
 
-/// A sentence that stays until it is read.
+/// A sentence that stays until it is read, or what caused it is over.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Notice {
     pub text: String,
-    pub is_error: bool,
+    cause: Cause,
+}
+
+/// What a notice is about.
+#[derive(Debug, Clone, PartialEq)]
+enum Cause {
+    /// A job of this name, until another of it succeeds.
+    Job(String),
+    /// What was asked for, by the number of commands until then, until something that was asked for later succeeds.
+    Act(u64),
 }
 
 /// Everything the window shows.
@@ -74,8 +83,10 @@ pub struct State {
     pub show_keys: bool,
     /// True while it is asked whether a step of another program shall be taken back.
     pub undo_asks: bool,
-    /// Errors, until they are dismissed.
+    /// Errors, until they are dismissed or over.
     pub notices: Vec<Notice>,
+    /// Number of commands that may have changed something.
+    acts: u64,
     /// Message about the last action, for the status bar.
     pub said: String,
     /// The command that would do the same.
@@ -206,6 +217,7 @@ impl State {
             show_keys: false,
             undo_asks: false,
             notices: Vec::new(),
+            acts: 0,
             said: String::new(),
             command_line: String::new(),
             library: Library::default(),
@@ -278,6 +290,10 @@ impl State {
 
     /// Carries out what was asked for.
     pub fn apply(&mut self, command: Command) {
+        self.acts += u64::from(!matches!(
+            command,
+            Command::Show(_) | Command::Dismiss(_) | Command::Play(_) | Command::Look(_)
+        ));
         match command {
             Command::Show(panel) => self.show(panel),
             Command::Dark(dark) => self.dark = dark,
@@ -382,14 +398,31 @@ impl State {
     }
 
     pub(crate) fn complain(&mut self, text: impl Into<String>) {
-        let notice = Notice {
-            text: text.into(),
-            is_error: true,
-        };
+        self.notice(text.into(), Cause::Act(self.acts));
+    }
+
+    /// Complains of a job that failed.
+    fn complain_of(&mut self, job: &str, text: String) {
+        self.notice(text, Cause::Job(job.to_owned()));
+    }
+
+    fn notice(&mut self, text: String, cause: Cause) {
         // The same twice says no more than once.
-        if !self.notices.contains(&notice) {
-            self.notices.push(notice);
-        }
+        self.notices.retain(|notice| notice.text != text);
+        self.notices.push(Notice { text, cause });
+    }
+
+    /// Something that was asked for has succeeded: what was complained of before that was asked for is over.
+    fn succeeded(&mut self) {
+        let acts = self.acts;
+        self.notices
+            .retain(|notice| !matches!(notice.cause, Cause::Act(at) if at < acts));
+    }
+
+    /// A job has done what it was asked for: what was complained of its like before is over.
+    fn job_succeeded(&mut self, name: &str) {
+        self.notices
+            .retain(|notice| !matches!(&notice.cause, Cause::Job(of) if of == name));
     }
 
     pub(crate) fn say(&mut self, text: impl Into<String>) {

@@ -122,3 +122,48 @@ fn a_full_disk_is_said_and_what_was_there_stays() {
     person.click("Dismiss");
     assert!(!person.sees_part("The disk is full"));
 }
+
+#[test]
+fn a_notice_moves_no_control_and_goes_when_its_cause_has() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), 2)]);
+    let before = person.place("ada_1");
+    let index = folder.path().join("x.index");
+    person.command(Command::File(FileCommand::ExportIndex(index)));
+    assert!(person.sees_part("There is no index yet"));
+    assert_eq!(person.place("ada_1"), before, "it lies over the room");
+    // What has nothing to do with it leaves it there, what takes its cause away does not.
+    person.goes_to(Panel::Train);
+    assert!(person.sees_part("There is no index yet"));
+    person.click("Start training");
+    person.settle();
+    assert!(!person.sees_part("There is no index yet"));
+}
+
+#[test]
+fn a_failed_job_is_complained_of_until_one_of_its_kind_succeeds() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), 2)]);
+    let clip = person.state().player.motion.as_ref().unwrap().id;
+    let of = crate::stretch::Stretch::new(clip, 1.0..2.0);
+    let compare = |person: &mut Person, class: &str| {
+        let class = class.to_owned();
+        person.command(Command::Compare(crate::state::CompareCommand::NearestOf {
+            of,
+            class,
+        }));
+        person.settle();
+    };
+    compare(&mut person, "jump");
+    assert!(person.sees_part("There is no other label of jump"));
+    let update = morec_db::ClipUpdate {
+        add_tags: vec!["seen".to_owned()],
+        ..Default::default()
+    };
+    let clips = vec![clip];
+    person.command(Command::Edit(Edit::Describe { clips, update }));
+    person.settle();
+    assert!(person.sees_part("There is no other label of jump"));
+    compare(&mut person, "wave");
+    assert!(!person.sees_part("There is no other label of jump"));
+}

@@ -111,6 +111,11 @@ fn a_line_jumps_to_its_moment_and_offers_the_comparison_with_the_nearest_label()
     });
     assert_eq!(label.unwrap().class, "wave");
     assert_ne!(aligned.of, aligned.with);
+    // Labels of the part that was left out did not teach what missed it.
+    let judged = person.state().train.judged.as_ref().unwrap();
+    let unlearned = &judged.unlearned["ada_1"];
+    assert!(unlearned.holds("ada_1", aligned.of.span));
+    assert!(!unlearned.holds(&aligned.motion.clip.name, aligned.with.span));
     assert!(person.sees_part("Seen: ada_1"), "both are seen");
     assert_eq!(person.state().panel, Panel::Train);
     // A false detection is compared with a label of what it was taken for.
@@ -138,6 +143,7 @@ fn a_line_jumps_to_its_moment_and_offers_the_comparison_with_the_nearest_label()
     person.settle();
     let aligned = person.state().companions.all[0].clone();
     assert!((aligned.of.span.start_secs - false_one.span.start_secs).abs() < 1e-9);
+    assert_ne!(aligned.with.clip, aligned.of.clip);
     let store = person.state().store.as_ref().unwrap();
     let mut labels = store.snapshot.accepted();
     assert!(labels.any(|s| s.class == class

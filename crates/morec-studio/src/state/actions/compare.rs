@@ -8,6 +8,7 @@ use morec::math::Vec3;
 
 use crate::jobs::JobOutcome;
 use crate::jobs::align::{self, Aligned, Partner};
+use crate::jobs::unlearned::Unlearned;
 use crate::state::compare::Placement;
 use crate::state::{CompareCommand, State};
 use crate::stretch::Stretch;
@@ -34,14 +35,19 @@ impl State {
                 None => self.say("select a label or a stretch first"),
             },
             CompareCommand::NearestOf { of, class } => {
-                // The command searches among all stretches, not only among the labels of a class.
-                self.show_line(self.search_line(&of));
-                self.compare(of, Partner::NearestOf(class));
+                self.compare_with_nearest(of, class, Unlearned::default());
             }
             CompareCommand::Moment(class) => self.compare_moment(class),
             CompareCommand::Place(placement) => self.companions.placement = placement,
             CompareCommand::Clear => self.companions.all.clear(),
         }
+    }
+
+    /// Compares a stretch with the nearest label of a class, `but` for some.
+    pub(super) fn compare_with_nearest(&mut self, of: Stretch, class: String, but: Unlearned) {
+        // The command searches among all stretches, not only among the labels of a class.
+        self.show_line(self.search_line(&of));
+        self.compare(of, Partner::NearestOf(class, but));
     }
 
     fn compare(&mut self, of: Stretch, with: Partner) {

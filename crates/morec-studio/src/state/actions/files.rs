@@ -48,6 +48,7 @@ impl State {
             Ok(store) => {
                 let first = store.snapshot.clips.first().map(|c| c.id);
                 self.forget();
+                self.succeeded();
                 self.say(match temporary {
                     true => "lies in a temporary folder: save a copy to keep it".to_owned(),
                     false => format!("{} opened", file_name(path)),
@@ -237,6 +238,11 @@ impl State {
             FileCommand::LeaveDiscarding => self.leave(),
             FileCommand::Stay => self.leaving = None,
             FileCommand::OpenLeftover(at) => self.open_leftover(at),
+            FileCommand::LeaveLeftover(at) => {
+                if at < self.leftovers.len() {
+                    self.leftovers.remove(at);
+                }
+            }
             FileCommand::AskDiscard(at) => self.discarding = at,
             FileCommand::DiscardLeftover(at) => {
                 if self.discarding.take() == Some(at) && at < self.leftovers.len() {

@@ -9,7 +9,10 @@ impl State {
     pub fn poll(&mut self) {
         for said in self.store.as_mut().map(|s| s.poll()).unwrap_or_default() {
             match said {
-                StoreMessage::Done(text) => self.say(text),
+                StoreMessage::Done(text) => {
+                    self.succeeded();
+                    self.say(text);
+                }
                 StoreMessage::Failed(text) => {
                     self.timeline.drag = None;
                     self.timeline.held_cut = None;
@@ -81,6 +84,15 @@ impl State {
     }
 
     fn take(&mut self, name: &str, outcome: JobOutcome) {
+        if !matches!(outcome, JobOutcome::Stopped(_)) {
+            self.job_succeeded(name);
+        }
+        if matches!(
+            outcome,
+            JobOutcome::Imported(_) | JobOutcome::Trained(_) | JobOutcome::Written(_)
+        ) {
+            self.succeeded();
+        }
         match outcome {
             JobOutcome::Made(made) => self.show_made(made),
             JobOutcome::Loaded(loaded) => {
@@ -166,7 +178,7 @@ impl State {
                 if name == super::live::TEACHING {
                     self.not_taught();
                 }
-                self.complain(why);
+                self.complain_of(name, why);
             }
             JobOutcome::Stopped(JobError::Cancelled) => {
                 // What looks at a clip is cancelled whenever another is shown.
