@@ -1,11 +1,10 @@
 //! One teacher's rows again, with other samples to teach: how much depends on which two were recorded.
 
-use morec::TimeSpan;
 use morec::labels::Sample;
 use morec::rng::Rng;
 use morec::train::TrainClip;
 
-use super::sets::{DataSets, MotionSet};
+use super::sets::{DataSets, MotionSet, whole_clips};
 use super::trials::{SIGNALS, Trial, at_most, of_person, people};
 
 /// Draws of two samples of each class.
@@ -62,21 +61,4 @@ fn drawn<'a>(
         }
     }
     all
-}
-
-/// Samples of all clips that are named like one that teaches, but for the number at the end.
-pub fn whole_clips(set: &MotionSet) -> Vec<Sample> {
-    let kind = |name: &str| name.rsplit_once('_').map(|(kind, _)| kind.to_owned());
-    let of_clip = |clip: &TrainClip| {
-        let alike = set
-            .samples
-            .iter()
-            .find(|s| kind(&s.clip) == kind(&clip.name))?;
-        Some(Sample {
-            clip: clip.name.clone(),
-            span: TimeSpan::new(0.0, clip.clip.duration_secs()),
-            ..alike.clone()
-        })
-    };
-    set.clips.iter().filter_map(of_clip).collect()
 }

@@ -26,7 +26,7 @@ pub type JudgeTable = BTreeMap<String, [f64; COLUMNS.len()]>;
 
 /// False alarms a minute at which recall is measured beside F1.
 const ALARMS_PER_MINUTE: f64 = 0.5;
-/// Halvings of the detections in search of the score that so many false alarms exceed.
+/// Halvings of the detections in search of the score that this many false alarms exceed.
 const HALVINGS: usize = 12;
 
 /// The figures of one row.

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
+use morec::TimeSpan;
 use morec::files;
 use morec::labels::{ClipLength, Labels, Sample, read_people};
 use morec::train::TrainClip;
@@ -129,4 +130,21 @@ impl DataSets {
             hands: labelled("hands/clips", "hands/labels.tsv")?,
         })
     }
+}
+
+/// Samples of all clips that are named like one that teaches, but for the number at the end.
+pub fn whole_clips(set: &MotionSet) -> Vec<Sample> {
+    let kind = |name: &str| name.rsplit_once('_').map(|(kind, _)| kind.to_owned());
+    let of_clip = |clip: &TrainClip| {
+        let alike = set
+            .samples
+            .iter()
+            .find(|s| kind(&s.clip) == kind(&clip.name))?;
+        Some(Sample {
+            clip: clip.name.clone(),
+            span: TimeSpan::new(0.0, clip.clip.duration_secs()),
+            ..alike.clone()
+        })
+    };
+    set.clips.iter().filter_map(of_clip).collect()
 }

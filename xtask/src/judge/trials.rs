@@ -7,8 +7,7 @@ use morec::labels::Sample;
 use morec::perturb::Perturbation;
 use morec::train::{TrainClip, is_built_in};
 
-use super::draws::whole_clips;
-use super::sets::{DataSets, MotionSet};
+use super::sets::{DataSets, MotionSet, whole_clips};
 
 /// Signals of the referee clips.
 pub const SIGNALS: [&str; 7] = [

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result};
 use clap::ValueEnum;
-use morec::classify::{Classification, Classifier};
+use morec::classify::{ClassifiedClip, Classifier};
 use morec::import::ImportOptions;
 use morec::index::MotionIndex;
 use morec::labels::some_of;
@@ -138,7 +138,7 @@ fn classify_file(
     classifier: &Classifier,
     options: &ImportOptions,
     args: &Args,
-) -> Result<Vec<(String, Classification)>> {
+) -> Result<Vec<(String, ClassifiedClip)>> {
     let classify = |mut take: morec::Take| {
         adapt(&mut take, index, path, options.mapping.is_none());
         let found = classifier.classify(&take.clip, &take.roles, take.rest());
@@ -154,7 +154,7 @@ fn write_line(
     form: ClassificationForm,
     clip: &str,
     model: &Model,
-    found: &Classification,
+    found: &ClassifiedClip,
 ) -> std::io::Result<()> {
     let named = found.named(model);
     if form == ClassificationForm::Jsonl {

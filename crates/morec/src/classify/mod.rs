@@ -4,6 +4,7 @@
 //! only has to be named. [`Classifier`] compares all that moves in a clip with the samples of an index, in the way in which the index
 //! recognises streams: by its [second look](crate::templates::second_look) where it has one, else by the nearest match of each class.
 
+mod distances;
 mod nearest;
 #[cfg(test)]
 mod tests;
@@ -20,6 +21,8 @@ use crate::math::portable;
 use crate::roles::RoleMap;
 use crate::templates::{Activities, TemplateModel};
 
+use distances::ClipDistances;
+
 /// Exponent that turns ratios of distances into ratios of probabilities. It and the map below were fitted to the clips of gestures that
 /// one person teaches and others perform (`cargo xtask judge --only classified`; calibration error 0.03); of actions before a Kinect, which were not
 /// looked at, the error is 0.04.
@@ -33,7 +36,7 @@ const ACCEPTED: f64 = 0.5;
 
 /// What a clip shows.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Classification {
+pub struct ClassifiedClip {
     /// The class, if the clip is accepted as one of the index's.
     pub class: Option<ClassId>,
     /// The class whose samples are nearest, accepted or not; `None` where nothing moves.
@@ -42,7 +45,7 @@ pub struct Classification {
     pub probabilities: Vec<f64>,
 }
 
-/// A [`Classification`] with the names of the classes.
+/// A [`ClassifiedClip`] with the names of the classes.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct NamedClassification<'a> {
     /// The class, if the clip is accepted as one of the index's.
@@ -55,7 +58,7 @@ pub struct NamedClassification<'a> {
     pub probabilities: BTreeMap<&'a str, f64>,
 }
 
-impl Classification {
+impl ClassifiedClip {
     /// With the names of the classes of `model`.
     pub fn named<'a>(&self, model: &'a Model) -> NamedClassification<'a> {
         let names = model.classes().iter().map(|class| class.name.as_str());
@@ -80,14 +83,6 @@ pub enum ClassifyError {
     /// The clip does not show what the index is of.
     #[error(transparent)]
     Start(#[from] StartError),
-}
-
-/// Distances of a clip from every class.
-struct ClipDistances {
-    /// By class, as a share of the distance that is just accepted; infinite where nothing comes near.
-    classes: Vec<f32>,
-    /// The verifier's score of the nearest class, where there is a verifier.
-    verified: Option<f64>,
 }
 
 /// Classifies clips by an index.
@@ -120,11 +115,14 @@ impl Classifier {
         clip: &Clip,
         roles: &RoleMap,
         rest: &Span,
-    ) -> Result<Classification, ClassifyError> {
+    ) -> Result<ClassifiedClip, ClassifyError> {
         if clip.frames == 0 {
             let classes = vec![f32::INFINITY; self.model.classes.len()];
             let verified = None;
-            return Ok(ClipDistances { classes, verified }.classified(&self.model));
+            return Ok(classified(
+                &ClipDistances { classes, verified },
+                &self.model,
+            ));
         }
         let roles = &roles.for_bones(&clip.skeleton, self.model.bones);
         let shown = all_bones_of_clip(clip, roles, rest);
@@ -143,38 +141,37 @@ impl Classifier {
                 *distance = distance.min(share as f32);
             }
         }
-        Ok(distances.classified(model))
+        Ok(classified(&distances, model))
     }
 }
 
-impl ClipDistances {
-    fn classified(&self, model: &TemplateModel) -> Classification {
-        let near = |class: &usize| self.classes[*class];
-        let classes = (0..self.classes.len()).filter(|c| near(c).is_finite());
-        let nearest = classes.min_by(|a, b| near(a).total_cmp(&near(b)));
-        let Some(nearest) = nearest else {
-            return Classification {
-                class: None,
-                nearest: None,
-                probabilities: vec![0.0; self.classes.len()],
-            };
+/// The class of a clip at these distances.
+fn classified(distances: &ClipDistances, model: &TemplateModel) -> ClassifiedClip {
+    let near = |class: &usize| distances.classes[*class];
+    let classes = (0..distances.classes.len()).filter(|c| near(c).is_finite());
+    let nearest = classes.min_by(|a, b| near(a).total_cmp(&near(b)));
+    let Some(nearest) = nearest else {
+        return ClassifiedClip {
+            class: None,
+            nearest: None,
+            probabilities: vec![0.0; distances.classes.len()],
         };
-        let least = f64::from(near(&nearest).max(f32::MIN_POSITIVE));
-        let weight = |distance: &f32| portable::powf(least / f64::from(*distance), SHARPNESS);
-        let weights: Vec<f64> = self.classes.iter().map(weight).collect();
-        let any = match (self.verified, &model.calibration) {
-            (Some(score), Some(verified)) if score > 0.0 => verified.probability(score, 0.0, 0.0),
-            (Some(_), _) => 0.0,
-            (None, _) => 1.0 / (1.0 + portable::exp(SLOPE * portable::ln(least) - OFFSET)),
-        };
-        let sum: f64 = weights.iter().sum();
-        let probabilities: Vec<f64> = weights.iter().map(|w| any * w / sum).collect();
-        let is_accepted = probabilities[nearest] > ACCEPTED;
-        let nearest = ClassId(nearest as u16);
-        Classification {
-            class: is_accepted.then_some(nearest),
-            nearest: Some(nearest),
-            probabilities,
-        }
+    };
+    let least = f64::from(near(&nearest).max(f32::MIN_POSITIVE));
+    let weight = |distance: &f32| portable::powf(least / f64::from(*distance), SHARPNESS);
+    let weights: Vec<f64> = distances.classes.iter().map(weight).collect();
+    let any = match (distances.verified, &model.calibration) {
+        (Some(score), Some(verified)) if score > 0.0 => verified.probability(score, 0.0, 0.0),
+        (Some(_), _) => 0.0,
+        (None, _) => 1.0 / (1.0 + portable::exp(SLOPE * portable::ln(least) - OFFSET)),
+    };
+    let sum: f64 = weights.iter().sum();
+    let probabilities: Vec<f64> = weights.iter().map(|w| any * w / sum).collect();
+    let is_accepted = probabilities[nearest] > ACCEPTED;
+    let nearest = ClassId(nearest as u16);
+    ClassifiedClip {
+        class: is_accepted.then_some(nearest),
+        nearest: Some(nearest),
+        probabilities,
     }
 }

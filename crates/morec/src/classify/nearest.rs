@@ -5,7 +5,7 @@ use crate::decode::FAR;
 use crate::features::Rows;
 use crate::templates::{TemplateModel, TemplateModelError, Trace};
 
-use super::ClipDistances;
+use super::distances::ClipDistances;
 
 /// Of matches anywhere in the clip that move more than a body at rest does.
 pub fn distances(model: &TemplateModel, rows: &Rows) -> Result<ClipDistances, TemplateModelError> {

@@ -57,7 +57,7 @@ fn cut(take: &SyntheticTake, span: TimeSpan) -> Take {
     Take::new(part).unwrap()
 }
 
-fn classify(classifier: &Classifier, take: &Take) -> Classification {
+fn classify(classifier: &Classifier, take: &Take) -> ClassifiedClip {
     let classified = classifier.classify(&take.clip, &take.roles, take.rest());
     classified.unwrap()
 }

@@ -5,7 +5,7 @@ use crate::math::portable;
 use crate::templates::TemplateModel;
 use crate::templates::second_look::{BodyTrack, Comparison, SecondLook, sample_span, segment_of};
 
-use super::ClipDistances;
+use super::distances::ClipDistances;
 
 /// Of all that moves in a clip, as a sample that is labelled as a whole is taught.
 pub fn distances(model: &TemplateModel, look: &SecondLook, rows: &Rows) -> ClipDistances {

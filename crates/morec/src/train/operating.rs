@@ -8,6 +8,10 @@ use crate::templates::Match;
 use super::params::TrainParams;
 use super::set::{StreamKind, TrainSet, overlap_share};
 
+/// Exponent by which the bound of the threshold follows the rate of false alarms: 2.4 at a third of the usual rate and
+/// 3.3 at three times, for 2.8.
+pub const CAP_EXPONENT: f64 = 0.15;
+
 /// Rate of background motion by distance: the nearest events in background motion.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct AlarmCurve {

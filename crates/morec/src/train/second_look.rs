@@ -1,7 +1,6 @@
 //! What the second look learns: taught segments, their metric, and the bound of its score.
 
 use std::collections::BTreeMap;
-use std::ops::Range;
 
 use rayon::prelude::*;
 
@@ -18,10 +17,10 @@ use crate::templates::{
 };
 
 use super::everyday::is_built_in;
+use super::operating::CAP_EXPONENT;
 use super::params::TrainParams;
 use super::scatter::{covariance, ridged, within_class};
 use super::set::{StreamKind, TrainSample, TrainSet, evenly, overlap};
-use super::templates::CAP_EXPONENT;
 
 /// Matches farther than this are no candidates, in normalised distances.
 const REACH: f32 = 5.0;

@@ -21,7 +21,7 @@ use super::error::TrainError;
 use super::examples::{self, CandidateFinder, NearStream, VerifierExample};
 use super::held;
 use super::mining::{NearMiss, NearestByGate, TrainGates, hard_negatives, smallest};
-use super::operating::AlarmCurve;
+use super::operating::{AlarmCurve, CAP_EXPONENT};
 use super::params::TrainParams;
 use super::scatter::{covariance, ridged, within_class};
 use super::second_look::{self, HeldOutAlarms, OwnSample};
@@ -251,10 +251,6 @@ fn wide_gate(set: &TrainSet, samples: &[TrainSample], params: &TrainParams) -> O
 
 /// Share of a body's distance at rest below which a match is a candidate of the second look: a body at rest never matches.
 const CANDIDATE_REST_GATE: f32 = 0.85;
-
-/// Exponent by which the bound of the threshold follows the rate of false alarms: 2.4 at a third of the usual rate and
-/// 3.3 at three times, for 2.8.
-pub(super) const CAP_EXPONENT: f64 = 0.15;
 
 /// The threshold and its origin.
 struct Operating {

@@ -1,0 +1,9 @@
+//! What both ways of comparing a clip give.
+
+/// Distances of a clip from every class.
+pub struct ClipDistances {
+    /// By class, as a share of the distance that is just accepted; infinite where nothing comes near.
+    pub classes: Vec<f32>,
+    /// The verifier's score of the nearest class, where there is a verifier.
+    pub verified: Option<f64>,
+}
