@@ -50,7 +50,7 @@ pub fn evaluate<'py>(
             let taught = |clip: &Bound<'_, PyClip>| train_clip(&clip.get().data, &BTreeSet::new());
             clips.iter().map(taught).collect()
         }
-        Err(error) if index.is_some() => return Err(error.into()),
+        Err(error) if index.is_some() => return Err(error),
         _ => Vec::new(),
     };
     py.detach(|| measure_as_taught(&mut resolved.samples, &moving));
