@@ -2,7 +2,7 @@
 //! SLEAP's users write them.
 //!
 //! Tables become the text that pandas would write as CSV, and are read as such: one meaning for both. Arrays are read as those of
-//! [`numpy`](super::numpy). Links out of the file are not followed.
+//! [`numpy`]. Links out of the file are not followed.
 
 mod contents;
 mod nwb;
