@@ -61,9 +61,11 @@ def labels_tsv(tmp_path_factory: pytest.TempPathFactory, labels: morec.Table) ->
 
 @pytest.fixture(scope="session")
 def command() -> Callable[..., str]:
-    """The command `morec`: of MOREC_COMMAND, or of this workspace's builds."""
+    """The command `morec`: of MOREC_COMMAND, or of this workspace's last build."""
     target = Path(__file__).resolve().parents[3] / "target"
-    found = [os.environ.get("MOREC_COMMAND"), target / "release/morec", target / "debug/morec", shutil.which("morec")]
+    builds = [path for path in (target / "release/morec", target / "debug/morec") if path.is_file()]
+    builds.sort(key=lambda path: path.stat().st_mtime, reverse=True)
+    found = [os.environ.get("MOREC_COMMAND"), *builds, shutil.which("morec")]
     binary = next((str(path) for path in found if path and Path(path).is_file()), None)
     if binary is None:
         pytest.skip("no command morec: build it, or name it in MOREC_COMMAND")
