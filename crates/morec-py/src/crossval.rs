@@ -63,6 +63,12 @@ impl PyCrossval {
         plain(py, &self.measures.evaluation)
     }
 
+    /// What is left out of each training, in words: "each person in turn, 3 people".
+    #[getter]
+    fn left_out(&self) -> &str {
+        &self.measures.divided
+    }
+
     /// Thesis accuracy; `None` if there is nothing to decide.
     #[getter]
     fn accuracy(&self) -> Option<f64> {

@@ -66,6 +66,7 @@ def test_the_same_measures(command: Callable[..., str], folder: Path, labels_tsv
     ours = morec.crossval(folder, labels_tsv, by="person", everyday="never")
     assert theirs.pop("format_version") == 1
     assert ours.missed == theirs.pop("missed")
+    assert ours.left_out == theirs.pop("left_out") == "each person in turn, 3 people"
     assert ours.evaluation == theirs
 
 

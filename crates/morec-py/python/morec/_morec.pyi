@@ -325,6 +325,9 @@ class Crossval:
     def evaluation(self) -> dict[str, Any]:
         """Every measure, as ``morec crossval --json`` prints them."""
     @property
+    def left_out(self) -> str:
+        """What is left out of each training, in words: "each person in turn, 3 people"."""
+    @property
     def accuracy(self) -> float | None:
         """Thesis accuracy; None if there is nothing to decide."""
     @property

@@ -112,8 +112,9 @@ class MotionClassifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
         names = self.index_.class_names
         found = np.array([[row["probabilities"][name] for name in names] for row in rows], dtype=np.float64)
         sums = found.sum(axis=1, keepdims=True)
-        even = np.full_like(found, 1 / len(self.classes_))
-        return np.divide(found, sums, out=even, where=sums > 0)
+        shares: npt.NDArray[np.float64] = np.full_like(found, 1 / len(self.classes_))
+        np.divide(found, sums, out=shares, where=sums > 0)
+        return shares
 
     def predict(self, X: Any) -> npt.NDArray[Any]:
         """The nearest class of each sample; with ``reject``, `rejected` for what is none of the classes."""
