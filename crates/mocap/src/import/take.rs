@@ -53,8 +53,7 @@ impl Take {
     }
 }
 
-/// Where the joints of a clip in metres are, those that play roles under the names of these: what lines of JSON hold that are read
-/// live. Another joint that has a role's name is marked by an apostrophe. O(frames · joints).
+/// Positions of a clip's joints in metres, for lines of JSON that are read live. A joint with a role has the role's name. Another joint that has a role's name is marked by an apostrophe. O(frames · joints).
 pub fn points_by_role(clip: &Clip, roles: &RoleMap) -> Clip {
     let mut points = clip.to_points(Some(1.0));
     let mut joints: Vec<Joint> = points.skeleton.joints().to_vec();

@@ -5,16 +5,14 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, Result};
-use clap::ValueEnum;
 use morec::classify::{ClassifiedClip, Classifier};
 use morec::import::ImportOptions;
 use morec::index::MotionIndex;
 use morec::labels::some_of;
 use morec::live::Model;
 
-use super::recognize::{adapt, open_index};
+use super::recognize::{OutputFormat, adapt, open_index, write_rows};
 use crate::files::{ReadArgs, expand, mapping, takes};
-use crate::output::{self, Output};
 use crate::progress::SlowProgress;
 
 /// Name the class of whole clips.
@@ -38,7 +36,7 @@ pub struct Args {
     clips: Vec<PathBuf>,
     /// Form of the output
     #[arg(long, value_enum, default_value = "tsv")]
-    form: ClassificationForm,
+    form: OutputFormat,
     /// File to write to [default: standard output]
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -49,40 +47,16 @@ pub struct Args {
     read: ReadArgs,
 }
 
-/// Forms of output.
-#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
-enum ClassificationForm {
-    /// Tab-separated text with a header
-    Tsv,
-    /// One JSON object a line
-    Jsonl,
-}
-
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
     let index = open_index(&args.index)?;
     let shown = || args.index.display().to_string();
     let classifier = Classifier::new(&index.model).with_context(shown)?;
     let paths = expand(&args.clips)?;
-    let failed = match &args.output {
-        None => {
-            let out = &mut crate::console::stdout();
-            classify_all(out, &paths, &index, &classifier, args)?
-        }
-        Some(path) => {
-            let shown = || path.display().to_string();
-            let own = match args.form {
-                ClassificationForm::Tsv => ["tsv", "txt"],
-                ClassificationForm::Jsonl => ["jsonl", "json"],
-            };
-            output::check(path).with_context(shown)?;
-            output::check_ending(path, "a table of classes (--form)", &own)?;
-            let mut out = Output::create(path).with_context(shown)?;
-            let failed = classify_all(&mut out, &paths, &index, &classifier, args)?;
-            out.finish().with_context(shown)?;
-            failed
-        }
-    };
+    let form = (args.form, "a table of classes (--form)");
+    let failed = write_rows(args.output.as_deref(), form, |out| {
+        classify_all(out, &paths, &index, &classifier, args)
+    })?;
     Ok(ExitCode::from(u8::from(failed)))
 }
 
@@ -98,7 +72,7 @@ fn classify_all(
         mapping: mapping(args.roles.as_deref())?,
         ..ImportOptions::default()
     };
-    if args.form == ClassificationForm::Tsv {
+    if args.form == OutputFormat::Tsv {
         let names: Vec<&str> = (index.model.classes().iter())
             .map(|class| class.name.as_str())
             .collect();
@@ -151,13 +125,13 @@ fn classify_file(
 
 fn write_line(
     out: &mut dyn Write,
-    form: ClassificationForm,
+    form: OutputFormat,
     clip: &str,
     model: &Model,
     found: &ClassifiedClip,
 ) -> std::io::Result<()> {
     let named = found.named(model);
-    if form == ClassificationForm::Jsonl {
+    if form == OutputFormat::Jsonl {
         let mut object = serde_json::to_value(named)?;
         object["clip"] = clip.into();
         return writeln!(out, "{object}");

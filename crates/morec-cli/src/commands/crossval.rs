@@ -93,7 +93,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let divided = settings.divided(&of)?;
     let mut out = crate::console::stdout();
     if !args.json {
-        // Where nobody reads any more, the report is written all the same.
+        // Standard output may be closed; the report is still written.
         _ = writeln!(out, "Left out: {divided}\n").and_then(|()| out.flush());
     }
     let measures = settings.crossval(&of, &args.material.settings, &StageBar::new())?;

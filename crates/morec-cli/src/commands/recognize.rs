@@ -78,7 +78,7 @@ pub struct Args {
 
 /// Forms of output.
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
-enum OutputFormat {
+pub enum OutputFormat {
     /// Tab-separated text with a header
     Tsv,
     /// One JSON object a line
@@ -101,35 +101,38 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         ..ImportOptions::default()
     };
     let paths = expand(&args.clips)?;
-    if let Some(path) = &args.output {
-        let own = match args.form {
-            OutputFormat::Tsv => ["tsv", "txt"],
-            OutputFormat::Jsonl => ["jsonl", "json"],
-        };
-        output::check(path).with_context(|| path.display().to_string())?;
-        output::check_ending(path, "a table of detections (--form)", &own)?;
-    }
-    let failed = match &args.output {
-        None => recognize_all(
-            &mut crate::console::stdout(),
-            &paths,
-            &index,
-            &options,
-            args,
-        )?,
-        Some(path) => {
-            let shown = || path.display().to_string();
-            let mut out = Output::create(path).with_context(shown)?;
-            let failed = recognize_all(&mut out, &paths, &index, &options, args)?;
-            out.finish().with_context(shown)?;
-            failed
-        }
-    };
+    let form = (args.form, "a table of detections (--form)");
+    let failed = write_rows(args.output.as_deref(), form, |out| {
+        recognize_all(out, &paths, &index, &options, args)
+    })?;
     Ok(if failed {
         ExitCode::FAILURE
     } else {
         ExitCode::SUCCESS
     })
+}
+
+/// Calls `write` with the file `path`, which replaces another only when all is written, or with standard output. `what` names the table
+/// where the ending of `path` promises another format.
+pub fn write_rows(
+    path: Option<&Path>,
+    (form, what): (OutputFormat, &str),
+    write: impl FnOnce(&mut dyn Write) -> Result<bool>,
+) -> Result<bool> {
+    let Some(path) = path else {
+        return write(&mut crate::console::stdout());
+    };
+    let shown = || path.display().to_string();
+    let own = match form {
+        OutputFormat::Tsv => ["tsv", "txt"],
+        OutputFormat::Jsonl => ["jsonl", "json"],
+    };
+    output::check(path).with_context(shown)?;
+    output::check_ending(path, what, &own)?;
+    let mut out = Output::create(path).with_context(shown)?;
+    let written = write(&mut out)?;
+    out.finish().with_context(shown)?;
+    Ok(written)
 }
 
 /// Writes what is found in every clip; gives whether one of them could not be read.

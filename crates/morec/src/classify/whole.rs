@@ -17,13 +17,12 @@ pub fn distances(model: &TemplateModel, look: &SecondLook, rows: &Rows) -> ClipD
         let columns = BodyTrack::columns(model.bones);
         let segment = segment_of(&body, sample_span(&pace), &columns);
         let mut comparison = Comparison::new(look);
-        let distances = comparison.distances(segment.values());
+        let (distances, score) = comparison.distances_and_score(segment.values());
         for (class, distance) in look.classes.iter().zip(&distances) {
             let least = &mut classes[class.index()];
             *least = least.min(*distance);
         }
         // The score is the logarithm of a share of the nearest distance: at the bound it would be this.
-        let score = comparison.judge(segment.values()).score;
         let nearest = distances.into_iter().fold(f32::MAX, f32::min);
         let accepted = nearest * portable::exp(f64::from(score - look.bound)) as f32;
         classes.iter_mut().for_each(|class| *class /= accepted);

@@ -102,6 +102,6 @@ pub use session_error::SessionError;
 pub use shown::ShownBones;
 pub use source::{Source, SourceCounts, SourceEvent};
 pub use start::StartError;
-pub(crate) use start::check_shown;
 pub use status::{MAX_PERFORMERS, PerformerStatus, Status, StatusHandle};
+pub(crate) use template_pipeline::restricted;
 pub use waits::LatencyHistogram;

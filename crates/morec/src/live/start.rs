@@ -5,7 +5,7 @@ use crate::pivots::NoPivots;
 use crate::templates::TemplateModelError;
 
 /// An error if nothing of what an index `uses` is `shown`.
-pub(crate) fn check_shown(uses: BoneSet, shown: BoneSet) -> Result<(), StartError> {
+pub(super) fn check_shown(uses: BoneSet, shown: BoneSet) -> Result<(), StartError> {
     if !uses.and(shown).is_empty() {
         return Ok(());
     }

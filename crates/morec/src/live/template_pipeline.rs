@@ -228,7 +228,7 @@ impl Pipeline for TemplatePipeline {
 }
 
 /// The model for a stream that shows `bones`; the same if that is all of them.
-fn restricted(
+pub(crate) fn restricted(
     model: &Arc<TemplateModel>,
     bones: BoneSet,
 ) -> Result<Arc<TemplateModel>, StartError> {

@@ -57,12 +57,12 @@ impl Hdf5Contents {
         group_at(&self.file, path)
     }
 
-    /// The array at a path; `None` if there is none.
+    /// The array at a path; `None` if the path names no array.
     pub(super) fn array(&self, path: &str) -> Option<Dataset> {
         self.file.dataset(path).ok()
     }
 
-    /// The numbers of an array with its shape; `None` if there is none.
+    /// Numbers and shape of the array at a path; `None` if the path names no array.
     pub(super) fn numbers(&self, path: &str) -> Result<Option<Array>, ParseError> {
         let Some(dataset) = self.array(path) else {
             return Ok(None);
@@ -78,7 +78,7 @@ impl Hdf5Contents {
         dataset.read_raw().map_err(damaged)
     }
 
-    /// The texts of an array; `None` if there is none, or of something else.
+    /// Strings of the array at a path; `None` if the path names no array, or an array of another type.
     pub(super) fn texts(&self, path: &str) -> Option<Vec<String>> {
         let dataset = self.array(path)?;
         self.affordable(&dataset).ok()?;

@@ -1,7 +1,7 @@
 //! Poses in HDF5: tables of pandas, as DeepLabCut and Anipose write them, series of poses in NWB, and arrays of positions, as
 //! SLEAP's users write them.
 //!
-//! Tables become the text that pandas would write as CSV, and are read as such: one meaning for both. Arrays are read as those of
+//! A pandas table is converted to CSV and read by the reader of tables, so that both have one meaning. Arrays are read as those of
 //! [`numpy`]. Links out of the file are not followed.
 
 mod contents;

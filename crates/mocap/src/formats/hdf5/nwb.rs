@@ -23,7 +23,7 @@ struct PoseSeries<'a> {
     metres_per_unit: Option<f64>,
 }
 
-/// The points of the series in a file; `None` if there are none.
+/// Points of all pose series in a file; `None` if the file holds no pose series.
 ///
 /// # Errors
 /// Places in a picture alone; series of different lengths; more than the limits allow.

@@ -118,7 +118,7 @@ pub(super) fn read_as(
     timed.into_loaded(name, warnings, limits)
 }
 
-/// Adds rows whose cells are all empty to the rows of a table without times and frame numbers: in these frames nobody was seen. Empty
+/// Adds the rows whose cells are all empty, as gaps, where a table has neither times nor frame numbers. Empty
 /// rows directly below the header and after the last frame are not frames.
 fn with_empty_rows<'a>(
     rows: Vec<TableLine<'a>>,

@@ -12,7 +12,7 @@ const EVEN: f64 = 0.05;
 const MANY: f64 = 0.02;
 /// Rates that differ by no more than this share are one rate, measured twice.
 const SAME_RATE: f64 = 0.02;
-/// Of more frames than this nobody takes one alone.
+/// Largest step between frame numbers that is taken for a recording of every n-th frame.
 const MOST_STEP: f64 = 30.0;
 /// Frames for each of a file's, at most: a hole of days must not make endless ones.
 const MOST_FRAMES: usize = 20;

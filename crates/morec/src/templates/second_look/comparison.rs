@@ -133,12 +133,25 @@ impl Comparison {
             }
         }
         let (nearest, class) = best?;
+        let score = self.score(spread, nearest);
+        Some(Judged { class, score })
+    }
+
+    /// The score of a segment of this spread whose nearest sample is `nearest` away.
+    fn score(&mut self, spread: f32, nearest: f32) -> f32 {
         let nearest = nearest.max(LEAST_DISTANCE);
-        let score = match self.atlas.spreads.is_empty() {
+        match self.atlas.spreads.is_empty() {
             true => portable::ln(f64::from(self.scale / nearest)) as f32,
             false => self.against_atlas(spread, nearest),
-        };
-        Some(Judged { class, score })
+        }
+    }
+
+    /// Distances of a segment to every sample, in their order, and its score.
+    pub fn distances_and_score(&mut self, segment: &[f32]) -> (Vec<f32>, f32) {
+        let distances = self.distances(segment);
+        let nearest = distances.iter().copied().fold(f32::MAX, f32::min);
+        let score = self.score(spread_of(&self.segment), nearest);
+        (distances, score)
     }
 
     /// The score beside what other motion is at.
