@@ -31,6 +31,7 @@ mod errors;
 mod fit;
 mod lattice;
 mod measure;
+mod noise;
 mod params;
 mod playhead;
 mod sample;
@@ -43,6 +44,7 @@ pub use bezier::ChannelValue;
 pub use compress::compress;
 pub use curve::{Bezier, Curve};
 pub use errors::Errors;
+pub use noise::MeasuredNoise;
 pub use params::{SmoothError, SmoothParams};
 pub use stored::{MAGIC, VERSION};
 

@@ -12,7 +12,7 @@ use anyhow::{Context, Result, bail};
 use morec::clip::Clip;
 use morec::import::{ImportOptions, Stated, normalize};
 use morec::progress::Progress as _;
-use morec::smooth::{SmoothParams, compress};
+use morec::smooth::{MeasuredNoise, SmoothParams, compress};
 use rayon::prelude::*;
 
 use crate::files::{self, ReadArgs};
@@ -36,6 +36,7 @@ use report::{CompressionReport, CompressionResult};
 Examples:
   morec smooth walk.bvh                         only say what it would come to
   morec smooth walk.bvh -o smooth.bvh --max-angle 1
+  morec smooth jittery/ -o smooth/ --auto       thresholds from each clip's own noise
   morec smooth recordings/ -o stored/ --form mclip --max-joint 5
   morec smooth walk.bvh --plot Hips hips.svg --plot LeftArm.x arm.svg
 
@@ -54,6 +55,9 @@ pub struct Args {
     /// Largest angle between a joint's rotation in its parent's frame and its curve, at any frame, in degrees
     #[arg(long, value_name = "DEGREES", default_value = "0.5", value_parser = figure)]
     max_angle: f64,
+    /// Set --max-angle and --max-position for each clip from its sensor noise, at 3.5 standard deviations
+    #[arg(long, conflicts_with_all = ["max_angle", "max_position"])]
+    auto: bool,
     /// Largest distance between a moving joint's position in its parent's frame and its curve, in millimetres
     #[arg(long, value_name = "MM", default_value = "5", value_parser = figure)]
     max_position: f64,
@@ -185,10 +189,14 @@ fn params(clip: &Clip, stated: Option<Stated>, args: &Args) -> Result<SmoothPara
             normalize(clip.clone(), &options)?.report.metres_per_unit
         }
     };
-    Ok(SmoothParams {
+    let params = SmoothParams {
         angle_rad: args.max_angle.to_radians(),
         position_metres: args.max_position / 1e3,
         joint_position_metres: args.max_joint.map(|mm| mm / 1e3),
         metres_per_unit,
+    };
+    Ok(match args.auto {
+        true => MeasuredNoise::of(clip).thresholds(params),
+        false => params,
     })
 }

@@ -1,4 +1,5 @@
 use morec::formats::{Limits, bvh};
+use morec::smooth::MeasuredNoise;
 use morec::synth::{DatabaseSpec, database};
 
 use crate::kit::{Folder, WAVE_BVH, data};
@@ -214,4 +215,24 @@ fn real_clips_are_a_fifteenth_of_their_files() {
     let printed = json(&folder.morec(&args).ok());
     let report = &printed[0]["clips"][0];
     assert!(report["byte_ratio"].as_f64().unwrap() > 15.0, "{report}");
+}
+
+#[test]
+fn thresholds_may_come_from_the_noise() {
+    let folder = folder();
+    let report = |args: &[&str]| json(&folder.morec(args).ok());
+    let auto = report(&["smooth", "clips/0.bvh", "--auto", "--json"]);
+    let usual = report(&["smooth", "clips/0.bvh", "--json"]);
+    let angle = |report: &serde_json::Value| {
+        report[0]["clips"][0]["thresholds"]["angle_rad"]
+            .as_f64()
+            .unwrap()
+            .to_degrees()
+    };
+    assert!((angle(&usual) - 0.5).abs() < 1e-9);
+    let noise = MeasuredNoise::of(&clip(&folder, "clips/0.bvh")).angle_rad;
+    assert!(
+        (angle(&auto) - 3.5 * noise.to_degrees()).abs() < 1e-6,
+        "{auto}"
+    );
 }

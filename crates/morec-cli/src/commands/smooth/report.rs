@@ -111,6 +111,12 @@ impl CompressionReport {
             }
             _ => writeln!(out, "  bytes      {stored}")?,
         }
+        let allowed = &self.thresholds;
+        let (degrees, mm) = (
+            allowed.angle_rad.to_degrees(),
+            1e3 * allowed.position_metres,
+        );
+        writeln!(out, "  thresholds {degrees:.2}°, {mm:.1} mm")?;
         let e = &self.errors;
         let (most, mean) = (e.max_angle_rad.to_degrees(), e.mean_angle_rad.to_degrees());
         writeln!(
