@@ -1,17 +1,20 @@
 //! `morec reduce`: how few numbers describe a pose of a database.
 
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use morec::pca::{ComponentCount, Moments, Pca, QualityRow};
+use morec::pivots::{PivotMap, clip_of_pose_rows, pose_rows_of_clip};
 use morec::report::pictures::quality_chart;
 use serde::Serialize;
 
+use super::convert::write_clip;
+use crate::files;
 use crate::json::write_json;
 use crate::output;
-use crate::poses::PoseArgs;
+use crate::poses::{PoseArgs, PoseReader};
 use crate::table::TextTable;
 
 /// Show how many dimensions the poses of clips have
@@ -23,7 +26,8 @@ use crate::table::TextTable;
 Examples:
   morec reduce recordings/
   morec reduce recordings/ --quality 0.9 --plot quality.svg
-  morec reduce recordings/ --pivots roles --dims 16 --json")]
+  morec reduce recordings/ --pivots roles --dims 16 --json
+  morec reduce walk.bvh --dims 4 -o reduced/ && morec play walk.bvh reduced/walk.bvh -o beside.html")]
 pub struct Args {
     /// Clips (BVH, AMC) or folders of clips
     #[arg(required = true, value_name = "CLIP")]
@@ -34,6 +38,9 @@ pub struct Args {
     /// Keep N dimensions instead
     #[arg(long, value_name = "N", conflicts_with = "quality")]
     dims: Option<usize>,
+    /// Write each clip as the kept dimensions have it, as BVH into this folder: the quality of the reduction, to be looked at
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
     /// Print one JSON object: the table, and the components with their mean
     #[arg(long)]
     json: bool,
@@ -77,6 +84,9 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         output::write_whole(path, |out| out.write_all(svg.as_bytes()))
             .with_context(|| path.display().to_string())?;
     }
+    if let Some(folder) = &args.output {
+        args.write_reduced(&reader, &pca, folder)?;
+    }
     let reduced = Reduced {
         clips,
         pivots: reader.set.len(),
@@ -94,6 +104,34 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     }
     out.flush()?;
     Ok(ExitCode::SUCCESS)
+}
+
+impl Args {
+    /// Writes every clip as its rows are after reduction (thesis, Eq. 3.10).
+    fn write_reduced(&self, reader: &PoseReader, pca: &Pca, folder: &Path) -> Result<()> {
+        let sources: Vec<PathBuf> = files::expand(&self.clips)?
+            .iter()
+            .filter_map(|path| path.canonicalize().ok())
+            .collect();
+        std::fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
+        reader.each_take(&self.clips, |take| {
+            let (clip, set, params) = (&take.clip, &reader.set, &reader.params);
+            let path = folder.join(format!("{}.bvh", clip.name));
+            if path
+                .canonicalize()
+                .is_ok_and(|path| sources.contains(&path))
+            {
+                bail!(
+                    "{} would be overwritten; choose another folder",
+                    path.display()
+                );
+            }
+            let map = PivotMap::of_clip(set, clip, &take.roles)?;
+            let rows = pose_rows_of_clip(clip, set, &map, take.rest(), params);
+            let rows = pca.reconstruct(&pca.project(&rows));
+            write_clip(&clip_of_pose_rows(clip, set, &map, &rows, params), &path)
+        })
+    }
 }
 
 impl Reduced<'_> {

@@ -364,3 +364,34 @@ fn what_cannot_be_done_is_said() {
         );
     }
 }
+
+#[test]
+fn reduced_clips_are_written_as_their_dimensions_have_them() {
+    let folder = folder();
+    folder
+        .morec(&[
+            "reduce", "clips", "--pivots", "roles", "--dims", "40", "-o", "all",
+        ])
+        .ok();
+    folder
+        .morec(&[
+            "reduce", "clips", "--pivots", "roles", "--dims", "1", "-o", "one",
+        ])
+        .ok();
+    let angles = |of: &str| {
+        let read = |path: String| {
+            let bytes = std::fs::read(folder.path().join(path)).unwrap();
+            let read = bvh::read(&bytes, "ann", &Default::default(), &Default::default());
+            read.unwrap().clips.remove(0)
+        };
+        let (before, after) = (read("clips/ann.bvh".into()), read(format!("{of}/ann.bvh")));
+        assert_eq!(before.frames, after.frames);
+        let pairs = before.rotations.iter().zip(&after.rotations);
+        pairs.map(|(a, b)| a.angle_to(b)).fold(0.0, f64::max)
+    };
+    assert!(angles("all") < 0.1, "{}", angles("all"));
+    assert!(angles("one") > 0.3, "{}", angles("one"));
+    let over = ["reduce", "clips", "--pivots", "roles", "-o", "clips"];
+    let said = folder.morec(&over).fails();
+    assert!(said.contains("would be overwritten"), "{said}");
+}

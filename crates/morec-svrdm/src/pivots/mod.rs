@@ -13,6 +13,7 @@ mod map;
 mod of_clip;
 mod params;
 mod pose;
+mod rebuilt;
 mod set;
 mod stream;
 mod tables;
@@ -21,6 +22,7 @@ pub use map::{NoPivots, PivotMap};
 pub use of_clip::{for_each_pivot_pose, pose_rows_of_clip};
 pub use params::{PoseParams, QuaternionSign, RootForm};
 pub use pose::{MAX_PIVOTS, PivotPose};
+pub use rebuilt::clip_of_pose_rows;
 pub use set::{Pivot, PivotSet, PivotSetError};
 pub use stream::PoseStream;
 

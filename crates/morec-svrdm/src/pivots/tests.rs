@@ -416,3 +416,40 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn a_clip_posed_by_its_own_rows_is_the_clip() {
+    let turn =
+        |axis: Vec3, rate: f64| move |secs: f64| Quat::from_scaled_axis(axis * (rate * secs).sin());
+    let clip = clip(
+        120.0,
+        200,
+        [
+            turn(Vec3::y(), 1.0),
+            turn(Vec3::x(), 2.0),
+            turn(Vec3::z(), 3.0),
+        ],
+    );
+    let set = two();
+    let map = PivotMap::resolve(&set, &clip.skeleton, &RoleMap::default()).unwrap();
+    let params = PoseParams::default();
+    let own = rows(&clip, &set, &params);
+    let same = clip_of_pose_rows(&clip, &set, &map, &own, &params);
+    for (a, b) in clip.rotations.iter().zip(&same.rotations) {
+        assert!(a.angle_to(b) < 1e-3, "{a} {b}");
+    }
+    // The arm as it hangs from the hips, whatever the chest between them does.
+    let mut hanging = own.values().to_vec();
+    for row in hanging.chunks_exact_mut(8) {
+        row[4..].copy_from_slice(&[1.0, 0.0, 0.0, 0.0]);
+    }
+    let own = Rows::from_values(8, hanging);
+    let still = clip_of_pose_rows(&clip, &set, &map, &own, &params);
+    for frame in 0..clip.frames {
+        let [_, chest, arm] = still.frame_rotations(frame) else {
+            panic!()
+        };
+        assert_eq!(chest, &clip.frame_rotations(frame)[1]);
+        assert!((chest * arm).angle() < 1e-6);
+    }
+}
