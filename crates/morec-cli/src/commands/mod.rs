@@ -3,6 +3,7 @@
 //! Exit codes: 0 all went well; 1 something could not be done (the message says what); 2 the command line was
 //! wrong.
 
+pub mod agree;
 pub mod bench;
 pub mod classify;
 pub mod complete;

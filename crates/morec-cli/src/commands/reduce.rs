@@ -27,7 +27,8 @@ Examples:
   morec reduce recordings/
   morec reduce recordings/ --quality 0.9 --plot quality.svg
   morec reduce recordings/ --pivots roles --dims 16 --json
-  morec reduce walk.bvh --dims 4 -o reduced/ && morec play walk.bvh reduced/walk.bvh -o beside.html")]
+  morec reduce walk.bvh --dims 4 -o reduced/
+  morec play walk.bvh reduced/walk.bvh -o both.html")]
 pub struct Args {
     /// Clips (BVH, AMC) or folders of clips
     #[arg(required = true, value_name = "CLIP")]
@@ -38,7 +39,7 @@ pub struct Args {
     /// Keep N dimensions instead
     #[arg(long, value_name = "N", conflicts_with = "quality")]
     dims: Option<usize>,
-    /// Write each clip as the kept dimensions have it, as BVH into this folder: the quality of the reduction, to be looked at
+    /// Folder for the clips as the kept dimensions have them, in BVH
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
     /// Print one JSON object: the table, and the components with their mean

@@ -36,7 +36,7 @@ use report::{CompressionReport, CompressionResult};
 Examples:
   morec smooth walk.bvh                         only say what it would come to
   morec smooth walk.bvh -o smooth.bvh --max-angle 1
-  morec smooth jittery/ -o smooth/ --auto       thresholds from each clip's own noise
+  morec smooth jittery/ -o smooth/ --auto
   morec smooth recordings/ -o stored/ --form mclip --max-joint 5
   morec smooth walk.bvh --plot Hips hips.svg --plot LeftArm.x arm.svg
 

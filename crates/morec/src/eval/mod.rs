@@ -36,6 +36,7 @@
 //! # }
 //! ```
 
+mod agreement;
 mod alarms;
 mod confusion;
 mod decisions;
@@ -57,6 +58,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::TimeSpan;
 use crate::live::Detection;
 
+pub use agreement::{Agreement, ClassAgreement, EventAgreement, Kappa, UnitConfusion};
 pub use alarms::{FalseAlarms, UnknownFigures};
 pub use confusion::{Confusion, Mistake};
 pub use decisions::{Classification, ThesisAccuracy};
@@ -171,6 +173,20 @@ pub enum EvalError {
         /// The sample's class.
         class: String,
     },
+}
+
+impl From<&GroundTruth> for ClipDetection {
+    /// A label in the place of a detection: what another annotator found.
+    fn from(label: &GroundTruth) -> Self {
+        Self {
+            clip: label.clip.clone(),
+            class: label.class.clone(),
+            span: label.span,
+            score: None,
+            reported_secs: None,
+            repetitions: None,
+        }
+    }
 }
 
 impl ClipDetection {

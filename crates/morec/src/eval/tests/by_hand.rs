@@ -11,13 +11,6 @@ fn counts(thesis: &ThesisAccuracy) -> [usize; 4] {
     ]
 }
 
-fn close(value: Option<f64>, expected: f64) {
-    assert!(
-        (value.unwrap() - expected).abs() < 1e-9,
-        "{value:?}, expected {expected}"
-    );
-}
-
 /// Ten seconds: one walk found well, one badly, a jump taken for a run, a kick missed, a jump seen in a pause.
 fn one_stream() -> (Vec<StreamInfo>, Vec<GroundTruth>, Vec<ClipDetection>) {
     let truths = vec![

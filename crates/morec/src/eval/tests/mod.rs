@@ -1,11 +1,19 @@
 //! Measures against counts made by hand, against brute force, and against what must not change them.
 
+mod agreement;
 mod by_hand;
 mod frames;
 mod properties;
 mod reference;
 
 use super::*;
+
+fn close(value: Option<f64>, expected: f64) {
+    assert!(
+        (value.unwrap() - expected).abs() < 1e-9,
+        "{value:?}, expected {expected}"
+    );
+}
 
 fn truth(clip: &str, class: &str, start_secs: f64, stop_secs: f64) -> GroundTruth {
     GroundTruth {

@@ -1,0 +1,312 @@
+//! `morec agree`: how far two annotators agree.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::io::{self, Write};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::{Result, bail};
+use morec::eval::{
+    Agreement, ClassAgreement, ClipDetection, Evaluation, GroundTruth, Kappa, StreamInfo, timelines,
+};
+use morec::labels::{ClipLength, Extent, Labels, names_of_clip, some_of};
+use morec::report::Report;
+
+use crate::figures::{self, figure};
+use crate::files::ReadArgs;
+use crate::json::write_json;
+use crate::labels::{self, LabelArgs};
+use crate::lengths::lengths;
+use crate::output;
+use crate::table::TextTable;
+
+/// Measure how far two annotators agree
+///
+/// Compares two files of labels over the clips that both name: Cohen's kappa by units of time, event agreement beyond chance (events
+/// of the same class that overlap by half), and how far apart the starts and stops of matching events lie, class by class.
+///
+/// Kappa depends on the length of the unit, which is therefore printed. Agreement of events by chance is the mean F1 with the second
+/// annotator's events moved by random times.
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  morec agree ann.tsv ben.tsv --clips clips/
+  morec agree ann.eaf ben.eaf --tier gestures --time-unit 0.5
+  morec agree boris_1.csv boris_2.csv --json
+
+Exit codes: 0 compared; 1 a file cannot be read or no clip is named by both; 2 wrong command line.")]
+pub struct Args {
+    /// Labels of the first annotator, in a form that `morec db label` reads
+    #[arg(value_name = "A")]
+    a: PathBuf,
+    /// Labels of the second annotator
+    #[arg(value_name = "B")]
+    b: PathBuf,
+    /// The labelled clips, or folders of clips: their rates and lengths. Without them, labels must be in seconds, and a clip ends with
+    /// its last label
+    #[arg(long, value_name = "DIR|CLIP", num_args = 1..)]
+    clips: Vec<PathBuf>,
+    /// Length of the unit of time for kappa, in seconds
+    #[arg(long, value_name = "SECS", default_value_t = 0.1, value_parser = unit)]
+    time_unit: f64,
+    /// Print one JSON object instead of tables
+    #[arg(long)]
+    json: bool,
+    /// Write a page of HTML too, with the labels of both on timelines (the second annotator's in the place of detections)
+    #[arg(long, value_name = "HTML")]
+    report: Option<PathBuf>,
+    #[command(flatten)]
+    reading: LabelArgs,
+    #[command(flatten)]
+    read: ReadArgs,
+}
+
+fn unit(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(secs) if (0.001..=3600.0).contains(&secs) => Ok(secs),
+        _ => Err("expected 0.001 to 3600 seconds".to_owned()),
+    }
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<ExitCode> {
+    if let Some(path) = &args.report {
+        output::check_ending(path, "a page of HTML", &["html", "htm"])?;
+    }
+    let [a, b] = [&args.a, &args.b].map(|path| labels::read(path, &args.reading, &args.clips));
+    let (a, b) = (a?, b?);
+    let lengths = match args.clips.is_empty() {
+        true => lengths_of_labels(&[(&args.a, &a), (&args.b, &b)])?,
+        false => lengths(&args.clips, &args.read)?,
+    };
+    let read = |path: &PathBuf, labels: &Labels| {
+        let resolved = labels.resolve(&lengths);
+        for warning in labels.warnings.iter().chain(&resolved.warnings) {
+            eprintln!("morec: {}: {warning}", path.display());
+        }
+        let samples = resolved.samples.into_iter().map(GroundTruth::from);
+        samples.collect::<Vec<_>>()
+    };
+    let (mut a, mut b) = (read(&args.a, &a), read(&args.b, &b));
+    let streams = shared_streams(&mut a, &mut b, &lengths)?;
+    let agreement = Agreement::of(&streams, &a, &b, args.time_unit)?;
+    if let Some(path) = &args.report {
+        let b: Vec<ClipDetection> = b.iter().map(ClipDetection::from).collect();
+        let about = [("A", &args.a), ("B", &args.b)]
+            .map(|(name, path)| (name.to_owned(), path.display().to_string()));
+        let report = Report {
+            title: "Labels of B against labels of A",
+            about: &about,
+            evaluation: &Evaluation::of(&streams, &a, &b)?,
+            timelines: &timelines(&streams, &a, &b)?,
+            training: &[],
+            misses: &[],
+            performances: &[],
+            sensitivities: &[],
+            perturbed: &[],
+            motion: None,
+        };
+        figures::write_report(path, &report)?;
+    }
+    let mut out = crate::console::stdout();
+    match args.json {
+        true => write_json(&mut out, &agreement)?,
+        false => write(&mut out, &agreement)?,
+    }
+    out.flush()?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Clips that end with their last label.
+fn lengths_of_labels(files: &[(&PathBuf, &Labels)]) -> Result<BTreeMap<String, ClipLength>> {
+    /// Places to a second: finer than any labels.
+    const RATE_HZ: f64 = 1000.0;
+    let mut lengths = BTreeMap::new();
+    for (path, labels) in files {
+        for row in &labels.rows {
+            let Extent::Secs(span) = &row.extent else {
+                bail!(
+                    "{}: line {}: this label is not in seconds: name the clips with --clips, or the rate of its frames with --label-rate",
+                    path.display(),
+                    row.line
+                );
+            };
+            let name = labels_clip(&row.clip);
+            let length = lengths.entry(name).or_insert(ClipLength {
+                frames: 0,
+                rate_hz: RATE_HZ,
+            });
+            length.frames = length
+                .frames
+                .max((span.stop_secs * RATE_HZ).ceil() as usize);
+        }
+    }
+    Ok(lengths)
+}
+
+/// The clip's name without folders and ending, as both annotators may have written it differently.
+fn labels_clip(name: &str) -> String {
+    names_of_clip(name).last().unwrap_or(name).to_owned()
+}
+
+/// The clips that both name; the labels of others are left out, which is printed.
+fn shared_streams(
+    a: &mut Vec<GroundTruth>,
+    b: &mut Vec<GroundTruth>,
+    lengths: &BTreeMap<String, ClipLength>,
+) -> Result<Vec<StreamInfo>> {
+    let clips = |labels: &[GroundTruth]| -> BTreeSet<String> {
+        labels.iter().map(|label| label.clip.clone()).collect()
+    };
+    let (of_a, of_b) = (clips(a), clips(b));
+    for (who, own, other) in [("A", &of_a, &of_b), ("B", &of_b, &of_a)] {
+        let alone: Vec<&str> = own.difference(other).map(String::as_str).collect();
+        if !alone.is_empty() {
+            let (count, names) = (alone.len(), some_of(&alone));
+            eprintln!("morec: {count} clips are labelled by {who} alone and left out: {names}");
+        }
+    }
+    let shared: BTreeSet<String> = of_a.intersection(&of_b).cloned().collect();
+    if shared.is_empty() {
+        bail!(
+            "no clip is labelled in both files: A names {}, B names {} clips",
+            of_a.len(),
+            of_b.len()
+        );
+    }
+    for labels in [a, b] {
+        labels.retain(|label| shared.contains(&label.clip));
+    }
+    let stream = |clip: String| StreamInfo {
+        duration_secs: lengths[&clip].duration_secs(),
+        clip,
+        unknown: false,
+    };
+    Ok(shared.into_iter().map(stream).collect())
+}
+
+fn write(out: &mut impl Write, agreement: &Agreement) -> io::Result<()> {
+    let Agreement {
+        clips,
+        secs,
+        unit_secs,
+        time,
+        events,
+        ..
+    } = agreement;
+    let plural = if *clips == 1 { "" } else { "s" };
+    writeln!(
+        out,
+        "{clips} clip{plural}, {secs:.1} s; {} events of A, {} of B, {} in common\n",
+        events.of_a, events.of_b, events.matched
+    )?;
+    let Kappa {
+        kappa,
+        observed,
+        chance,
+        ..
+    } = time;
+    writeln!(
+        out,
+        "Cohen's kappa            {:>6}   units of {unit_secs} s: {} agree, {} by chance",
+        figure(*kappa),
+        figure(*observed),
+        figure(*chance)
+    )?;
+    writeln!(
+        out,
+        "events beyond chance     {:>6}   F1 {}, {} by chance",
+        figure(events.corrected),
+        figure(events.f1),
+        figure(events.chance)
+    )?;
+    let bounds = &events.boundaries;
+    for (name, bias, apart, most) in [
+        (
+            "starts apart, median",
+            bounds.start_median_secs,
+            bounds.start_median_abs_secs,
+            events.start_p90_secs,
+        ),
+        (
+            "stops apart, median",
+            bounds.stop_median_secs,
+            bounds.stop_median_abs_secs,
+            events.stop_p90_secs,
+        ),
+    ] {
+        writeln!(
+            out,
+            "{name:<24} {:>6}   ms; 90 % within {} ms, B later by {} ms",
+            millis(apart),
+            millis(most),
+            millis(bias)
+        )?;
+    }
+    let mut table = TextTable::new([
+        "class",
+        "A",
+        "B",
+        "both",
+        "kappa",
+        "F1",
+        "beyond chance",
+        "starts ms",
+        "stops ms",
+    ]);
+    for ClassAgreement {
+        class,
+        time,
+        events,
+    } in &agreement.classes
+    {
+        let bounds = &events.boundaries;
+        table.row([
+            class.clone(),
+            events.of_a.to_string(),
+            events.of_b.to_string(),
+            events.matched.to_string(),
+            figure(time.kappa),
+            figure(events.f1),
+            figure(events.corrected),
+            millis(bounds.start_median_abs_secs),
+            millis(bounds.stop_median_abs_secs),
+        ]);
+    }
+    write!(out, "\n{table}")?;
+    write_confusion(out, agreement)
+}
+
+/// The labels that differ most, in seconds of time.
+fn write_confusion(out: &mut impl Write, agreement: &Agreement) -> io::Result<()> {
+    const SHOWN: usize = 10;
+    let of = &agreement.confusion;
+    let name = |k: usize| of.classes.get(k).map_or("no label", String::as_str);
+    let mut differ: Vec<(usize, usize, usize)> = Vec::new();
+    for (row, units) in of.units.iter().enumerate() {
+        let others = units
+            .iter()
+            .enumerate()
+            .filter(|(column, units)| *column != row && **units > 0);
+        differ.extend(others.map(|(column, units)| (*units, row, column)));
+    }
+    if differ.is_empty() {
+        return Ok(());
+    }
+    differ.sort_by(|a, b| b.0.cmp(&a.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+    writeln!(out, "\nwhere they differ most")?;
+    let mut table = TextTable::new(["A", "B", "seconds"]);
+    for (units, row, column) in differ.into_iter().take(SHOWN) {
+        let secs = units as f64 * agreement.unit_secs;
+        table.row([
+            name(row).to_owned(),
+            name(column).to_owned(),
+            format!("{secs:.1}"),
+        ]);
+    }
+    write!(out, "{table}")
+}
+
+fn millis(secs: Option<f64>) -> String {
+    secs.map_or_else(|| "–".to_owned(), |secs| format!("{:.0}", 1e3 * secs))
+}

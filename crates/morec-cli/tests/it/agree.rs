@@ -1,0 +1,50 @@
+//! `morec agree`, on two tables of labels.
+
+use serde_json::Value;
+
+use crate::kit::Folder;
+
+const ANN: &str = "clip\tclass\tstart_secs\tstop_secs\nday/one.avi\twalk\t0\t4\none\tjump\t6\t10\nhers\twalk\t0\t1\n";
+const BEN: &str = "clip\tclass\tstart_secs\tstop_secs\none\twalk\t0\t3\none\tjump\t6\t10\n";
+
+#[test]
+fn two_annotators_are_compared_over_the_clips_of_both() {
+    let folder = Folder::with(&[("ann.tsv", ANN), ("ben.tsv", BEN)]);
+    let ran = folder.morec(&["agree", "ann.tsv", "ben.tsv", "--time-unit", "1", "--json"]);
+    let said: Value = serde_json::from_str(&ran.ok()).unwrap();
+    assert_eq!((&said["clips"], &said["secs"]), (&1.into(), &10.0.into()));
+    assert_eq!(said["time"]["observed"], 0.9);
+    // Walk 4 and 3 of 10 units, jump 4 and 4, no label 2 and 3.
+    let kappa = (0.9 - 0.34) / (1.0 - 0.34);
+    assert!((said["time"]["kappa"].as_f64().unwrap() - kappa).abs() < 1e-9);
+    assert_eq!(said["events"]["matched"], 2);
+
+    let page = folder.morec(&["agree", "ann.tsv", "ben.tsv", "--report", "page.html"]);
+    let said = page.ok();
+    assert!(
+        said.contains("Cohen's kappa") && said.contains("no label"),
+        "{said}"
+    );
+    assert!(folder.path().join("page.html").exists());
+}
+
+#[test]
+fn what_cannot_be_compared_is_named() {
+    let frames = "clip\tclass\tstart\tstop\none\twalk\t0\t40\n";
+    let other = "clip\tclass\tstart_secs\tstop_secs\ntwo\twalk\t0\t3\n";
+    let folder = Folder::with(&[
+        ("ann.tsv", ANN),
+        ("frames.tsv", frames),
+        ("other.tsv", other),
+    ]);
+    let said = folder.morec(&["agree", "ann.tsv", "frames.tsv"]).fails();
+    assert!(
+        said.contains("frames.tsv: line 2") && said.contains("--label-rate"),
+        "{said}"
+    );
+    let said = folder.morec(&["agree", "ann.tsv", "other.tsv"]).fails();
+    assert!(said.contains("no clip is labelled in both"), "{said}");
+    folder
+        .morec(&["agree", "ann.tsv", "frames.tsv", "--label-rate", "10"])
+        .ok();
+}
