@@ -11,7 +11,7 @@
 //! | JSON | seconds and frames | all but who set it |
 //! | ELAN | milliseconds, so frames of up to 500 Hz | clip, class, person; state by tier |
 //! | Audacity | seconds | class; the clip by the file's name ([`file_name`]); Praat's TextGrids, subtitles and events of C3D are read as it |
-//! | BORIS (read as TSV or CSV) | seconds | clip, class, person |
+//! | BORIS | seconds | clip, class, person; its tables of events are read as TSV or CSV |
 //! | BABEL | seconds | clip, class, whole clips, state (a key of ours) |
 //! | Label Studio | seconds | clip, class, score; accepted ones as annotations, others as predictions |
 
@@ -19,6 +19,7 @@ mod annotation;
 mod audacity;
 mod babel;
 mod boris;
+mod boris_project;
 mod csv;
 mod eaf;
 mod events;
@@ -49,6 +50,7 @@ impl LabelFormat {
             "eaf" => Some(LabelFormat::Eaf),
             "txt" | "textgrid" | "srt" | "vtt" | "c3d" => Some(LabelFormat::Audacity),
             "json" => Some(json::which(bytes)),
+            "boris" => Some(LabelFormat::Boris),
             _ => None,
         }
     }
@@ -97,6 +99,7 @@ pub fn read_with(
         }
         LabelFormat::Babel => babel::read(bytes),
         LabelFormat::LabelStudio => label_studio::read(bytes, context),
+        LabelFormat::Boris => boris_project::read(bytes, context),
     }
 }
 
@@ -132,5 +135,6 @@ pub fn write(
         LabelFormat::Audacity => audacity::write(annotations, lengths),
         LabelFormat::Babel => babel::write(annotations, lengths),
         LabelFormat::LabelStudio => label_studio::write(annotations, lengths),
+        LabelFormat::Boris => boris_project::write(annotations, lengths),
     }
 }

@@ -62,11 +62,12 @@ pub enum LabelFormat {
     Audacity,
     Babel,
     LabelStudio,
+    Boris,
 }
 
 impl LabelFormat {
     /// All of them.
-    pub const ALL: [LabelFormat; 7] = [
+    pub const ALL: [LabelFormat; 8] = [
         LabelFormat::Tsv,
         LabelFormat::Csv,
         LabelFormat::Json,
@@ -74,6 +75,7 @@ impl LabelFormat {
         LabelFormat::Audacity,
         LabelFormat::Babel,
         LabelFormat::LabelStudio,
+        LabelFormat::Boris,
     ];
 
     /// Its name on the command line.
@@ -86,6 +88,7 @@ impl LabelFormat {
             LabelFormat::Audacity => "audacity",
             LabelFormat::Babel => "babel",
             LabelFormat::LabelStudio => "label-studio",
+            LabelFormat::Boris => "boris",
         }
     }
 
@@ -97,13 +100,14 @@ impl LabelFormat {
             LabelFormat::Json | LabelFormat::Babel | LabelFormat::LabelStudio => "json",
             LabelFormat::Eaf => "eaf",
             LabelFormat::Audacity => "txt",
+            LabelFormat::Boris => "boris",
         }
     }
 
     /// True if a label of this state is read again in the same state.
     pub fn keeps(self, state: SampleState) -> bool {
         match self {
-            LabelFormat::Audacity => state == SampleState::Accepted,
+            LabelFormat::Audacity | LabelFormat::Boris => state == SampleState::Accepted,
             _ => true,
         }
     }

@@ -121,13 +121,16 @@ fn sayable(form: LabelFormat, all: &[Annotation]) -> Vec<Annotation> {
             LabelFormat::Tsv | LabelFormat::Babel => {}
             _ => said.extent = spelled(),
         }
-        if !matches!(form, LabelFormat::Tsv | LabelFormat::Eaf) {
+        if !matches!(
+            form,
+            LabelFormat::Tsv | LabelFormat::Eaf | LabelFormat::Boris
+        ) {
             said.person = None;
         }
         if form != LabelFormat::LabelStudio {
             said.score = None;
         }
-        if form == LabelFormat::Audacity {
+        if matches!(form, LabelFormat::Audacity | LabelFormat::Boris) {
             said.state = SampleState::Accepted;
         }
         said
@@ -608,4 +611,33 @@ proptest! {
         let _ = read(LabelFormat::Audacity, text.as_bytes(), Some("take_1"), &lengths());
         let _ = read(LabelFormat::Csv, text.as_bytes(), None, &lengths());
     }
+}
+
+#[test]
+fn a_project_of_boris() {
+    let project = r#"{"project_format_version": "7.0",
+        "behaviors_conf": {"0": {"type": "State event", "code": "walk"}, "1": {"type": "Point event", "code": "peck"}},
+        "observations": {"obs 1": {"file": {"1": ["videos/take_1.mp4"]}, "events": [
+            [0.5, "ann", "walk", "", ""], [1.0, "No focal subject", "walk", "fast", ""], [1.5, "ann", "walk", "", "end"],
+            [1.7, "ann", "peck", "", "", 51], [2.0, "No focal subject", "walk", "fast", ""], [2.5, "ben", "walk", "", ""]]}}}"#;
+    let labels = read(LabelFormat::Boris, project.as_bytes(), None, &lengths()).unwrap();
+    let found: Vec<_> = labels
+        .annotations
+        .iter()
+        .map(|a| (a.clip.as_str(), a.person.as_deref(), a.extent))
+        .collect();
+    assert_eq!(
+        found,
+        [
+            ("videos/take_1.mp4", Some("ann"), Some((0.5, 1.5))),
+            ("videos/take_1.mp4", None, Some((1.0, 2.0))),
+        ]
+    );
+    let said: Vec<String> = labels.warnings.iter().map(ToString::to_string).collect();
+    assert_eq!(said.len(), 3, "{said:?}");
+    assert!(
+        said[0].contains("moment")
+            && said[1].contains("never stops")
+            && said[2].contains("2 events have modifiers")
+    );
 }

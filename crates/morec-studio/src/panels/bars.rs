@@ -97,6 +97,7 @@ fn form_name(form: LabelFormat) -> &'static str {
         LabelFormat::Audacity => "Audacity, a file for each clip …",
         LabelFormat::Babel => "BABEL …",
         LabelFormat::LabelStudio => "Label Studio …",
+        LabelFormat::Boris => "BORIS project …",
     }
 }
 
