@@ -3,7 +3,8 @@
 use std::collections::BTreeSet;
 
 use morec::crossval::{
-    CrossvalData, CrossvalOptions, CrossvalOutcome, FoldBy, FoldReport, Tested, crossval,
+    CrossvalData, CrossvalOptions, CrossvalOutcome, FoldBy, FoldReport, TaughtLimit, Tested,
+    crossval,
 };
 use morec::eval::{EvalError, Evaluation};
 use morec::perturb::Perturbation;
@@ -117,7 +118,10 @@ impl CrossvalSettings {
     fn options(&self) -> CrossvalOptions {
         CrossvalOptions {
             by: self.fold_by(),
-            samples_per_class: self.samples,
+            taught: TaughtLimit {
+                samples_per_class: self.samples,
+                ..TaughtLimit::default()
+            },
             perturbations: self.perturb.clone(),
             sensitivities: self.sensitivities.clone(),
         }
@@ -199,7 +203,7 @@ fn measured<K: Copy>(results: &[(K, Tested)]) -> Result<Vec<(K, Evaluation)>, Ev
     results.iter().map(of).collect()
 }
 
-fn evaluation(tested: &Tested) -> Result<Evaluation, EvalError> {
+pub(crate) fn evaluation(tested: &Tested) -> Result<Evaluation, EvalError> {
     Evaluation::of(&tested.streams, &tested.truths, &tested.founds)
 }
 

@@ -21,6 +21,7 @@
 
 mod arguments;
 mod crossval;
+mod curve;
 mod cut;
 mod discover;
 mod error;
@@ -38,6 +39,7 @@ mod words;
 
 pub use arguments::arguments;
 pub use crossval::{CrossvalMeasures, CrossvalSettings, LeftOut};
+pub use curve::{CurveFigures, CurvePoint, LearningCurve};
 pub use cut::{CutMethod, CutSettings};
 pub use discover::{
     AloneStretch, DiscoverClip, DiscoverSettings, DiscoveredSet, DiscoveredSets, DiscoveredStretch,

@@ -1,5 +1,7 @@
 //! `morec crossval`: how good would an index be on what it has not seen.
 
+mod curve;
+
 use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -48,6 +50,12 @@ pub struct Args {
     /// alarm
     #[arg(long, value_name = "DIR|CLIP", num_args = 1..)]
     unknown: Vec<PathBuf>,
+    /// Print what 1, 2, 4 … samples of each class and 1, 2, 4 … people are worth instead, three draws each: takes many times as long
+    #[arg(long, conflicts_with_all = ["report", "perturb", "sensitivities", "samples"], help_heading = "Output")]
+    curve: bool,
+    /// Draw the curve as SVG
+    #[arg(long, value_name = "SVG", requires = "curve", help_heading = "Output")]
+    plot: Option<PathBuf>,
     /// Print one JSON object instead of tables
     #[arg(long, help_heading = "Output")]
     json: bool,
@@ -95,6 +103,11 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     if !args.json {
         // Standard output may be closed; the report is still written.
         _ = writeln!(out, "Left out: {divided}\n").and_then(|()| out.flush());
+    }
+    if args.curve {
+        let curve = settings.learning_curve(&of, &args.material.settings, &StageBar::new())?;
+        curve::write(args, &curve, &mut out)?;
+        return Ok(ExitCode::SUCCESS);
     }
     let measures = settings.crossval(&of, &args.material.settings, &StageBar::new())?;
     let (tested, evaluation) = (&measures.tested, &measures.evaluation);

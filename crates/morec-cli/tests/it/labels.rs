@@ -441,6 +441,28 @@ fn crossval_says_by_what_it_divides_and_refuses_one_person() {
 }
 
 #[test]
+fn crossval_says_what_more_samples_are_worth() {
+    let (folder, _) = studio(2);
+    let args = "crossval --clips clips --labels labels.tsv --by half --everyday never --curve --plot curve.svg --json";
+    let said = folder.morec(&args.split(' ').collect::<Vec<_>>()).ok();
+    let curve: serde_json::Value = serde_json::from_str(&said).unwrap();
+    let points = curve["points"].as_array().unwrap();
+    let (first, last) = (&points[0], points.last().unwrap());
+    assert_eq!(
+        (&first["samples"], first["draws"].as_array().unwrap().len()),
+        (&1.into(), 3)
+    );
+    assert_eq!(
+        (&last["samples"], last["draws"].as_array().unwrap().len()),
+        (&serde_json::Value::Null, 1)
+    );
+    let f1 = |point: &serde_json::Value| point["draws"][0]["f1"].as_f64().unwrap();
+    assert!(f1(last) >= f1(first), "{curve}");
+    let drawn = std::fs::read_to_string(folder.path().join("curve.svg")).unwrap();
+    assert!(drawn.contains("F1 of each draw"));
+}
+
+#[test]
 fn labels_that_count_otherwise_are_read_wherever_labels_are() {
     let (folder, takes) = studio(1);
     let clip = &takes[0].clip.name;

@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::TaughtLimit;
 use crate::labels::Sample;
 use crate::rng::Rng;
 
@@ -76,33 +77,48 @@ fn own(samples: &[Sample], people: &BTreeMap<String, String>) -> Vec<Fold> {
     persons.into_iter().map(fold).collect()
 }
 
-/// At most `most` of the taught samples of each class, from the groups of `group_of` in turn.
+/// The taught samples that `limit` leaves, from the groups of `group_of` in turn.
 pub fn thin(
     taught: &[usize],
     samples: &[Sample],
-    most: usize,
+    limit: TaughtLimit,
     group_of: impl Fn(&Sample) -> String,
 ) -> Vec<usize> {
-    let mut turns: BTreeMap<(&str, String), usize> = BTreeMap::new();
-    let mut order: Vec<(&str, usize, usize)> = taught
-        .iter()
-        .map(|&i| {
-            let class = samples[i].class.as_str();
-            let turn = turns.entry((class, group_of(&samples[i]))).or_insert(0);
-            *turn += 1;
-            (class, *turn, i)
-        })
+    let mut taught = taught.to_vec();
+    let mut groups: Vec<String> = taught.iter().map(|&i| group_of(&samples[i])).collect();
+    groups.sort_unstable();
+    groups.dedup();
+    if limit.draw > 0 {
+        let mut rng = Rng::new(limit.draw);
+        rng.shuffle(&mut taught);
+        rng.shuffle(&mut groups);
+    }
+    let place: BTreeMap<&str, usize> = (groups.iter().enumerate())
+        .take(limit.people.unwrap_or(usize::MAX))
+        .map(|(place, group)| (group.as_str(), place))
         .collect();
+    let mut turns: BTreeMap<(&str, usize), usize> = BTreeMap::new();
+    let mut order: Vec<(&str, usize, usize, usize)> = Vec::new();
+    for i in taught {
+        let class = samples[i].class.as_str();
+        let Some(&group) = place.get(group_of(&samples[i]).as_str()) else {
+            continue;
+        };
+        let turn = turns.entry((class, group)).or_insert(0);
+        *turn += 1;
+        order.push((class, *turn, group, i));
+    }
     order.sort_unstable();
+    let most = limit.samples_per_class.unwrap_or(usize::MAX);
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
     let mut kept: Vec<usize> = order
         .into_iter()
-        .filter(|(class, _, _)| {
+        .filter(|(class, ..)| {
             let count = counts.entry(class).or_insert(0);
             *count += 1;
             *count <= most
         })
-        .map(|(_, _, i)| i)
+        .map(|(.., i)| i)
         .collect();
     kept.sort_unstable();
     kept
@@ -258,9 +274,32 @@ mod tests {
     fn thinning_takes_from_people_in_turn() {
         let all: Vec<usize> = (0..6).collect();
         let person = |s: &Sample| people()[&s.clip].clone();
-        assert_eq!(thin(&all, &samples(), 1, person), [0, 1]);
-        assert_eq!(thin(&all, &samples(), 2, person), [0, 1, 4]);
-        assert_eq!(thin(&all, &samples(), 9, person), all);
+        let most = |n| TaughtLimit {
+            samples_per_class: Some(n),
+            ..TaughtLimit::default()
+        };
+        assert_eq!(thin(&all, &samples(), most(1), person), [0, 1]);
+        assert_eq!(thin(&all, &samples(), most(2), person), [0, 1, 4]);
+        assert_eq!(thin(&all, &samples(), most(9), person), all);
+    }
+
+    #[test]
+    fn thinning_takes_few_people_and_draws() {
+        let all: Vec<usize> = (0..6).collect();
+        let person = |s: &Sample| people()[&s.clip].clone();
+        let drawn = |people, draw| {
+            let limit = TaughtLimit {
+                people: Some(people),
+                draw,
+                ..TaughtLimit::default()
+            };
+            thin(&all, &samples(), limit, person)
+        };
+        assert_eq!(drawn(9, 7), all);
+        assert_eq!(drawn(1, 7), drawn(1, 7));
+        let ones: BTreeSet<Vec<usize>> = (0..20).map(|draw| drawn(1, draw)).collect();
+        let named: BTreeSet<String> = people().into_values().collect();
+        assert_eq!(ones.len(), named.len(), "{ones:?}");
     }
 
     #[test]

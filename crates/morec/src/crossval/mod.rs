@@ -80,13 +80,24 @@ pub struct Tests<'a> {
     pub samples: &'a [Sample],
 }
 
+/// What teaches in a fold at most; by default all of it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct TaughtLimit {
+    /// Samples of a class, from its people in turn.
+    pub samples_per_class: Option<usize>,
+    /// People (clips, of people who are not known).
+    pub people: Option<usize>,
+    /// Which samples and people: 0 the first, other numbers draw them.
+    pub draw: u64,
+}
+
 /// Options of a cross-validation.
 #[derive(Debug, Clone)]
 pub struct CrossvalOptions {
     /// Unit that is left out in turn.
     pub by: FoldBy,
-    /// Samples of a class that teach in a fold at most, from its people in turn.
-    pub samples_per_class: Option<usize>,
+    /// What teaches in a fold at most.
+    pub taught: TaughtLimit,
     /// Copies of the tested clips that are tested too, each worse in one way.
     pub perturbations: Vec<Perturbation>,
     /// Rates of false alarms a minute at which the clips are tested too. A model of one sensitivity is left out.
@@ -97,7 +108,7 @@ impl From<FoldBy> for CrossvalOptions {
     fn from(by: FoldBy) -> Self {
         Self {
             by,
-            samples_per_class: None,
+            taught: TaughtLimit::default(),
             perturbations: Vec::new(),
             sensitivities: Vec::new(),
         }
@@ -185,9 +196,7 @@ pub fn crossval(
     }
     let group = |s: &Sample| people.get(&s.clip).unwrap_or(&s.clip).clone();
     for fold in &mut folds {
-        if let Some(most) = options.samples_per_class {
-            fold.taught = thin(&fold.taught, material.samples, most, group);
-        }
+        fold.taught = thin(&fold.taught, material.samples, options.taught, group);
         if let Some(tests) = &material.tests {
             let of_fold = |c: &&TrainClip| c.person.as_ref() == Some(&fold.name);
             let of_fold = tests.clips.iter().filter(of_fold);
