@@ -47,11 +47,9 @@ pub mod import;
 #[cfg(feature = "formats")]
 pub mod smooth;
 
-#[cfg(test)]
-mod test_bodies;
-#[cfg(test)]
-#[path = "../../morec/tests/testing/mod.rs"]
-mod testing;
+#[cfg(any(test, feature = "testing"))]
+#[doc(hidden)]
+pub mod testing;
 
 pub use clip::{Clip, Skeleton};
 #[cfg(feature = "files")]

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use clap::{Command, CommandFactory, Parser};
+use mocap::testing::skipped;
 
 use crate::Cli;
 
@@ -83,10 +84,14 @@ fn options(text: &str) -> Vec<&str> {
     named.collect()
 }
 
-/// The code of [`CRATES`], without comments and tests.
-fn sources() -> Vec<(PathBuf, String)> {
+/// The code of [`CRATES`], without comments and tests; none where the crate is read outside of its repository.
+fn sources() -> Option<Vec<(PathBuf, String)>> {
     let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let mut open: Vec<PathBuf> = CRATES.map(|name| crates.join(name).join("src")).into();
+    if !open.iter().all(|folder| folder.is_dir()) {
+        skipped("the other crates are not beside this one");
+        return None;
+    }
     let mut found = Vec::new();
     while let Some(path) = open.pop() {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
@@ -106,7 +111,7 @@ fn sources() -> Vec<(PathBuf, String)> {
             found.push((path.clone(), lines.collect::<Vec<_>>().join("\n")));
         }
     }
-    found
+    Some(found)
 }
 
 #[test]
@@ -122,7 +127,7 @@ fn options_and_commands_in_messages_exist() {
     });
     // Words that the command reads for its older names.
     commands.extend(["morec db cut", "morec db group"].map(str::to_owned));
-    let sources = sources();
+    let Some(sources) = sources() else { return };
     assert!(sources.len() > 300, "{} files", sources.len());
     let mut wrong = Vec::new();
     for (path, code) in &sources {

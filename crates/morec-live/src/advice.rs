@@ -165,11 +165,16 @@ pub fn advice_of_status(status: &Status, index: &MotionIndex) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use morec::Trainer;
     use morec::diagnosis::Diagnoser;
     use morec::features::KeyPose;
+    use morec::import::{ImportOptions, normalize};
+    use morec::labels::Labels;
     use morec::live::{PerformerId, PerformerStatus};
     use morec::math::Vec3;
     use morec::roles::Role;
+    use morec::synth::{Person, Script};
+    use morec::train::{Everyday, TrainOptions};
 
     fn performer(admits_strangers: bool) -> PerformerStatus {
         PerformerStatus {
@@ -206,7 +211,26 @@ mod tests {
         assert_eq!(said(&[false, false]), [""; 0]);
     }
 
-    const INDEX: &[u8] = include_bytes!("../../morec/testdata/index/v1.index");
+    /// An index that was learned without legs.
+    fn index() -> MotionIndex {
+        let person = Person::draw(3, 1);
+        let script = Script::new(3, person).rest(1.0).play("push").rest(1.0);
+        let film = script.play("wave").rest(1.0).film("film", 30.0).unwrap();
+        let mut labels = Labels::default();
+        for sample in film.samples() {
+            labels.add(&sample.clip, &sample.class, sample.span);
+        }
+        let take = normalize(film.clip, &ImportOptions::default()).unwrap();
+        let options = TrainOptions {
+            everyday: Everyday::Never,
+            ..Default::default()
+        };
+        let trainer = Trainer::new().labels(&labels).method(options);
+        let mut index = trainer.train(&[take]).unwrap();
+        index.roles.remove(&Role::LeftThigh);
+        index.roles.remove(&Role::RightThigh);
+        index
+    }
 
     /// Two seconds of a stream that stays in `pose`.
     fn status_of(pose: &KeyPose) -> Status {
@@ -231,7 +255,7 @@ mod tests {
         let mut desk = KeyPose::default();
         desk.set(Role::LeftArm, Vec3::new(0.2, 1.4, 0.0));
         desk.set(Role::RightArm, Vec3::new(-0.2, 1.4, 0.0));
-        let mut index = MotionIndex::from_bytes(INDEX).unwrap();
+        let mut index = index();
         let mut source = Advice::new(["json:-".to_owned()]).sources.remove(0);
         let mut said = Vec::new();
         let mut look = |index: &MotionIndex| {
@@ -259,13 +283,13 @@ mod tests {
         assert!(
             said[0].starts_with("vmc://here, performer 1: error: 100 % of the frames show no body")
         );
-        let index = MotionIndex::from_bytes(INDEX).unwrap();
+        let index = index();
         assert!(advice_of_status(&status, &index)[1].contains("no body"));
     }
 
     #[test]
     fn silence_has_its_reasons() {
-        let index = MotionIndex::from_bytes(INDEX).unwrap();
+        let index = index();
         let mut status = Status::default();
         assert!(advice_of_status(&status, &index)[0].contains("nothing has arrived"));
         status.source.packets = 9;

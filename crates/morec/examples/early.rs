@@ -16,10 +16,6 @@ use morec::live::{EarlyDetection, Recognizer};
 use morec::templates::EarlyDetectionParams;
 use morec::{MotionIndex, Take, Trainer};
 
-#[path = "../tests/testing/mod.rs"]
-#[allow(dead_code)]
-mod testing;
-
 const SIGNALS: [&str; 7] = [
     "traveling",
     "illegal_dribble",
@@ -31,7 +27,9 @@ const SIGNALS: [&str; 7] = [
 ];
 
 fn main() {
-    let Some(data) = testing::data() else { return };
+    let Some(data) = mocap::testing::data() else {
+        return;
+    };
     let mut params = EarlyDetectionParams::default();
     std::env::args()
         .skip(1)

@@ -17,15 +17,13 @@ use morec::live::{Detection, Model, recognize_clip};
 use morec::segment::{CycleParams, cycles};
 use morec::train::{LabelSet, TrainClip, TrainOptions, build_train_set, train_clips};
 
-#[path = "../tests/testing/mod.rs"]
-#[allow(dead_code)]
-mod testing;
-
 /// Labels that follow each other within this are of one stretch, seconds.
 const GAP_SECS: f64 = 0.4;
 
 fn main() {
-    let Some(data) = testing::data() else { return };
+    let Some(data) = mocap::testing::data() else {
+        return;
+    };
     for (set, repetitions) in [("referee", true), ("exercises", false)] {
         let set = data.join(set);
         count(&set.join("clips"), &set.join("labels.tsv"), repetitions);

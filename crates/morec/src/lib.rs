@@ -174,21 +174,10 @@ pub mod report;
 #[cfg(feature = "report")]
 pub mod reproduce;
 
-#[cfg(test)]
-#[path = "../../mocap/src/test_bodies.rs"]
-mod test_bodies;
-#[cfg(test)]
-#[path = "../tests/testing/mod.rs"]
-mod testing;
-
-/// The Rust of README and of the guide, so that it compiles.
+/// The Rust of README, so that it compiles.
 #[cfg(all(doctest, feature = "files", feature = "train"))]
-mod documents {
-    #[doc = include_str!("../../../README.md")]
-    mod readme {}
-    #[doc = include_str!("../../../docs/guide/rust-library.md")]
-    mod guide {}
-}
+#[doc = include_str!("../README.md")]
+mod readme {}
 
 #[cfg(any(feature = "formats", feature = "live"))]
 pub use error::Error;

@@ -5,6 +5,7 @@ mod documents;
 mod figures;
 mod markdown;
 mod names;
+mod packages;
 mod sources;
 mod spans;
 mod unsafe_code;

@@ -1,7 +1,7 @@
 use super::*;
 use crate::clip::Points;
 use crate::import::{ImportOptions, normalize};
-use crate::test_bodies::pushing;
+use crate::testing::pushing;
 
 /// Somebody who pushes, as it is and as points where roles are.
 fn person() -> (Take, Take) {

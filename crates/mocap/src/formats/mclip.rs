@@ -61,7 +61,7 @@ pub fn read(bytes: &[u8], name: &str, limits: &Limits) -> Result<Loaded, ParseEr
 mod tests {
     use super::*;
     use crate::smooth::{SmoothParams, compress};
-    use crate::test_bodies::pushing;
+    use crate::testing::pushing;
 
     #[test]
     fn a_stored_clip_is_a_clip() {

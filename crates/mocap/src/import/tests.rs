@@ -13,7 +13,7 @@ use crate::math::{Axis, Quat, Vec3};
 use crate::pose::{BoneSet, Hand};
 use crate::roles::Role;
 use crate::roles::mapping::Mapping;
-use crate::test_bodies::{at_a_desk, clip_of_hands};
+use crate::testing::{at_a_desk, clip_of_hands};
 
 /// A person of 1.75 m, Y-up, metres, who swings the right arm forward; `walks` metres a frame along Z.
 fn person(frames: usize, walks: f64) -> Clip {

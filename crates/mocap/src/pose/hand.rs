@@ -217,7 +217,7 @@ pub fn lone_left_as_right(pose: &KeyPose) -> Option<KeyPose> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::test_bodies::flat_hand;
+    use crate::testing::flat_hand;
 
     #[test]
     fn a_hand_and_its_mirror_image_have_the_same_coordinates() {

@@ -7,7 +7,7 @@ use mocap::formats::bvh::{self, BvhOptions};
 use mocap::formats::{Limits, Warning};
 use mocap::kinematics::WorldPose;
 
-use crate::testing::data;
+use mocap::testing::data;
 
 /// The clips of one folder with the number of lines in each table, counted the plain way.
 fn clips(folder: &str) -> Vec<(Clip, Vec<Warning>, usize)> {

@@ -11,6 +11,4 @@ mod for_ever;
 mod layers;
 mod partial_skeleton;
 mod smooth_real;
-#[path = "../../../morec/tests/testing/mod.rs"]
-mod testing;
 mod wild;

@@ -8,8 +8,6 @@ use mocap::import::{ImportOptions, normalize};
 use mocap::kinematics::WorldPose;
 use mocap::smooth::{CompressedClip, SmoothParams, compress};
 
-use crate::testing;
-
 /// A few of each kind: long and short, 120 Hz and 30 Hz, moving roots and joints that all have positions.
 fn clips(data: &Path) -> Vec<PathBuf> {
     let mut chosen = vec![data.join("segmentation/clips/86_01.amc")];
@@ -64,7 +62,9 @@ fn distances(a: &Clip, b: &Clip) -> (f64, f64) {
 
 #[test]
 fn real_clips_keep_to_half_a_degree_and_five_millimetres_in_a_fifteenth() {
-    let Some(data) = testing::data() else { return };
+    let Some(data) = mocap::testing::data() else {
+        return;
+    };
     let (mut file_bytes, mut stored_bytes) = (0, 0);
     for path in clips(&data) {
         let bytes = std::fs::read(&path).unwrap();

@@ -11,7 +11,7 @@ use crate::compilers::{Compiler, Language, Link, succeed};
 use crate::eight;
 use crate::kit::{self, index};
 use crate::made;
-use crate::testing::skipped;
+use mocap::testing::skipped;
 
 /// Lines as the examples print them.
 fn lines(found: &[Detection]) -> String {

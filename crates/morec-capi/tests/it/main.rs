@@ -25,7 +25,4 @@ mod kit;
 #[allow(dead_code)]
 #[path = "../../../morec/tests/it/made.rs"]
 mod made;
-#[allow(dead_code)]
-#[path = "../../../morec/tests/testing/mod.rs"]
-mod testing;
 mod unity;

@@ -8,7 +8,7 @@ use std::process::Command;
 use crate::compiled::stream;
 use crate::compilers::{libraries, succeed};
 use crate::eight;
-use crate::testing::skipped;
+use mocap::testing::skipped;
 
 fn package() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("unity")

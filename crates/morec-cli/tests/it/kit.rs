@@ -11,10 +11,7 @@ pub const KNEE_FBX: &str = include_str!("../../../mocap/testdata/fbx/knee.fbx");
 pub const ARM_ASF: &str = include_str!("../../../mocap/testdata/acclaim/arm.asf");
 pub const WAVE_AMC: &str = include_str!("../../../mocap/testdata/acclaim/wave.amc");
 
-#[path = "../../../morec/tests/testing/mod.rs"]
-mod testing;
-
-pub use testing::{data, skipped};
+pub use mocap::testing::{data, skipped};
 
 /// A folder that lives as long as the test.
 pub struct Folder(TempDir);

@@ -9,9 +9,6 @@ use super::rank::probes;
 use super::*;
 use crate::testing::database_of_waves;
 
-#[path = "../../../morec/tests/testing/mod.rs"]
-mod testing;
-
 /// Motion of the bones at random: directions that turn about, rest for a while, or jump; and travel.
 fn wandering(seed: u64, rows: usize, bones: BoneSet) -> Rows {
     let layout = RowLayout::of(bones);
@@ -253,7 +250,7 @@ fn of_motion_few_clips_are_read() {
 /// On real clips: the bounds hold, hits are the same and most clips are not read.
 #[test]
 fn of_real_clips_most_are_not_read() {
-    let Some(data) = testing::data() else {
+    let Some(data) = mocap::testing::data() else {
         return;
     };
     let found = std::fs::read_dir(data.join("everyday/clips")).unwrap();

@@ -5,10 +5,7 @@ use morec::formats::{Limits, acclaim, bvh};
 use morec::roles::{Role, RoleMap};
 use morec::train::{StreamKind, TrainClip};
 
-#[path = "../testing/mod.rs"]
-mod testing;
-
-pub use testing::data;
+pub use mocap::testing::data;
 
 const PARTS: [(Role, [&str; 2]); 15] = [
     (Role::Hips, ["Hips", "root"]),

@@ -2,7 +2,7 @@ use super::*;
 use crate::import::{ImportOptions, Take, normalize};
 use crate::kinematics::WorldPose;
 use crate::math::{Axis, Quat, Vec3};
-use crate::test_bodies::pushing;
+use crate::testing::pushing;
 use serde_json::{Value, json};
 use std::io;
 

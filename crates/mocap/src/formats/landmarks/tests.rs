@@ -5,7 +5,7 @@ use serde_json::json;
 
 use crate::pose::Hand;
 use crate::roles::Role;
-use crate::test_bodies::flat_hand;
+use crate::testing::flat_hand;
 
 fn open(document: &Value) -> Result<Loaded, ParseError> {
     read(

@@ -2,7 +2,7 @@ use super::*;
 use crate::clip::Clip;
 use crate::pose::Hand;
 use crate::roles::Role;
-use crate::test_bodies::flat_hand;
+use crate::testing::flat_hand;
 
 fn load(text: &str) -> (Clip, String) {
     let mut loaded = read(text.as_bytes(), "x", None, &Limits::default()).unwrap();

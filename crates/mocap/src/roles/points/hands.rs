@@ -401,7 +401,7 @@ fn is_like_a_hand(roles: &[(Role, usize)], poses: &[Vec<Vec3>], hand: Hand) -> b
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::test_bodies::flat_hand;
+    use crate::testing::flat_hand;
 
     fn roles(names: &[&str]) -> Vec<(Role, usize)> {
         recognise_hands(names, &[]).map_or_else(Vec::new, |(_, roles)| roles)

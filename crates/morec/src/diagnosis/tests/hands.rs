@@ -5,7 +5,7 @@ use crate::features::{Hand, KeyPose, Profile};
 use crate::import::Take;
 use crate::math::Vec3;
 use crate::roles::Role;
-use crate::test_bodies::{at_a_desk, clip_of_hands, flat_hand};
+use mocap::testing::{at_a_desk, clip_of_hands, flat_hand};
 
 /// A hand that opens and closes and goes round.
 fn moving(hand: Hand, secs: f64, scale: f64) -> KeyPose {

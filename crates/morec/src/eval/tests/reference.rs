@@ -26,7 +26,7 @@ fn length(bvh: &str) -> ClipLength {
 
 #[test]
 fn the_published_figures_come_out() {
-    let Some(data) = crate::testing::data() else {
+    let Some(data) = mocap::testing::data() else {
         return;
     };
     let folder = data.join("referee");

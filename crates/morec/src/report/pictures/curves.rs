@@ -125,7 +125,7 @@ fn samples(source: &Clip, curve: &Curve) -> Vec<ChannelValue> {
 mod tests {
     use super::*;
     use crate::smooth::{SmoothParams, compress};
-    use crate::test_bodies::pushing;
+    use mocap::testing::pushing;
 
     #[test]
     fn every_channel_can_be_drawn() {

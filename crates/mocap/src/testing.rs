@@ -1,7 +1,12 @@
-//! The folder of real clips, for tests of every crate (by `#[path]`), and how a test says that it is skipped.
+//! For tests of every crate: bodies, the folder of real clips, and how a test says that it is skipped. No part of the interface.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
+
+#[path = "test_bodies.rs"]
+mod bodies;
+
+pub use bodies::{at_a_desk, clip_of_hands, flat_hand, pushing};
 
 /// The folder of real clips: `MOREC_DATA`, or `../shared/data` beside the repository. Where it is missing, says that the
 /// calling test is skipped.
@@ -30,10 +35,6 @@ pub fn skipped(why: &str) {
 }
 
 /// A real file of the folder's `formats`; where it is missing, says that the calling test is skipped.
-#[allow(
-    dead_code,
-    reason = "not every crate that includes this module reads formats"
-)]
 pub fn real_file(name: &str) -> Option<Vec<u8>> {
     let path = data()?.join("formats").join(name);
     let bytes = std::fs::read(&path).ok();
