@@ -62,7 +62,7 @@ export class Teaching extends EventTarget {
   #begin() {
     this.#row = new Float32Array(3 * this.#roles.length);
     try {
-      return this.index.recognizer(this.#roles);
+      return this.index.recognizer(this.#roles, { tentative: true });
     } catch (error) {
       this.#emit("diagnosis", [String(error.message ?? error)]);
       return null;

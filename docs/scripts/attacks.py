@@ -48,7 +48,7 @@ class Live:
     def __init__(self, morec, index, listen, *more):
         self.events = tempfile.NamedTemporaryFile(suffix=".jsonl", delete=False)
         self.process = subprocess.Popen(
-            [morec, "live", index, "--listen", listen, "--emit", f"json:{self.events.name}", "--quiet", "--no-early", *more],
+            [morec, "live", index, "--listen", listen, "--emit", f"json:{self.events.name}", "--quiet", *more],
             stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
         )
         self.said = []

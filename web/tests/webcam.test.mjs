@@ -61,7 +61,7 @@ test("the camera's page sends what MediaPipe sees, and the command recognises it
   const secs = 45;
   writeFileSync(join(folder, "pose.js"), standIn(landmarks(clip).slice(0, secs * clip.rate_hz), clip.rate_hz));
   const live = spawn(MOREC_COMMAND, [
-    "live", join(MOREC_CASES, `${name}.index`), "--listen", "webcam://127.0.0.1:0", "--mediapipe", folder, "--emit", "json:-", "--no-early",
+    "live", join(MOREC_CASES, `${name}.index`), "--listen", "webcam://127.0.0.1:0", "--mediapipe", folder, "--emit", "json:-",
   ]);
   let browser;
   try {

@@ -34,6 +34,7 @@ pub mod progress;
 pub mod resample;
 pub mod rng;
 pub mod roles;
+mod signed_axis;
 mod time_span;
 
 #[cfg(feature = "files")]
@@ -62,4 +63,5 @@ pub use import::{ImportOptions, Take};
 pub use parse_error::shortened;
 pub use parse_error::{ParseError, Place, Warning};
 pub use pose::{BoneSet, KeyPose};
+pub use signed_axis::SignedAxis;
 pub use time_span::TimeSpan;

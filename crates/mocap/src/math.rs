@@ -83,7 +83,6 @@ impl Axis {
     pub const ALL: [Axis; 3] = [Axis::X, Axis::Y, Axis::Z];
 
     /// The axis that `x`, `y`, `z` (either case) names.
-    #[cfg(feature = "formats")]
     pub(crate) fn from_letter(letter: char) -> Option<Self> {
         match letter.to_ascii_lowercase() {
             'x' => Some(Axis::X),

@@ -20,7 +20,7 @@
 /**
  * Say what seems to be under way, too: starts, updates and cancellations beside the ends.
  */
-#define MOREC_EARLY_EVENTS 1
+#define MOREC_TENTATIVE 1
 
 /**
  * Anyone performs: the bound of the score is never raised. For hands, tracked points and older indexes: more is accepted from the first
@@ -36,7 +36,7 @@
 /**
  * Each repetition of an activity is an event of its own.
  */
-#define MOREC_REPETITION_EVENTS 8
+#define MOREC_EACH_REPETITION 8
 
 /**
  * Number of parts of the body; they are numbered from 0.
@@ -250,7 +250,7 @@ enum MorecPhase
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
     /**
-     * A motion seems to be under way. Tentative; only with `MOREC_EARLY_EVENTS`.
+     * A motion seems to be under way. Tentative; only with `MOREC_TENTATIVE`.
      */
     MOREC_PHASE_START = 0,
     /**
@@ -267,7 +267,7 @@ enum MorecPhase
     MOREC_PHASE_END = 3,
     /**
      * One more repetition of an activity is over, from the event's start to its stop; `repetitions` is its number. Only with
-     * `MOREC_REPETITION_EVENTS`. (Not in the first version.)
+     * `MOREC_EACH_REPETITION`. (Not in the first version.)
      */
     MOREC_PHASE_REPETITION = 4,
 };
@@ -523,7 +523,7 @@ typedef struct MorecOptions {
      */
     uint32_t roles;
     /**
-     * `MOREC_EARLY_EVENTS`, `MOREC_REPETITION_EVENTS`, and one of `MOREC_PERFORMER_ANYONE` and `MOREC_PERFORMER_TEACHER`; or 0.
+     * `MOREC_TENTATIVE`, `MOREC_EACH_REPETITION`, and one of `MOREC_PERFORMER_ANYONE` and `MOREC_PERFORMER_TEACHER`; or 0.
      */
     uint32_t flags;
     /**
@@ -539,7 +539,7 @@ typedef struct MorecOptions {
      * Sensitivity: false alarms a minute that background motion may raise, as in training, 0.1 strict … 1 generous.
      * 0: as trained. (Not in the first version of this struct.)
      */
-    double alarms_per_minute;
+    double sensitivity;
 } MorecOptions;
 
 /**

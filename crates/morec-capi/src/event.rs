@@ -6,7 +6,7 @@ use morec::live::{Event, Phase};
 #[repr(i32)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MorecPhase {
-    /// A motion seems to be under way. Tentative; only with `MOREC_EARLY_EVENTS`.
+    /// A motion seems to be under way. Tentative; only with `MOREC_TENTATIVE`.
     Start = 0,
     /// Its progress, or what it seems to be, has changed. Tentative.
     Update = 1,
@@ -15,7 +15,7 @@ pub enum MorecPhase {
     /// It has happened. Final: nothing that ended is taken back, and every motion ends once.
     End = 3,
     /// One more repetition of an activity is over, from the event's start to its stop; `repetitions` is its number. Only with
-    /// `MOREC_REPETITION_EVENTS`. (Not in the first version.)
+    /// `MOREC_EACH_REPETITION`. (Not in the first version.)
     Repetition = 4,
 }
 

@@ -48,7 +48,7 @@ pub use index::{
     morec_index_from_memory, morec_index_load,
 };
 pub use recognizer::{
-    MOREC_EARLY_EVENTS, MOREC_PERFORMER_ANYONE, MOREC_PERFORMER_TEACHER, MOREC_REPETITION_EVENTS,
+    MOREC_EACH_REPETITION, MOREC_PERFORMER_ANYONE, MOREC_PERFORMER_TEACHER, MOREC_TENTATIVE,
     MorecOptions, MorecStats, morec_recognizer_create, morec_recognizer_destroy,
     morec_recognizer_finish, morec_recognizer_joint_of_role, morec_recognizer_poll,
     morec_recognizer_push, morec_recognizer_reset, morec_recognizer_stats,

@@ -1,9 +1,6 @@
 //! Recognisers: made of an index, fed with frames, asked for events.
 
-use std::sync::Arc;
-
-use morec::index::MotionIndex;
-use morec::live::EventOptions;
+use morec::live::StreamOptions;
 use morec::roles::Role;
 use morec::templates::PerformerKind;
 
@@ -14,11 +11,11 @@ use crate::handles::{self, MorecIndex, MorecRecognizer};
 use crate::memory::{self, Places, Versioned};
 use crate::skeleton::{self, MorecSkeleton};
 use crate::status::{CallError, MorecStatus, guard};
-use crate::stream::{Stream, StreamOptions};
+use crate::stream::Stream;
 use crate::words;
 
 /// Say what seems to be under way, too: starts, updates and cancellations beside the ends.
-pub const MOREC_EARLY_EVENTS: u32 = 1;
+pub const MOREC_TENTATIVE: u32 = 1;
 
 /// Anyone performs: the bound of the score is never raised. For hands, tracked points and older indexes: more is accepted from the first
 /// frame, not only once the performer's motions show somebody unlike the teacher.
@@ -28,7 +25,7 @@ pub const MOREC_PERFORMER_ANYONE: u32 = 2;
 pub const MOREC_PERFORMER_TEACHER: u32 = 4;
 
 /// Each repetition of an activity is an event of its own.
-pub const MOREC_REPETITION_EVENTS: u32 = 8;
+pub const MOREC_EACH_REPETITION: u32 = 8;
 
 /// Options of a recogniser.
 #[repr(C)]
@@ -44,7 +41,7 @@ pub struct MorecOptions {
     pub skeleton: *const MorecSkeleton,
     /// For a stream of roles: bit `r` for each `MorecRole` `r` that it shows; 0 for all.
     pub roles: u32,
-    /// `MOREC_EARLY_EVENTS`, `MOREC_REPETITION_EVENTS`, and one of `MOREC_PERFORMER_ANYONE` and `MOREC_PERFORMER_TEACHER`; or 0.
+    /// `MOREC_TENTATIVE`, `MOREC_EACH_REPETITION`, and one of `MOREC_PERFORMER_ANYONE` and `MOREC_PERFORMER_TEACHER`; or 0.
     pub flags: u32,
     /// Events that can wait to be polled, 128 to 1048576; 0 for 256. Memory is taken for as many.
     pub event_capacity: usize,
@@ -53,13 +50,13 @@ pub struct MorecOptions {
     pub refractory_secs: f64,
     /// Sensitivity: false alarms a minute that background motion may raise, as in training, 0.1 strict … 1 generous.
     /// 0: as trained. (Not in the first version of this struct.)
-    pub alarms_per_minute: f64,
+    pub sensitivity: f64,
 }
 
 // SAFETY: repr(C), begins with its size, numbers and pointers only.
 unsafe impl Versioned for MorecOptions {
     const NAME: &'static str = "MorecOptions";
-    const FIRST_SIZE: usize = std::mem::offset_of!(Self, alarms_per_minute);
+    const FIRST_SIZE: usize = std::mem::offset_of!(Self, sensitivity);
 }
 
 /// Counts of a recogniser since it was made or reset.
@@ -105,7 +102,10 @@ pub unsafe extern "C" fn morec_recognizer_create(
         let index = handles::find(index)?;
         // SAFETY: as promised to this function.
         let c = unsafe { memory::read_struct(options) }?;
-        let options = stream_options(&c)?;
+        let (options, convention) = (
+            stream_options(&c)?,
+            Convention::new(c.handedness, c.up_axis)?,
+        );
         let declared = if c.skeleton.is_null() {
             skeleton::of_roles(if c.roles == 0 {
                 (1 << Role::BODY_COUNT) - 1
@@ -114,40 +114,30 @@ pub unsafe extern "C" fn morec_recognizer_create(
             })?
         } else if c.roles == 0 {
             // SAFETY: as promised to this function.
-            unsafe { skeleton::read(c.skeleton, &options.convention, &index) }?
+            unsafe { skeleton::read(c.skeleton, &convention, &index) }?
         } else {
             return Err(CallError::invalid(
                 "roles is for streams of roles; a skeleton says its own",
             ));
         };
-        let index = with_sensitivity(index, c.alarms_per_minute)?;
-        let index = with_performer(index, c.flags)?;
-        let stream = Stream::new(&index, declared, &options)?;
+        let stream = Stream::new(&index, declared, convention, &options, c.event_capacity)?;
         // SAFETY: as promised to this function.
         unsafe { memory::put(recognizer, handles::give(stream)?, "recognizer") }
     })
 }
 
-/// The index with the sensitivity that was asked for.
-fn with_sensitivity(
-    index: Arc<MotionIndex>,
-    per_minute: f64,
-) -> Result<Arc<MotionIndex>, CallError> {
-    if per_minute == 0.0 {
-        return Ok(index);
+/// The options that C says by numbers and flags.
+fn stream_options(c: &MorecOptions) -> Result<StreamOptions, CallError> {
+    let known =
+        MOREC_TENTATIVE | MOREC_EACH_REPETITION | MOREC_PERFORMER_ANYONE | MOREC_PERFORMER_TEACHER;
+    if c.flags & !known != 0 {
+        return Err(CallError::invalid(format!(
+            "flags is {:#x}, which this release does not know",
+            c.flags
+        )));
     }
-    let model = index.model.with_sensitivity(per_minute);
-    let model = model.map_err(|error| CallError::invalid(format!("alarms_per_minute: {error}")))?;
-    Ok(Arc::new(MotionIndex {
-        model,
-        ..(*index).clone()
-    }))
-}
-
-/// The index for the performer that the flags say.
-fn with_performer(index: Arc<MotionIndex>, flags: u32) -> Result<Arc<MotionIndex>, CallError> {
-    let performer = match flags & (MOREC_PERFORMER_ANYONE | MOREC_PERFORMER_TEACHER) {
-        0 => return Ok(index),
+    let performer = match c.flags & (MOREC_PERFORMER_ANYONE | MOREC_PERFORMER_TEACHER) {
+        0 => PerformerKind::Auto,
         MOREC_PERFORMER_ANYONE => PerformerKind::Anyone,
         MOREC_PERFORMER_TEACHER => PerformerKind::Teacher,
         _ => {
@@ -156,39 +146,13 @@ fn with_performer(index: Arc<MotionIndex>, flags: u32) -> Result<Arc<MotionIndex
             ));
         }
     };
-    let model = index.model.with_performer(performer);
-    let model = model.map_err(|error| CallError::invalid(format!("flags: {error}")))?;
-    Ok(Arc::new(MotionIndex {
-        model,
-        ..(*index).clone()
-    }))
-}
-
-fn stream_options(c: &MorecOptions) -> Result<StreamOptions, CallError> {
-    let known = MOREC_EARLY_EVENTS
-        | MOREC_REPETITION_EVENTS
-        | MOREC_PERFORMER_ANYONE
-        | MOREC_PERFORMER_TEACHER;
-    if c.flags & !known != 0 {
-        return Err(CallError::invalid(format!(
-            "flags is {:#x}, which this release does not know",
-            c.flags
-        )));
-    }
-    if !(c.refractory_secs.is_finite() && c.refractory_secs >= 0.0) {
-        return Err(CallError::invalid(format!(
-            "refractory_secs is {}, expected 0 or more",
-            c.refractory_secs
-        )));
-    }
     Ok(StreamOptions {
-        convention: Convention::new(c.handedness, c.up_axis)?,
-        events: EventOptions {
-            early: c.flags & MOREC_EARLY_EVENTS != 0,
-            each_repetition: c.flags & MOREC_REPETITION_EVENTS != 0,
-            refractory_secs: c.refractory_secs,
-        },
-        event_capacity: c.event_capacity,
+        sensitivity: (c.sensitivity != 0.0).then_some(c.sensitivity),
+        performer,
+        tentative: c.flags & MOREC_TENTATIVE != 0,
+        each_repetition: c.flags & MOREC_EACH_REPETITION != 0,
+        refractory_secs: c.refractory_secs,
+        ..StreamOptions::default()
     })
 }
 

@@ -3,10 +3,9 @@
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
 
-use morec::diagnosis::{Diagnoser, Diagnosis};
-use morec::features::BoneSet;
+use morec::diagnosis::Diagnosis;
 use morec::index::MotionIndex;
-use morec::live::{Event, EventOptions, Frame, Performer, PerformerId, RecognizerCache};
+use morec::live::{Event, Frame, PerformerStream, StreamError, StreamOptions};
 
 use crate::MorecStatus;
 use crate::axes::Convention;
@@ -21,18 +20,8 @@ const USUAL_EVENTS: usize = 256;
 /// The fewest, and the most.
 const EVENTS: std::ops::RangeInclusive<usize> = 128..=1 << 20;
 
-/// Options of a stream.
-#[derive(Debug, Clone)]
-pub(crate) struct StreamOptions {
-    pub(crate) convention: Convention,
-    pub(crate) events: EventOptions,
-    /// Events that can wait to be polled; 0 for the usual number.
-    pub(crate) event_capacity: usize,
-}
-
 /// A recogniser with a queue of events behind it. One thread may push while another polls.
 pub(crate) struct Stream {
-    index: Arc<MotionIndex>,
     declared: Declared,
     convention: Convention,
     input: Mutex<StreamInput>,
@@ -42,30 +31,9 @@ pub(crate) struct Stream {
 }
 
 struct StreamInput {
-    performer: Performer,
-    made: Made,
+    stream: PerformerStream,
     frame: Frame,
     events: rtrb::Producer<Event>,
-    sequence: u64,
-}
-
-/// Parts from which another performer is made.
-struct Made {
-    recognizers: Arc<RecognizerCache>,
-    options: EventOptions,
-    rig: Arc<morec::live::Rig>,
-    bones: BoneSet,
-}
-
-impl Made {
-    fn performer(&self) -> Result<Performer, CallError> {
-        let mut performer = Performer::sharing(&self.recognizers, PerformerId(0), &self.options);
-        performer.set_rig(&self.rig, &mut |_| {});
-        let announced = performer.announce(self.bones);
-        announced
-            .map_err(|error| CallError::new(MorecStatus::NothingInCommon, error.to_string()))?;
-        Ok(performer)
-    }
 }
 
 #[derive(Debug, Default)]
@@ -89,13 +57,15 @@ pub(crate) struct StreamStatus {
 }
 
 impl Stream {
-    /// A stream of what `declared` shows.
+    /// A stream of what `declared` shows; `event_capacity` events can wait to be polled, 0 for the usual number.
     pub(crate) fn new(
         index: &Arc<MotionIndex>,
         declared: Declared,
+        convention: Convention,
         options: &StreamOptions,
+        event_capacity: usize,
     ) -> Result<Self, CallError> {
-        let capacity = match options.event_capacity {
+        let capacity = match event_capacity {
             0 => USUAL_EVENTS,
             capacity if EVENTS.contains(&capacity) => capacity,
             capacity => {
@@ -111,25 +81,18 @@ impl Stream {
                 text.to_owned(),
             ));
         }
-        let made = Made {
-            recognizers: Arc::new(RecognizerCache::new(&index.model)),
-            options: options.events.clone(),
-            rig: Arc::new(declared.rig.clone()),
-            bones: declared.bones,
-        };
+        let (rig, bones) = (declared.rig.clone(), Some(declared.bones));
+        let stream = PerformerStream::of_rig(index, rig, bones, options).map_err(refusal)?;
         let (producer, consumer) = rtrb::RingBuffer::new(capacity);
         let input = StreamInput {
-            performer: made.performer()?,
-            made,
+            stream,
             frame: Frame::default(),
             events: producer,
-            sequence: 0,
         };
         Ok(Self {
-            index: index.clone(),
-            latency_secs: input.performer.latency_secs().unwrap_or_default(),
+            latency_secs: input.stream.latency_secs().unwrap_or_default(),
             declared,
-            convention: options.convention,
+            convention,
             input: Mutex::new(input),
             output: Mutex::new(consumer),
             counts: StreamCounts::default(),
@@ -146,18 +109,11 @@ impl Stream {
         let input = &mut *turn(&self.input)?;
         self.make_room(input)?;
         given.pose(&self.declared, &self.convention, &mut input.frame)?;
-        let mut out = EventOutput {
-            events: &mut input.events,
-            sequence: &mut input.sequence,
-            counts: &self.counts,
-        };
-        input
-            .performer
-            .push(&input.frame, &mut |event| out.event(event));
+        let settled = input.stream.push(&input.frame);
+        self.queue(settled, &mut input.events);
         self.counts.frames.fetch_add(1, Relaxed);
-        self.counts
-            .suppressed
-            .store(input.performer.suppressed(), Relaxed);
+        let suppressed = input.stream.suppressed();
+        self.counts.suppressed.store(suppressed, Relaxed);
         Ok(())
     }
 
@@ -165,15 +121,9 @@ impl Stream {
     pub(crate) fn finish(&self) -> Result<(), CallError> {
         let input = &mut *turn(&self.input)?;
         self.make_room(input)?;
-        let mut out = EventOutput {
-            events: &mut input.events,
-            sequence: &mut input.sequence,
-            counts: &self.counts,
-        };
-        input.performer.finish(&mut |event| out.event(event));
-        self.counts
-            .suppressed
-            .store(input.performer.suppressed(), Relaxed);
+        self.queue(input.stream.finish(), &mut input.events);
+        let suppressed = input.stream.suppressed();
+        self.counts.suppressed.store(suppressed, Relaxed);
         Ok(())
     }
 
@@ -182,8 +132,7 @@ impl Stream {
         let input = &mut *turn(&self.input)?;
         let output = &mut *turn(&self.output)?;
         while output.pop().is_ok() {}
-        input.performer = input.made.performer()?;
-        input.sequence = 0;
+        input.stream.reset().map_err(|e| refusal(e.into()))?;
         let counts = &self.counts;
         for count in [
             &counts.frames,
@@ -231,13 +180,22 @@ impl Stream {
 
     /// Diagnosis of the stream; refused while another thread pushes.
     pub(crate) fn diagnosis(&self) -> Result<Diagnosis, CallError> {
-        let known = turn(&self.input)?.performer.diagnosis();
-        Ok(known.unwrap_or_else(|| Diagnoser::live().diagnosis()))
+        Ok(turn(&self.input)?.stream.diagnosis())
     }
 
     /// What is wrong with the stream for its index, a sentence each.
     pub(crate) fn findings(&self) -> Result<Vec<String>, CallError> {
-        Ok(self.index.findings(&self.diagnosis()?))
+        Ok(turn(&self.input)?.stream.findings())
+    }
+
+    fn queue(&self, settled: &[Event], events: &mut rtrb::Producer<Event>) {
+        for event in settled {
+            self.counts.events.fetch_add(1, Relaxed);
+            // There is room, or the frame would not have been taken; if ever not, it is reported.
+            if events.push(*event).is_err() {
+                self.counts.lost.fetch_add(1, Relaxed);
+            }
+        }
     }
 
     fn make_room(&self, input: &StreamInput) -> Result<(), CallError> {
@@ -249,22 +207,11 @@ impl Stream {
     }
 }
 
-/// Output of events.
-struct EventOutput<'a> {
-    events: &'a mut rtrb::Producer<Event>,
-    sequence: &'a mut u64,
-    counts: &'a StreamCounts,
-}
-
-impl EventOutput<'_> {
-    fn event(&mut self, mut event: Event) {
-        *self.sequence += 1;
-        event.sequence = *self.sequence;
-        self.counts.events.fetch_add(1, Relaxed);
-        // There is room, or the frame would not have been taken; if ever not, it is reported.
-        if self.events.push(event).is_err() {
-            self.counts.lost.fetch_add(1, Relaxed);
-        }
+/// Why a stream cannot be, as a status.
+fn refusal(error: StreamError) -> CallError {
+    match error {
+        StreamError::Option(_) => CallError::invalid(error.to_string()),
+        _ => CallError::new(MorecStatus::NothingInCommon, error.to_string()),
     }
 }
 

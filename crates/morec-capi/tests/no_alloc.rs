@@ -19,7 +19,7 @@ static ALLOCATOR: AllocDisabler = AllocDisabler;
 fn pushing_and_polling_take_no_memory() {
     let index = kit::Index::new(&kit::small_index());
     let mut options = kit::options();
-    options.flags = MOREC_EARLY_EVENTS;
+    options.flags = MOREC_TENTATIVE;
     let recognizer = kit::Recognizer::new(&index, &options).unwrap();
     let (_, poses) = made::poses(&kit::take(60.0));
     let poses: Vec<(f64, Vec<f64>)> = poses

@@ -1,15 +1,18 @@
 //! A Godot 4 extension: [`MorecRecognizer`](RecognizerNode), a node that recognises motions of a `Skeleton3D` or of XR trackers of a body and of hands.
 
-mod stream;
 mod trackers;
+
+use std::sync::Arc;
 
 use godot::classes::{FileAccess, INode, Node, Skeleton3D};
 use godot::prelude::*;
 use morec::clip::{Joint, Skeleton};
 use morec::index::MotionIndex;
-use morec::live::{Event, Phase};
+use morec::live::{Event, Frame, PerformerStream, Phase, Rig, StreamOptions, wall_now_secs};
+use morec::roles::RoleMap;
+use morec::roles::mapping::Mapping;
+use morec::templates::PerformerKind;
 
-use stream::PerformerStream;
 use trackers::vector;
 
 struct MorecExtension;
@@ -17,6 +20,19 @@ struct MorecExtension;
 // SAFETY: the entry point does nothing but register classes.
 #[gdextension]
 unsafe impl ExtensionLibrary for MorecExtension {}
+
+/// The expected performer: whoever it is, the person who taught, or anyone.
+#[derive(GodotConvert, Var, Export, Default, Clone, Copy)]
+#[godot(via = GString)]
+pub enum ExpectedPerformer {
+    /// As the performer's motions show.
+    #[default]
+    Auto,
+    /// The person who taught.
+    Teacher,
+    /// Anyone, from the first frame.
+    Anyone,
+}
 
 /// Recognises the motions of an index in what a skeleton or XR trackers show, frame by frame, and says so by signals.
 #[derive(GodotClass)]
@@ -32,15 +48,39 @@ pub struct RecognizerNode {
     #[export]
     #[init(val = trackers::usual())]
     trackers: PackedStringArray,
+    /// False alarms a minute that background motion may raise: 0.1 is strict, 1 is generous; 0 as trained.
+    #[export]
+    sensitivity: f64,
+    /// The expected performer.
+    #[export]
+    performer: ExpectedPerformer,
+    /// Also signal what seems to be under way: `motion_started` and `motion_cancelled`.
+    #[export]
+    tentative: bool,
+    /// Also signal each repetition of an activity: `motion_repeated`.
+    #[export]
+    each_repetition: bool,
+    /// A motion of the same class that ends less than this after the one before it is not signalled, seconds.
+    #[export]
+    refractory_secs: f64,
+    /// Bones of the skeleton that play parts of the body, where names do not tell: lines of a role, a tab and the bone's name.
+    #[export(multiline)]
+    roles: GString,
     /// Bones of the skeleton in the order in which joints come, parents first.
     bones: Vec<i32>,
     stream: Option<PerformerStream>,
+    frame: Frame,
     secs: f64,
     base: Base<Node>,
 }
 
 #[godot_api]
 impl RecognizerNode {
+    /// Any event: a dictionary of phase (`start`, `update`, `repetition`, `cancel`, `end`), class, score, progress, start_secs, stop_secs,
+    /// reported_secs, wall_secs, actor, motion, sequence, repetitions and period_secs (0 where nothing is counted).
+    #[signal]
+    fn motion_event(event: VarDictionary);
+
     /// A motion seems to be under way.
     #[signal]
     fn motion_started(name: GString, score: f64);
@@ -64,13 +104,14 @@ impl RecognizerNode {
         found.map(|text| GString::from(&text)).collect()
     }
 
-    /// Reads the index and begins anew; false, with an error in the log, if it cannot be read.
+    /// Reads the index and begins anew with the properties as they are; false, with an error in the log, if that cannot be.
     #[func]
     fn start(&mut self) -> bool {
         let bytes = FileAccess::get_file_as_bytes(&self.index_file);
-        match MotionIndex::from_bytes(bytes.as_slice()) {
-            Ok(index) => {
-                self.stream = Some(self.listen(index));
+        let index = MotionIndex::from_bytes(bytes.as_slice()).map_err(|error| error.to_string());
+        match index.and_then(|index| self.listen(&Arc::new(index))) {
+            Ok(stream) => {
+                self.stream = Some(stream);
                 self.secs = 0.0;
                 true
             }
@@ -81,17 +122,44 @@ impl RecognizerNode {
         }
     }
 
-    fn listen(&mut self, index: MotionIndex) -> PerformerStream {
-        let Some(skeleton) = &self.skeleton else {
-            return PerformerStream::of_roles(index);
+    fn listen(&mut self, index: &Arc<MotionIndex>) -> Result<PerformerStream, String> {
+        let options = self.options()?;
+        let rig = match &self.skeleton {
+            Some(skeleton) => {
+                self.bones = parents_first(skeleton);
+                let skeleton = joints(skeleton, &self.bones);
+                let mut roles = RoleMap::find(&skeleton);
+                index.complete_roles(&mut roles, &skeleton);
+                Rig { skeleton, roles }
+            }
+            None => Rig::of_roles(),
         };
-        self.bones = parents_first(skeleton);
-        PerformerStream::of_skeleton(index, joints(skeleton, &self.bones))
+        let stream = PerformerStream::of_rig(index, rig, None, &options);
+        stream.map_err(|error| error.to_string())
     }
 
-    /// Takes the stream back and says what it has recognised; what is connected to a signal may begin another stream.
-    fn keep(&mut self, stream: PerformerStream) {
-        let events: Vec<(String, Event)> = stream.events().collect();
+    fn options(&self) -> Result<StreamOptions, String> {
+        let roles = Mapping::read(self.roles.to_string().as_bytes());
+        Ok(StreamOptions {
+            sensitivity: (self.sensitivity != 0.0).then_some(self.sensitivity),
+            performer: match self.performer {
+                ExpectedPerformer::Auto => PerformerKind::Auto,
+                ExpectedPerformer::Teacher => PerformerKind::Teacher,
+                ExpectedPerformer::Anyone => PerformerKind::Anyone,
+            },
+            tentative: self.tentative,
+            each_repetition: self.each_repetition,
+            refractory_secs: self.refractory_secs,
+            roles: roles.map_err(|error| format!("roles: {error}"))?,
+            // The engine's.
+            up: morec::SignedAxis::Y,
+        })
+    }
+
+    /// Takes the stream back and signals its events; what is connected to a signal may begin another stream.
+    fn keep(&mut self, stream: PerformerStream, events: &[Event]) {
+        let name = |event: &Event| stream.index().model.class_name(event.class).to_owned();
+        let events: Vec<(String, Event)> = events.iter().map(|e| (name(e), *e)).collect();
         self.stream = Some(stream);
         for (name, event) in &events {
             self.emit(name, event);
@@ -100,6 +168,8 @@ impl RecognizerNode {
 
     fn emit(&mut self, name: &str, event: &Event) {
         let name = GString::from(name);
+        let all = dictionary(&name, event);
+        self.signals().motion_event().emit(&all);
         let repetitions = event.repetitions.map_or(0, |r| i64::from(r.count));
         let mut signals = self.signals();
         match event.phase {
@@ -136,18 +206,42 @@ impl INode for RecognizerNode {
                     let at = to_world * skeleton.get_bone_global_pose(*bone).origin;
                     vector(at)
                 });
-                stream.push(self.secs, places);
+                self.frame.pose.rotations.clear();
+                self.frame.pose.positions.clear();
+                self.frame.pose.positions.extend(places);
             }
-            None => stream.push_places(self.secs, &trackers::pose(&self.trackers)),
+            None => self.frame.set_key_pose(&trackers::pose(&self.trackers)),
         }
-        self.keep(stream);
+        (self.frame.time_secs, self.frame.wall_secs) = (self.secs, wall_now_secs());
+        let events = stream.push(&self.frame).to_vec();
+        self.keep(stream, &events);
     }
 
     fn exit_tree(&mut self) {
         if let Some(mut stream) = self.stream.take() {
-            stream.finish();
-            self.keep(stream);
+            let events = stream.finish().to_vec();
+            self.keep(stream, &events);
         }
+    }
+}
+
+/// An event with all that is known of it.
+fn dictionary(name: &GString, event: &Event) -> VarDictionary {
+    let repeated = event.repetitions;
+    vdict! {
+        "phase" => event.phase.name(),
+        "class" => name,
+        "score" => event.score,
+        "progress" => event.progress,
+        "start_secs" => event.span.start_secs,
+        "stop_secs" => event.span.stop_secs,
+        "reported_secs" => event.reported_secs,
+        "wall_secs" => event.wall_secs,
+        "actor" => i64::from(event.actor.0),
+        "motion" => event.motion as i64,
+        "sequence" => event.sequence as i64,
+        "repetitions" => repeated.map_or(0, |r| i64::from(r.count)),
+        "period_secs" => repeated.map_or(0.0, |r| r.period_secs),
     }
 }
 

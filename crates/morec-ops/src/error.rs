@@ -3,6 +3,7 @@
 use morec::crossval::CrossvalError;
 use morec::eval::EvalError;
 use morec::index::IndexError;
+use morec::live::OptionError;
 use morec::train::{DataError, TrainError};
 use morec_db::DbError;
 
@@ -18,6 +19,9 @@ pub enum OperationError {
     /// Settings that contradict each other.
     #[error("{0}")]
     Settings(String),
+    /// An option that the index does not have, or that cannot be.
+    #[error(transparent)]
+    Option(#[from] OptionError),
     /// Clips and labels that do not fit together.
     #[error(transparent)]
     Data(#[from] DataError),

@@ -51,7 +51,7 @@ pub use import::{CopiedClip, ImportSettings, ImportedFiles};
 pub use material::{MaterialBeside, accepted_labels, training_data};
 pub use params::{Param, ParamError, from_fields};
 pub use propose::ProposeSettings;
-pub use recognize::RecognizeSettings;
+pub use recognize::{RecognizeSettings, StreamSettings};
 pub use search::{SearchSettings, example_of_clip, example_of_database};
 pub use train::{Method, TrainSettings, Unlabelled};
 pub use words::share;

@@ -1,6 +1,6 @@
-//! Recognition: how readily motions are reported, and for whom.
+//! Recognition: how readily motions are reported, for whom, and which events of a stream.
 
-use morec::live::Model;
+use morec::live::{Model, StreamOptions};
 use morec::templates::PerformerKind;
 use serde::{Deserialize, Serialize};
 
@@ -30,15 +30,45 @@ impl RecognizeSettings {
     ///
     /// # Errors
     /// The model notes no rates of false alarms, has no gate for others than the teacher, or the sensitivity makes no sense.
-    pub fn tuned(&self, mut model: Model) -> Result<Model, OperationError> {
-        if let Some(alarms_per_minute) = self.sensitivity {
-            let changed = model.with_sensitivity(alarms_per_minute);
-            model = changed.map_err(|e| OperationError::Settings(format!("sensitivity: {e}")))?;
+    pub fn tuned(&self, model: Model) -> Result<Model, OperationError> {
+        Ok(self.options().tuned(model)?)
+    }
+
+    /// The options of a stream.
+    pub fn options(&self) -> StreamOptions {
+        StreamOptions {
+            sensitivity: self.sensitivity,
+            performer: self.performer.unwrap_or_default(),
+            ..StreamOptions::default()
         }
-        if let Some(performer) = self.performer {
-            let changed = model.with_performer(performer);
-            model = changed.map_err(|e| OperationError::Settings(format!("performer: {e}")))?;
+    }
+}
+
+/// Options of a live stream: those of [`StreamOptions`], as a command line says them.
+#[derive(Debug, Clone, Default, PartialEq, clap::Args)]
+pub struct StreamSettings {
+    /// Readiness to report motions.
+    #[command(flatten)]
+    pub recognition: RecognizeSettings,
+    /// Also report what seems to be under way: events of the phases start, update and cancel
+    #[arg(long)]
+    pub tentative: bool,
+    /// Make each repetition of an activity an event of its own
+    #[arg(long)]
+    pub each_repetition: bool,
+    /// Minimum seconds between two events of a class
+    #[arg(long = "refractory", value_name = "SECS", default_value = "0")]
+    pub refractory_secs: f64,
+}
+
+impl StreamSettings {
+    /// The options.
+    pub fn options(&self) -> StreamOptions {
+        StreamOptions {
+            tentative: self.tentative,
+            each_repetition: self.each_repetition,
+            refractory_secs: self.refractory_secs,
+            ..self.recognition.options()
         }
-        Ok(model)
     }
 }

@@ -6,7 +6,6 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use morec::classify::Classifier;
 use morec::features::all_bones_of_clip;
-use morec::import::SignedAxis;
 use morec::index::MotionIndex;
 use morec::live::{RecognizerCache, StartError};
 use morec_ops::RecognizeSettings;
@@ -19,7 +18,7 @@ use crate::clip_data::ClipData;
 use crate::errors::{library_error, morec_error, value_error, warn};
 use crate::job;
 use crate::material::{keywords, operation_error};
-use crate::recognizer::{PointLayout, PyRecognizer};
+use crate::recognizer::{PointLayout, PyRecognizer, stream_options};
 use crate::tables::{FoundWithDeviation, detections, plain};
 
 /// A trained index: what recognition needs, in one immutable file.
@@ -178,28 +177,21 @@ impl PyIndex {
     }
 
     /// A recogniser for a live stream of joint positions.
-    #[pyo3(signature = (joints, *, roles=None, up=None, **settings))]
+    #[pyo3(signature = (joints, **options))]
     fn recognizer(
         &self,
-        py: Python<'_>,
         joints: &Bound<'_, PyAny>,
-        roles: Option<&Bound<'_, PyAny>>,
-        up: Option<&str>,
-        settings: Option<&Bound<'_, PyDict>>,
+        options: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<PyRecognizer> {
-        let index = self.tuned(settings)?;
-        let up: SignedAxis = up
-            .unwrap_or("y")
-            .parse()
-            .map_err(|error| value_error(format!("up: {error}")))?;
+        let options = stream_options(options)?;
         let layout = match joints.cast::<PyClip>() {
             Ok(clip) => {
-                let data = completed(&index, &clip.get().data);
+                let data = completed(&self.index, &clip.get().data);
                 PointLayout::of_clip(&data.into())
             }
-            Err(_) => PointLayout::of_names(joints.extract()?, roles)?,
+            Err(_) => PointLayout::of_names(joints.extract()?),
         };
-        PyRecognizer::new(py, &index.model, layout, up)
+        PyRecognizer::new(&self.index, layout, &options)
     }
 
     /// The class of each clip, as a list of dictionaries.

@@ -4,9 +4,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use morec::index::MotionIndex;
-use morec::live::{
-    Event, EventOptions, EventReader, MAX_PERFORMERS, Session, SessionOptions, Status,
-};
+use morec::live::{EventReader, MAX_PERFORMERS, Session, SessionOptions, Status};
 use morec_live::{
     Address, Advice, LiveError, Notices, SourceOptions, advice_of_status, open_source,
 };
@@ -16,7 +14,8 @@ use pyo3::types::PyDict;
 
 use crate::errors::{file_error, morec_error, value_error};
 use crate::index::PyIndex;
-use crate::tables::set_repetitions;
+use crate::recognizer::stream_options;
+use crate::tables::event;
 
 /// A session that listens; `morec.listen` is made of it.
 #[pyclass(frozen, module = "morec")]
@@ -52,9 +51,12 @@ impl LiveSession {
         index: &PyIndex,
         actors: usize,
         mirror: bool,
-        tentative: bool,
-        each_repetition: bool,
+        options: &Bound<'_, PyDict>,
     ) -> PyResult<Self> {
+        let given = stream_options(Some(options))?;
+        let model = given
+            .tuned(index.index.model.clone())
+            .map_err(value_error)?;
         if !(1..=MAX_PERFORMERS).contains(&actors) {
             return Err(value_error(format!(
                 "actors: expected 1 to {MAX_PERFORMERS}, found {actors}"
@@ -63,6 +65,7 @@ impl LiveSession {
         let how = SourceOptions {
             mirrored: mirror,
             actors,
+            roles: (!given.roles.is_empty()).then(|| given.roles.clone()),
             index: Some(&index.index),
             ..SourceOptions::default()
         };
@@ -72,16 +75,12 @@ impl LiveSession {
         let opened = open_source(&parsed, &how).map_err(live_error)?;
         let options = SessionOptions {
             overload: opened.overload,
-            events: EventOptions {
-                early: tentative,
-                each_repetition,
-                ..EventOptions::default()
-            },
+            events: given.events().map_err(value_error)?,
             ..SessionOptions::default()
         };
         let index = index.index.clone();
         let (session, readers) =
-            Session::start(&index.model, opened.source, &options).map_err(morec_error)?;
+            Session::start(&model, opened.source, &options).map_err(morec_error)?;
         let reader = readers.into_iter().next();
         Ok(Self {
             open: Mutex::new(Some(session)),
@@ -101,8 +100,8 @@ impl LiveSession {
     /// The next event within this many seconds.
     fn wait<'py>(&self, py: Python<'py>, secs: f64) -> PyResult<Option<Bound<'py, PyDict>>> {
         let most = Duration::from_secs_f64(secs.clamp(0.0, 3600.0));
-        let event = py.detach(|| held(&self.reader).wait(most));
-        event.map(|event| self.row(py, &event)).transpose()
+        let next = py.detach(|| held(&self.reader).wait(most));
+        next.map(|e| event(py, &self.index.model, &e)).transpose()
     }
 
     /// Faults of the data that the source received since the last call, and what is newly found wrong with the stream for the
@@ -146,22 +145,5 @@ impl LiveSession {
 impl LiveSession {
     fn counts(&self, py: Python<'_>) -> Option<Status> {
         py.detach(|| held(&self.open).as_ref().map(Session::status))
-    }
-
-    fn row<'py>(&self, py: Python<'py>, event: &Event) -> PyResult<Bound<'py, PyDict>> {
-        let row = PyDict::new(py);
-        row.set_item("phase", event.phase.name())?;
-        row.set_item("class", self.index.model.class_name(event.class))?;
-        row.set_item("start_secs", event.span.start_secs)?;
-        row.set_item("stop_secs", event.span.stop_secs)?;
-        row.set_item("score", event.score)?;
-        row.set_item("progress", event.progress)?;
-        row.set_item("reported_secs", event.reported_secs)?;
-        row.set_item("actor", event.actor.0)?;
-        row.set_item("motion", event.motion)?;
-        row.set_item("sequence", event.sequence)?;
-        row.set_item("wall_secs", event.wall_secs)?;
-        set_repetitions(&row, event.repetitions)?;
-        Ok(row)
     }
 }

@@ -1,22 +1,19 @@
 //! `morec.Recognizer`: a live stream of one performer, array by array.
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use morec::features::{BoneSet, KeyPose};
-use morec::import::SignedAxis;
-use morec::live::{Detection, Model, Recognizer, ShownBones};
-use morec::math::{Quat, Vec3};
+use morec::index::MotionIndex;
+use morec::live::{Event, PerformerStream, StreamError, StreamOptions, wall_now_secs};
+use morec::math::Vec3;
+use morec::roles::Role;
 use morec::roles::points::{PointJoint, places_of};
-use morec::roles::{Role, RoleMap};
-use pyo3::intern;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyList, PyString};
+use pyo3::types::{PyDict, PyList};
 
 use crate::arrays::{doubles, motion, pose, wrong_shape};
 use crate::clip::PyClip;
 use crate::errors::{morec_error, value_error};
-use crate::options::mapping;
-use crate::tables::set_repetitions;
+use crate::tables::events;
 
 /// Recognises motions in one performer's stream of joint positions. Made by `Index.recognizer`.
 ///
@@ -25,25 +22,18 @@ use crate::tables::set_repetitions;
 pub struct PyRecognizer {
     state: Mutex<RecognizerState>,
     joints: Vec<String>,
-    classes: Vec<Py<PyString>>,
+    index: Arc<MotionIndex>,
     latency_secs: f64,
 }
 
 struct RecognizerState {
-    model: Model,
-    recognizer: Recognizer,
-    shown: ShownBones,
-    places: Vec<(Role, PointJoint)>,
-    /// Takes coordinates of the stream to Y up; `None` if they are.
-    turn: Option<Quat>,
+    stream: PerformerStream,
     positions: Vec<Vec3>,
-    key: KeyPose,
 }
 
 /// The part of the body that each point of an array plays.
 pub struct PointLayout {
-    /// Names of the points.
-    pub joints: Vec<String>,
+    joints: Vec<String>,
     places: Vec<(Role, PointJoint)>,
 }
 
@@ -59,130 +49,90 @@ impl PointLayout {
         }
     }
 
-    /// Points of these names: a published set (MediaPipe, COCO, Kinect, marker sets), usual joint names, names of roles;
-    /// `roles` overrides what is found.
-    pub fn of_names(joints: Vec<String>, roles: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
+    /// Points of these names: a published set (MediaPipe, COCO, Kinect, marker sets), usual joint names, names of roles.
+    pub fn of_names(joints: Vec<String>) -> Self {
         let names: Vec<&str> = joints.iter().map(String::as_str).collect();
-        let mut places = places_of(&names);
-        if let Some(roles) = roles {
-            let said = mapping(roles)?.places(&names);
-            for (role, place) in said.map_err(|e| value_error(format!("roles: {e}")))? {
-                places.retain(|(known, _)| *known != role);
-                places.extend(place.map(|place| (role, place)));
-            }
-        }
-        if places.is_empty() {
-            return Err(value_error(
-                "joints: no known set of points; say with roles which of them are parts of the body, as in \
-                 {\"left_hand\": \"LWrist\", \"hips\": \"LHip+RHip\"}",
-            ));
-        }
-        Ok(Self { joints, places })
+        let places = places_of(&names);
+        Self { joints, places }
+    }
+}
+
+/// Options of a stream from keywords.
+///
+/// # Errors
+/// An option that does not exist, or that cannot have its value.
+pub fn stream_options(given: Option<&Bound<'_, PyDict>>) -> PyResult<StreamOptions> {
+    let Some(given) = given else {
+        return Ok(StreamOptions::default());
+    };
+    let json = given.py().import("json")?.call_method1("dumps", (given,))?;
+    StreamOptions::from_json(&json.extract::<String>()?).map_err(value_error)
+}
+
+fn stream_error(error: StreamError) -> PyErr {
+    match error {
+        StreamError::Option(_) | StreamError::Roles(_) | StreamError::NoParts => value_error(error),
+        StreamError::NoRotations { .. } => morec_error(format!(
+            "{error}; Index.recognize plays whole clips through it"
+        )),
+        error => morec_error(error),
     }
 }
 
 impl PyRecognizer {
-    /// For poses laid out as `layout`, `up` being up in them.
+    /// For poses laid out as `layout`.
     ///
     /// # Errors
-    /// A model that needs joint rotations, or that has no bone in common with the layout.
+    /// A model that needs joint rotations, or that has no bone in common with the layout; an option that cannot be.
     pub fn new(
-        py: Python<'_>,
-        model: &Model,
+        index: &Arc<MotionIndex>,
         layout: PointLayout,
-        up: SignedAxis,
+        options: &StreamOptions,
     ) -> PyResult<Self> {
-        if model.needs_rotations() {
-            return Err(morec_error(format!(
-                "an index of the method {} looks at joint rotations, which a stream of positions does not have; \
-                 Index.recognize plays whole clips through it",
-                model.method()
-            )));
-        }
-        let mut roles = RoleMap::default();
-        for (number, (role, _)) in layout.places.iter().enumerate() {
-            roles.set(*role, Some(number));
-        }
-        let recognizer = Recognizer::new(model, BoneSet::of_roles(&roles)).map_err(morec_error)?;
-        let classes = model.classes().iter();
+        let names: Vec<&str> = layout.joints.iter().map(String::as_str).collect();
+        let stream = PerformerStream::of_places(index, &names, layout.places, options);
+        let stream = stream.map_err(stream_error)?;
         Ok(Self {
-            latency_secs: recognizer.latency_secs(),
-            classes: classes
-                .map(|c| PyString::new(py, &c.name).unbind())
-                .collect(),
+            index: index.clone(),
+            latency_secs: stream.latency_secs().unwrap_or_default(),
             state: Mutex::new(RecognizerState {
-                model: model.clone(),
-                recognizer,
-                shown: ShownBones::new(model.bones()),
-                places: layout.places,
-                turn: (up != SignedAxis::Y).then(|| up.to_y()),
+                stream,
                 positions: Vec::with_capacity(layout.joints.len()),
-                key: KeyPose::default(),
             }),
             joints: layout.joints,
         })
     }
 
-    fn rows<'py>(&self, py: Python<'py>, found: &[Detection]) -> PyResult<Bound<'py, PyList>> {
-        let list = PyList::empty(py);
-        for d in found {
-            let row = PyDict::new(py);
-            if let Some(class) = self.classes.get(d.class.index()) {
-                row.set_item(intern!(py, "class"), class)?;
-            }
-            row.set_item(intern!(py, "start_secs"), d.span.start_secs)?;
-            row.set_item(intern!(py, "stop_secs"), d.span.stop_secs)?;
-            row.set_item(intern!(py, "score"), d.score)?;
-            row.set_item(intern!(py, "reported_secs"), d.reported_secs)?;
-            set_repetitions(&row, d.repetitions)?;
-            list.append(row)?;
-        }
-        Ok(list)
-    }
-}
-
-impl RecognizerState {
-    /// Takes the pose that `positions` hold, and adds what it settled to `found`.
-    fn push(&mut self, time_secs: f64, found: &mut Vec<Detection>) {
-        let positions = &self.positions;
-        for (role, place) in &self.places {
-            let at = place.at(|joint| positions[joint]);
-            let at = at.unwrap_or_else(|| Vec3::repeat(f64::NAN));
-            self.key.set(*role, self.turn.map_or(at, |turn| turn * at));
-        }
-        let used = self.recognizer.model().bones();
-        let others = self.shown.take(used, time_secs, &self.key);
-        if let Some(Ok(new)) = others.map(|bones| Recognizer::new(&self.model, bones)) {
-            found.extend_from_slice(self.recognizer.finish());
-            self.recognizer = new;
-        }
-        found.extend_from_slice(self.recognizer.push(time_secs, &self.key));
+    fn state(&self) -> MutexGuard<'_, RecognizerState> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn finish(&mut self) -> &[Detection] {
-        self.shown.reset();
-        self.recognizer.finish()
+    fn rows<'py>(&self, py: Python<'py>, found: &[Event]) -> PyResult<Bound<'py, PyList>> {
+        events(py, &self.index.model, found)
     }
 }
 
 #[pymethods]
 impl PyRecognizer {
-    /// Takes the pose at `time_secs` on the stream's clock; the detections that it settled, mostly none.
+    /// Takes the pose at `time_secs` on the stream's clock; the events that it settled, mostly none.
     fn push<'py>(
         &self,
         py: Python<'py>,
         time_secs: f64,
         positions: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyList>> {
-        let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
-        pose(positions, self.joints.len(), &mut state.positions)?;
-        let mut found = Vec::new();
-        state.push(time_secs, &mut found);
-        drop(state);
+        let found = {
+            let RecognizerState {
+                stream,
+                positions: places,
+            } = &mut *self.state();
+            pose(positions, self.joints.len(), places)?;
+            push(stream, time_secs, places).to_vec()
+        };
         self.rows(py, &found)
     }
 
-    /// Takes many poses: times of shape (frames,), positions of shape (frames, joints, 3); all detections they settled.
+    /// Takes many poses: times of shape (frames,), positions of shape (frames, joints, 3); all events they settled.
     /// Other Python threads run meanwhile.
     fn push_all<'py>(
         &self,
@@ -201,45 +151,26 @@ impl PyRecognizer {
             return Err(wrong_shape(&expected, &[frames, joints, 3]));
         }
         let found = py.detach(|| {
-            let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+            let mut state = self.state();
             let mut found = Vec::new();
             for (frame, time_secs) in times.into_iter().enumerate() {
-                state.positions.clear();
                 let of_frame = &values[frame * joints..(frame + 1) * joints];
-                state.positions.extend_from_slice(of_frame);
-                state.push(time_secs, &mut found);
+                found.extend_from_slice(push(&mut state.stream, time_secs, of_frame));
             }
             found
         });
         self.rows(py, &found)
     }
 
-    /// Ends the stream: the detections that its last moments still hold. The next push begins a new stream.
+    /// Ends the stream: the events that its last moments still hold. The next push begins a new stream.
     fn finish<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
-        let found = {
-            let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
-            state.finish().to_vec()
-        };
+        let found = self.state().stream.finish().to_vec();
         self.rows(py, &found)
     }
 
-    /// The motion that seems to be under way after the last push, or `None`. Tentative.
-    fn early_detection<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
-        let early = {
-            let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
-            state.recognizer.early_detection()
-        };
-        let Some(early) = early else { return Ok(None) };
-        let row = PyDict::new(py);
-        if let Some(class) = self.classes.get(early.class.index()) {
-            row.set_item("class", class)?;
-        }
-        row.set_item("score", early.score)?;
-        row.set_item("progress", early.progress)?;
-        row.set_item("start_secs", early.start_secs)?;
-        row.set_item("seen_secs", early.seen_secs)?;
-        set_repetitions(&row, early.repetitions)?;
-        Ok(Some(row))
+    /// What is wrong with the stream of the last seconds for the index, a sentence each.
+    fn diagnosis(&self) -> Vec<String> {
+        self.state().stream.findings()
     }
 
     /// Names of the points of a pose, in the order of its rows.
@@ -254,22 +185,20 @@ impl PyRecognizer {
         self.latency_secs
     }
 
-    fn __enter__(slf: Py<Self>) -> Py<Self> {
-        slf
-    }
-
-    #[pyo3(signature = (*_args))]
-    fn __exit__(&self, _args: &Bound<'_, PyAny>) {
-        let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
-        state.finish();
-    }
-
     fn __repr__(&self) -> String {
         format!(
             "<morec.Recognizer: {} joints, {} classes, {:.2} s behind>",
             self.joints.len(),
-            self.classes.len(),
+            self.index.model.classes().len(),
             self.latency_secs
         )
     }
+}
+
+/// Takes the pose whose points are at `places`.
+fn push<'s>(stream: &'s mut PerformerStream, time_secs: f64, places: &[Vec3]) -> &'s [Event] {
+    for (value, place) in stream.values().chunks_exact_mut(3).zip(places) {
+        value.copy_from_slice(place.as_slice());
+    }
+    stream.push_values(time_secs, wall_now_secs())
 }

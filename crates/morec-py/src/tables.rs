@@ -6,7 +6,7 @@ use pyo3::types::{PyDict, PyList, PyString};
 
 use morec::decode::Repetitions;
 use morec::explain::MotionDeviation;
-use morec::live::{Detection, Model};
+use morec::live::{Detection, Event, Model};
 use serde::Serialize;
 
 use crate::errors::morec_error;
@@ -66,8 +66,36 @@ pub fn detection<'py>(
     Ok(row)
 }
 
+/// An event of a stream.
+pub fn event<'py>(py: Python<'py>, model: &Model, event: &Event) -> PyResult<Bound<'py, PyDict>> {
+    let row = PyDict::new(py);
+    row.set_item("phase", event.phase.name())?;
+    row.set_item("class", model.class_name(event.class))?;
+    row.set_item("start_secs", event.span.start_secs)?;
+    row.set_item("stop_secs", event.span.stop_secs)?;
+    row.set_item("score", event.score)?;
+    row.set_item("progress", event.progress)?;
+    row.set_item("reported_secs", event.reported_secs)?;
+    row.set_item("actor", event.actor.0)?;
+    row.set_item("motion", event.motion)?;
+    row.set_item("sequence", event.sequence)?;
+    row.set_item("wall_secs", event.wall_secs)?;
+    set_repetitions(&row, event.repetitions)?;
+    Ok(row)
+}
+
+/// Events of a stream, in a list.
+pub fn events<'py>(
+    py: Python<'py>,
+    model: &Model,
+    events: &[Event],
+) -> PyResult<Bound<'py, PyList>> {
+    let rows = events.iter().map(|one| event(py, model, one));
+    PyList::new(py, rows.collect::<PyResult<Vec<_>>>()?)
+}
+
 /// What was counted of an activity; `None` in both where nothing was.
-pub fn set_repetitions(row: &Bound<'_, PyDict>, counted: Option<Repetitions>) -> PyResult<()> {
+fn set_repetitions(row: &Bound<'_, PyDict>, counted: Option<Repetitions>) -> PyResult<()> {
     row.set_item("repetitions", counted.map(|r| r.count))?;
     row.set_item("period_secs", counted.map(|r| r.period_secs))
 }

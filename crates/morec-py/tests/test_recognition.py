@@ -219,15 +219,33 @@ def test_threads_share_an_index_and_a_recogniser(index: morec.Index, newcomer: m
     live.finish()
 
 
-def test_sensitivity_and_early(index: morec.Index, newcomer: morec.Clip) -> None:
-    live = index.recognizer(newcomer)
-    early = []
-    for frame in range(newcomer.frames):
-        live.push(frame / newcomer.rate_hz, newcomer.positions[frame])
-        early.append(live.early_detection())
-    told = [one for one in early if one is not None]
-    assert told and all(0 <= one["progress"] <= 1 and one["class"] in index.class_names for one in told)
-    assert 0.0 < live.latency_secs < 1.0
+def test_a_stream_has_the_options_and_events_of_listen(
+    index: morec.Index, newcomer: morec.Clip, tmp_path: Path
+) -> None:
+    times = np.arange(newcomer.frames) / newcomer.rate_hz
+
+    def events(**options: Any) -> list[dict[str, Any]]:
+        live = index.recognizer(newcomer, **options)
+        found = live.push_all(times, newcomer.positions)
+        assert 0.0 < live.latency_secs < 1.0 and all(isinstance(one, str) for one in live.diagnosis())
+        return found + live.finish()
+
+    plain = events()
+    assert plain and {one["phase"] for one in plain} == {"end"}
+    told = events(tentative=True)
+    assert [one for one in told if one["phase"] == "end"] != [] and any(one["phase"] == "start" for one in told)
+    assert all(0 <= one["progress"] <= 1 and one["class"] in index.class_names for one in told)
+    assert [one["sequence"] for one in told] == list(range(1, len(told) + 1))
+    assert len(events(refractory_secs=1000)) < len(plain)
+    newcomer.save(tmp_path / "newcomer.bvh")
+    with morec.listen(f"clip://{tmp_path}/newcomer.bvh?speed=0", index) as heard:
+        assert set(next(heard)) == set(plain[0])
+    with pytest.raises(ValueError, match="early: unknown field"):
+        index.recognizer(newcomer, early=True)  # type: ignore[call-arg]
+    with pytest.raises(ValueError, match="refractory_secs: expected 0 to 3600"):
+        index.recognizer(newcomer, refractory_secs=-1)
+    with pytest.raises(ValueError, match="performer: "):
+        morec.listen("json+tcp://127.0.0.1:0", index, performer="nobody")  # type: ignore[arg-type]
 
 
 def test_cross_validation_measures_and_reports(

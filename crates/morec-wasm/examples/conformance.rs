@@ -96,7 +96,7 @@ fn finish(case: &mut Case, folder: &Path) -> Outcome<()> {
     let index = Trainer::new().labels(&labels).train(&takes(&case.learn)?)?;
     fs::write(case.index_file(folder), index.to_bytes()?)?;
     case.detections = case.found_by(&index)?;
-    case.push_us = case.push_us_of(&index)?;
+    case.push_us = case.push_us_of(&index.into())?;
     Ok(())
 }
 

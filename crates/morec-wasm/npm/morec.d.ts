@@ -30,14 +30,20 @@ export interface TrainOptions extends LearnOptions {
 }
 
 export interface RecognizerOptions {
-  /** The axis that points up; `-y` for landmarks of pictures. Y unless given. */
-  up?: "x" | "y" | "z" | "-x" | "-y" | "-z";
-  /** Report what seems to be under way, too. True unless given. */
-  early?: boolean;
-  /** Make each repetition of an activity an event of its own, of the phase `repetition`; not unless asked for. */
+  /** False alarms a minute that background motion may raise: 0.1 is strict, 1 is generous. As trained by default. */
+  sensitivity?: number;
+  /** The expected performer. `anyone`, or `teacher`: the person who taught. `auto` by default. */
+  performer?: "auto" | "teacher" | "anyone";
+  /** Report what seems to be under way, too: events of the phases `start`, `update` and `cancel`. False by default. */
+  tentative?: boolean;
+  /** Make each repetition of an activity an event of its own, of the phase `repetition`. False by default. */
   each_repetition?: boolean;
-  /** A motion of the same class that ends less than this after the one before it is not reported, seconds. */
+  /** A motion of the same class that ends less than this after the one before it is not reported, seconds. 0 by default. */
   refractory_secs?: number;
+  /** Points that play parts of the body, where names do not tell: `{ left_hand: "LWrist", hips: "LHip+RHip", neck: null }`. */
+  roles?: Record<string, string | null>;
+  /** The axis that points up; `-y` for landmarks of pictures. `y` by default. */
+  up?: "x" | "y" | "z" | "-x" | "-y" | "-z";
 }
 
 /** Times are seconds. */
@@ -70,8 +76,14 @@ export interface MotionEvent extends Detection {
   phase: "start" | "update" | "repetition" | "cancel" | "end";
   /** A motion's start, updates and end share its number. */
   motion: number;
+  /** Number of the event, from 1. */
+  sequence: number;
+  /** Number of the performer: 0. */
+  actor: number;
   /** Share of the motion that has been seen. */
   progress: number;
+  /** Wall clock at the arrival of the frame that settled it: seconds since 1970. */
+  wall_secs: number;
 }
 
 /** x, y, z of each point; not a number where it is not seen. */
@@ -122,7 +134,7 @@ export class Recognizer {
   push(time_secs: number, positions: Positions): readonly MotionEvent[];
   /** Ends the stream; the next frame begins a new one. */
   finish(): readonly MotionEvent[];
-  /** What is wrong with the stream of the last seconds, in sentences that say what to do. */
+  /** What is wrong with the stream of the last seconds for the index, a sentence each with its severity and what to do. */
   diagnosis(): string[];
   /** Seconds from the end of a motion to its report at the earliest. */
   readonly latency_secs: number;

@@ -1,13 +1,15 @@
 //! What JavaScript sees of index files and recognition.
 
+use std::sync::Arc;
+
 use js_sys::{Array, ArrayBuffer, Date, Float64Array, JSON, JsString, Object};
-use morec::live::Event;
+use morec::live::{Event, PerformerStream, StreamOptions};
 use morec::{MotionIndex, roles::Role};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use wasm_bindgen::prelude::*;
 
-use crate::{EventRow, PointOptions, PointStream};
+use crate::EventRow;
 
 /// A defect of morec becomes an exception with its place, in place of `unreachable`.
 #[wasm_bindgen(start)]
@@ -32,7 +34,7 @@ pub fn roles() -> Vec<String> {
 /// A trained index.
 #[wasm_bindgen(js_name = Index)]
 pub struct JsIndex {
-    pub(crate) index: MotionIndex,
+    pub(crate) index: Arc<MotionIndex>,
     pub(crate) notes: Vec<String>,
 }
 
@@ -42,7 +44,7 @@ impl JsIndex {
     #[wasm_bindgen(js_name = fromBytes)]
     pub fn from_bytes(bytes: &[u8]) -> Result<JsIndex, JsError> {
         Ok(Self {
-            index: MotionIndex::from_bytes(bytes)?,
+            index: Arc::new(MotionIndex::from_bytes(bytes)?),
             notes: Vec::new(),
         })
     }
@@ -72,10 +74,10 @@ impl JsIndex {
         let model = self.index.model.with_sensitivity(alarms_per_minute)?;
         let index = MotionIndex {
             model,
-            ..self.index.clone()
+            ..(*self.index).clone()
         };
         Ok(Self {
-            index,
+            index: Arc::new(index),
             notes: self.notes.clone(),
         })
     }
@@ -86,12 +88,14 @@ impl JsIndex {
         points: Vec<String>,
         options: &JsValue,
     ) -> Result<JsRecognizer, JsError> {
-        let options: PointOptions = given("options", options)?.unwrap_or_default();
+        let options = match json("options", options)? {
+            Some(text) => StreamOptions::from_json(&text)?,
+            None => StreamOptions::default(),
+        };
         let names: Vec<&str> = points.iter().map(String::as_str).collect();
-        let stream = PointStream::new(&self.index, &names, &options);
         Ok(JsRecognizer {
-            stream: stream.map_err(|error| JsError::new(&error))?,
-            model: self.index.model.clone(),
+            stream: PerformerStream::of_points(&self.index, &names, &options)?,
+            index: self.index.clone(),
             nothing: Object::freeze(&Array::new()).into(),
         })
     }
@@ -100,8 +104,8 @@ impl JsIndex {
 /// One performer's stream.
 #[wasm_bindgen(js_name = Recognizer)]
 pub struct JsRecognizer {
-    stream: PointStream,
-    model: morec::index::Model,
+    stream: PerformerStream,
+    index: Arc<MotionIndex>,
     /// What most pushes return.
     nothing: JsValue,
 }
@@ -112,24 +116,24 @@ impl JsRecognizer {
     pub fn push(&mut self, time_secs: f64, positions: &JsValue) -> Result<JsValue, JsError> {
         let values = self.stream.values();
         copy(positions, values)?;
-        let events = self.stream.push(time_secs, Date::now() / 1000.0);
-        events_of(events, &self.model, &self.nothing)
+        let events = self.stream.push_values(time_secs, Date::now() / 1000.0);
+        events_of(events, &self.index.model, &self.nothing)
     }
 
     /// Ends the stream.
     pub fn finish(&mut self) -> Result<JsValue, JsError> {
-        events_of(self.stream.finish(), &self.model, &self.nothing)
+        events_of(self.stream.finish(), &self.index.model, &self.nothing)
     }
 
     /// What is wrong with the stream, in sentences.
     pub fn diagnosis(&self) -> Vec<String> {
-        self.stream.diagnosis()
+        self.stream.findings()
     }
 
     /// Seconds from the end of a motion to its report at the earliest.
     #[wasm_bindgen(getter)]
     pub fn latency_secs(&self) -> f64 {
-        self.stream.latency_secs()
+        self.stream.latency_secs().unwrap_or_default()
     }
 }
 
@@ -172,17 +176,25 @@ pub(crate) fn to_js(value: &impl Serialize) -> Result<JsValue, JsError> {
     JSON::parse(&text).map_err(|_| JsError::new("an internal error: no JSON"))
 }
 
-/// What was given as `name`; `None` if nothing was.
-pub(crate) fn given<T: DeserializeOwned>(
-    name: &str,
-    value: &JsValue,
-) -> Result<Option<T>, JsError> {
+/// What was given as `name`, as text; `None` if nothing was.
+fn json(name: &str, value: &JsValue) -> Result<Option<String>, JsError> {
     if value.is_undefined() || value.is_null() {
         return Ok(None);
     }
     let text: Option<JsString> = JSON::stringify(value).ok();
     let text = text.and_then(|text| text.as_string());
     let text = text.ok_or_else(|| JsError::new(&format!("{name}: no plain object")))?;
+    Ok(Some(text))
+}
+
+/// What was given as `name`; `None` if nothing was.
+pub(crate) fn given<T: DeserializeOwned>(
+    name: &str,
+    value: &JsValue,
+) -> Result<Option<T>, JsError> {
+    let Some(text) = json(name, value)? else {
+        return Ok(None);
+    };
     let value = serde_json::from_str(&text);
     Ok(Some(value.map_err(|error| {
         JsError::new(&format!("{name}: {error}"))

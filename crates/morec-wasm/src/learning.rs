@@ -195,7 +195,7 @@ impl JsTraining {
         LISTENER.set(None);
         let (index, report) = trained?;
         Ok(JsIndex {
-            index,
+            index: std::sync::Arc::new(index),
             notes: report.notes,
         })
     }

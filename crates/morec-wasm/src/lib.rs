@@ -10,9 +10,7 @@ mod learning;
 #[cfg(feature = "train")]
 mod material;
 mod rows;
-mod stream;
 
 #[cfg(feature = "train")]
 pub use material::{LearnOptions, SampleRow, labels};
 pub use rows::{DetectionRow, EventRow};
-pub use stream::{PointOptions, PointStream};

@@ -34,12 +34,15 @@ impl<'a> From<&Detection<&'a str>> for DetectionRow<'a> {
 pub struct EventRow<'a> {
     phase: &'a str,
     motion: u64,
+    sequence: u64,
+    actor: u16,
     class: &'a str,
     score: f64,
     progress: f64,
     #[serde(flatten)]
     span: TimeSpan,
     reported_secs: f64,
+    wall_secs: f64,
     #[serde(flatten)]
     repetitions: Option<Repetitions>,
 }
@@ -50,11 +53,14 @@ impl<'a> EventRow<'a> {
         Self {
             phase: event.phase.name(),
             motion: event.motion,
+            sequence: event.sequence,
+            actor: event.actor.0,
             class: model.class_name(event.class),
             score: event.score,
             progress: event.progress,
             span: event.span,
             reported_secs: event.reported_secs,
+            wall_secs: event.wall_secs,
             repetitions: event.repetitions,
         }
     }

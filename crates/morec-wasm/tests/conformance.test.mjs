@@ -79,14 +79,14 @@ for (const { name, labels, learn, recognise, detections, push_us } of cases) {
   });
 }
 
-test("early events name a motion before its end, and no push allocates an array for nothing", () => {
+test("tentative events name a motion before its end, and no push allocates an array for nothing", () => {
   const [{ name, recognise }] = cases;
   const index = Index.fromBytes(indexFile(name));
-  const { events } = pushed(index, open(recognise[0]));
+  const { events } = pushed(index, open(recognise[0]), { tentative: true });
   const first = events.find((event) => event.phase === "end");
   const start = events.find((event) => event.phase === "start" && event.motion === first.motion);
   assert.ok(start && start.reported_secs < first.reported_secs);
-  assert.ok(pushed(index, open(recognise[0]), { early: false }).events.every(({ phase }) => phase === "end"));
+  assert.ok(pushed(index, open(recognise[0])).events.every(({ phase }) => phase === "end"));
   const recognizer = index.recognizer(roles());
   const nobody = new Float32Array(3 * roles().length).fill(NaN);
   assert.equal(recognizer.push(0, nobody), recognizer.push(0.03, nobody));
@@ -104,7 +104,8 @@ test("what is wrong is said, and the recogniser goes on", () => {
   const index = Index.fromBytes(indexFile(cases[0].name));
   assert.throws(() => Index.fromBytes(new Uint8Array(10)), /\w/);
   assert.throws(() => index.recognizer(["a", "b"]), /no known set of points/);
-  assert.throws(() => index.recognizer(roles(), { upp: "y" }), /unknown field `upp`/);
+  assert.throws(() => index.recognizer(roles(), { upp: "y" }), /upp: unknown field `upp`/);
+  assert.throws(() => index.recognizer(roles(), { performer: "me" }), /performer: unknown variant `me`/);
   assert.throws(() => index.recognizer(roles(), { up: "w" }), /up: expected x, y, z/);
   assert.throws(() => read(new TextEncoder().encode("no clip"), "a.bvh"), /a\.bvh/);
   assert.throws(() => train([], [{ clip: "a", class: "b", start_secs: 1 }]), /row 1/);

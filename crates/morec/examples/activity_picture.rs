@@ -19,19 +19,20 @@ const GAP_SECS: f64 = 0.06;
 fn main() {
     let (model, take) = (Arc::new(made::activity_model()), made::waving(3));
     let options = EventOptions {
+        tentative: true,
         each_repetition: true,
         ..EventOptions::default()
     };
     let mut performer = Performer::new(&model, PerformerId(0), &options);
     let mut events: Vec<Event> = Vec::new();
-    performer.set_rig(&Arc::new(Rig::of_roles()), &mut |e| events.push(e));
+    performer.set_rig(&Arc::new(Rig::of_roles()));
     let mut frame = Frame::default();
     for (time_secs, pose) in made::poses(&take).1 {
         frame.time_secs = time_secs;
         frame.set_key_pose(&pose);
-        performer.push(&frame, &mut |e| events.push(e));
+        events.extend_from_slice(performer.push(&frame));
     }
-    performer.finish(&mut |e| events.push(e));
+    events.extend_from_slice(performer.finish());
     let bar = |kind: usize| {
         move |span: TimeSpan| Bar {
             span: TimeSpan {

@@ -192,8 +192,8 @@ pub use mocap::files;
 #[doc(hidden)] // For lines of JSON that arrive live.
 pub use mocap::nan;
 pub use mocap::{
-    BoneSet, Clip, KeyPose, ParseError, Place, Skeleton, TimeSpan, Warning, clip, humanoid,
-    kinematics, math, pose, progress, resample, rng, roles,
+    BoneSet, Clip, KeyPose, ParseError, Place, SignedAxis, Skeleton, TimeSpan, Warning, clip,
+    humanoid, kinematics, math, pose, progress, resample, rng, roles,
 };
 #[cfg(feature = "formats")]
 pub use mocap::{ImportOptions, Take, fitting, formats, import, smooth};

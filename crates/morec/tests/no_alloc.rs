@@ -101,18 +101,22 @@ fn activities_and_their_counts_take_no_memory() {
 
 /// From frames to events, tentative ones included.
 fn events_take_no_memory(model: &Arc<morec::templates::TemplateModel>, poses: &[made::Timed]) {
-    let mut performer = Performer::new(model, PerformerId(0), &EventOptions::default());
+    let options = EventOptions {
+        tentative: true,
+        ..EventOptions::default()
+    };
+    let mut performer = Performer::new(model, PerformerId(0), &options);
     let (mut frame, mut events) = (Frame::default(), 0);
     let mut play = |performer: &mut Performer| {
         for (time_secs, pose) in poses {
             frame.time_secs = *time_secs;
             frame.set_key_pose(pose);
-            performer.push(&frame, &mut |_| events += 1);
+            events += performer.push(&frame).len();
             std::hint::black_box(performer.diagnosis().map(|known| known.findings()));
         }
-        performer.finish(&mut |_| events += 1);
+        events += performer.finish().len();
     };
-    performer.set_rig(&Arc::new(Rig::of_roles()), &mut |_| {});
+    performer.set_rig(&Arc::new(Rig::of_roles()));
     // A new skeleton's first frame makes the recogniser.
     play(&mut performer);
     assert_eq!(allocations(|| play(&mut performer)), 0);
@@ -230,11 +234,11 @@ fn the_thesiss_method_from_frames_to_events_takes_no_memory() {
             frame.time_secs = 100.0 * lap + number as f64 / 60.0 + late + gap;
             frame.pose.positions.clone_from(&pose.positions);
             frame.pose.rotations.clone_from(&pose.rotations);
-            performer.push(&frame, &mut |_| events += 1);
+            events += performer.push(&frame).len();
         }
-        performer.finish(&mut |_| events += 1);
+        events += performer.finish().len();
     };
-    performer.set_rig(&rig, &mut |_| {});
+    performer.set_rig(&rig);
     // A new skeleton's first frame makes the recogniser.
     play(&mut performer, 0.0);
     let allocations = allocations(|| (1..5).for_each(|lap| play(&mut performer, f64::from(lap))));

@@ -38,9 +38,8 @@ pub fn run(
     let options = SessionOptions {
         overload: OverflowPolicy::Wait,
         events: EventOptions {
-            early: true,
-            each_repetition: false,
-            refractory_secs: 0.0,
+            tentative: true,
+            ..EventOptions::default()
         },
         ..layout.options()
     };

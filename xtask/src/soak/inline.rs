@@ -66,8 +66,12 @@ struct InlinePlayer {
 
 impl InlinePlayer {
     fn new(model: &Model) -> Self {
+        let options = EventOptions {
+            tentative: true,
+            ..EventOptions::default()
+        };
         Self {
-            performer: Performer::new(model, PerformerId(0), &EventOptions::default()),
+            performer: Performer::new(model, PerformerId(0), &options),
         }
     }
 
@@ -79,21 +83,21 @@ impl InlinePlayer {
             match source.next(&mut frame) {
                 SourceEvent::Frame => {
                     let begun = Instant::now();
-                    self.performer.push(&frame, &mut |_| ());
+                    self.performer.push(&frame);
                     if !std::mem::take(&mut fresh) {
                         secs.push(begun.elapsed().as_secs_f64());
                     }
                 }
                 SourceEvent::Rig(_, rig) => {
-                    self.performer.set_rig(&rig, &mut |_| ());
+                    self.performer.set_rig(&rig);
                     fresh = true;
                 }
-                SourceEvent::Gone(_) => self.performer.finish(&mut |_| ()),
+                SourceEvent::Gone(_) => _ = self.performer.finish(),
                 SourceEvent::Quiet => {}
                 SourceEvent::Ended => break,
             }
         }
-        self.performer.finish(&mut |_| ());
+        self.performer.finish();
         secs
     }
 }

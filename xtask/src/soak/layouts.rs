@@ -103,11 +103,7 @@ fn play(
     } else {
         OverflowPolicy::Wait
     };
-    let events = EventOptions {
-        each_repetition: false,
-        early: false,
-        refractory_secs: 0.0,
-    };
+    let events = EventOptions::default();
     let options = SessionOptions {
         overload,
         events,

@@ -2,9 +2,9 @@
 
 use super::body::BodyMeasures;
 use super::options::Stated;
-use super::signed_axis::SignedAxis;
 use crate::clip::Clip;
 use crate::math::{Axis, Quat, Vec3, portable, same_hemisphere};
+use crate::signed_axis::SignedAxis;
 
 /// The axis that the format states, unless the body clearly stands along another; else the one the body tells.
 pub(super) fn choose(

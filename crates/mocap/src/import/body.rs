@@ -1,11 +1,11 @@
 //! Measurements of the body over a clip, in the file's own units and axes.
 
-use super::signed_axis::SignedAxis;
 use crate::clip::Clip;
 use crate::kinematics::WorldPose;
 use crate::math::Vec3;
 use crate::pose::{Hand, KeyPose};
 use crate::roles::{ARMS, LEGS, Role, RoleMap};
+use crate::signed_axis::SignedAxis;
 
 /// Frames looked at, evenly spread: bodies do not change within a clip.
 const FRAMES: usize = 200;

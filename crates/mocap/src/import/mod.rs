@@ -27,16 +27,15 @@ mod options;
 mod points;
 mod report;
 mod rest;
-mod signed_axis;
 mod take;
 mod travel;
 mod units;
 
+pub use crate::signed_axis::SignedAxis;
 pub use normalize::normalize;
 pub use options::{ImportOptions, Stated};
 pub use report::ImportReport;
 pub use rest::rest_frames;
-pub use signed_axis::SignedAxis;
 pub use take::{Take, points_by_role};
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use crate::formats::Format;
 use crate::roles::mapping::Mapping;
 
-use super::signed_axis::SignedAxis;
+use crate::signed_axis::SignedAxis;
 
 /// Values given by the caller in place of inferred ones.
 #[derive(Debug, Clone, Default)]

@@ -2,7 +2,7 @@
 
 use crate::clip::Span;
 
-use super::signed_axis::SignedAxis;
+use crate::signed_axis::SignedAxis;
 
 /// Properties of a clip that were inferred, or given in the options.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]

@@ -4,10 +4,10 @@ use std::ops::RangeInclusive;
 
 use super::body::BodyMeasures;
 use super::options::Stated;
-use super::signed_axis::SignedAxis;
 use crate::clip::Clip;
 use crate::math::portable;
 use crate::roles::proportions as human;
+use crate::signed_axis::SignedAxis;
 
 /// Units that files are written in: name, metres.
 const UNITS: [(&str, f64); 6] = [

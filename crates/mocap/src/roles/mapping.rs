@@ -12,15 +12,19 @@
 //! `left_point_8` and `right_point_1` to `right_point_8` points that a mirror exchanges. A file that names one of these gives nobody
 //! the parts of a body that it does not name.
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
+
+use serde::{Deserialize, Serialize};
 
 use super::points::{PointJoint, recognise, said};
 use super::{Role, RoleMap};
 use crate::clip::Skeleton;
 use crate::parse_error::{self, ParseError};
 
-/// The lines of a mapping file: each role at most once.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+/// The lines of a mapping file: each role at most once. As a value, a table from roles to joints (`null` for nobody), or the file's text.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(try_from = "MappingValue", into = "MappingValue")]
 pub struct Mapping {
     entries: Vec<MappingEntry>,
 }
@@ -30,6 +34,42 @@ struct MappingEntry {
     line: u64,
     role: Role,
     joint: Option<String>,
+}
+
+/// A mapping as a value of a configuration.
+#[derive(Serialize, Deserialize)]
+#[serde(untagged)]
+enum MappingValue {
+    Table(BTreeMap<String, Option<String>>),
+    Text(String),
+}
+
+impl TryFrom<MappingValue> for Mapping {
+    type Error = ParseError;
+
+    fn try_from(value: MappingValue) -> Result<Self, ParseError> {
+        let text = match value {
+            MappingValue::Table(table) => {
+                let line = |(role, joint): (String, Option<String>)| {
+                    format!("{role}\t{}\n", joint.as_deref().unwrap_or("-"))
+                };
+                table.into_iter().map(line).collect()
+            }
+            MappingValue::Text(text) => text,
+        };
+        Self::read(text.as_bytes())
+    }
+}
+
+impl From<Mapping> for MappingValue {
+    fn from(mapping: Mapping) -> Self {
+        let entries = mapping.entries.into_iter();
+        MappingValue::Table(
+            entries
+                .map(|e| (e.role.name().to_owned(), e.joint))
+                .collect(),
+        )
+    }
 }
 
 impl Mapping {
@@ -62,6 +102,11 @@ impl Mapping {
             entries.push(entry);
         }
         Ok(Self { entries })
+    }
+
+    /// True if it names no role.
+    pub fn is_empty(&self) -> bool {
+        self.entries.is_empty()
     }
 
     /// True if it says what the points of a custom skeleton are.

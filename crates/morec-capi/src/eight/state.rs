@@ -9,9 +9,7 @@ use std::time::Duration;
 
 use morec::import::Take;
 use morec::index::MotionIndex;
-use morec::live::{
-    Event, EventOptions, EventReader, OverflowPolicy, Phase, Recognizer, Session, SessionOptions,
-};
+use morec::live::{Event, EventReader, OverflowPolicy, Phase, Recognizer, Session, SessionOptions};
 
 use super::clips;
 use super::player::{Control, SourcePlayer};
@@ -162,11 +160,6 @@ impl ThesisState {
         let control = Arc::new(Control::new(self.speed));
         source.control = control.clone();
         let options = SessionOptions {
-            events: EventOptions {
-                early: false,
-                each_repetition: false,
-                ..Default::default()
-            },
             overload: OverflowPolicy::Wait,
             ..Default::default()
         };

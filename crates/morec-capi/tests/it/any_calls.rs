@@ -179,7 +179,7 @@ fn one(
                 flags: words[3] as u32,
                 event_capacity: *capacity,
                 refractory_secs: *secs,
-                alarms_per_minute: *secs,
+                sensitivity: *secs,
             };
             let status = with_skeleton(skeleton, |skeleton| {
                 let mut room = Room::of_struct(*size);

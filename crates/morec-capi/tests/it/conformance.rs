@@ -2,7 +2,7 @@
 
 use morec::live::Detection;
 use morec::roles::Role;
-use morec_capi::MOREC_EARLY_EVENTS;
+use morec_capi::MOREC_TENTATIVE;
 
 use crate::cases::cases;
 use crate::kit::{self, Index, Recognizer, options};
@@ -25,7 +25,7 @@ fn every_case_gives_what_the_recogniser_gives() {
                 .into_iter()
                 .filter(shown)
                 .fold(0, |mask, role| mask | 1 << role.index());
-            for flags in [0, MOREC_EARLY_EVENTS] {
+            for flags in [0, MOREC_TENTATIVE] {
                 let mut options = options();
                 (options.roles, options.flags) = (roles, flags);
                 let recognizer = Recognizer::new(&index, &options).unwrap();

@@ -313,13 +313,10 @@ fn options_that_cannot_be_are_refused() {
         status(&|o| o.refractory_secs = f64::NAN),
         MorecStatus::InvalidValue
     );
-    // Smaller than the first version of the struct, which ended before `alarms_per_minute`; that one is still taken.
+    // Smaller than the first version of the struct, which ended before `sensitivity`; that one is still taken.
     assert_eq!(status(&|o| o.struct_size = 47), MorecStatus::StructSize);
     assert_eq!(status(&|o| o.struct_size = 48), MorecStatus::Ok);
-    assert_eq!(
-        status(&|o| o.alarms_per_minute = -1.0),
-        MorecStatus::InvalidValue
-    );
+    assert_eq!(status(&|o| o.sensitivity = -1.0), MorecStatus::InvalidValue);
     let skeleton = |joint_count, parents: &[i32]| {
         let skeleton = MorecSkeleton {
             struct_size: size_of::<MorecSkeleton>(),
@@ -394,7 +391,7 @@ fn no_event_is_lost_if_nobody_polls() {
     let index = Index::new(kit::index_bytes());
     let (_, poses) = made::poses(&kit::take(60.0));
     let mut options = options();
-    (options.event_capacity, options.flags) = (128, MOREC_EARLY_EVENTS);
+    (options.event_capacity, options.flags) = (128, MOREC_TENTATIVE);
     let recognizer = Recognizer::new(&index, &options).unwrap();
     let (mut events, mut refused) = (Vec::new(), 0);
     for lap in 0..20 {

@@ -15,8 +15,14 @@ namespace Morec
         /// <summary>Of an end: 0 just accepted, 1 identical to a sample.</summary>
         public double score;
         public double progress, startSecs, stopSecs;
+        /// <summary>Time of the frame that settled it, and the wall clock then: seconds since 1970.</summary>
+        public double reportedSecs, wallSecs;
+        /// <summary>Number of the event, from 1.</summary>
+        public ulong sequence;
         /// <summary>Repetitions of an activity so far; 0 where nothing is counted.</summary>
         public uint repetitions;
+        /// <summary>Duration of one repetition, as it was last.</summary>
+        public double periodSecs;
     }
 
     [Serializable]
@@ -31,15 +37,24 @@ namespace Morec
         public Animator animator;
         [Tooltip("Instead of a humanoid: a transform for each part of the body, in the order of MorecRole; empty where there is none.")]
         public Transform[] joints = new Transform[0];
-        [Tooltip("False alarms a minute that background motion may raise; 0 as trained.")]
-        [Range(0, 1)] public float alarmsPerMinute;
+        [Tooltip("False alarms a minute that background motion may raise, 0.1 strict to 1 generous; 0 as trained.")]
+        [Range(0, 1)] public float sensitivity;
+        [Tooltip("The expected performer: whoever it is, the person who taught, or anyone.")]
+        public Performer performer;
+        [Tooltip("Also report what seems to be under way: onStart, onUpdate, onCancel.")]
+        public bool tentative;
+        [Tooltip("Also report each repetition of an activity: onRepetition.")]
+        public bool eachRepetition;
+        [Tooltip("A motion of the same class that ends less than this after the one before it is not reported, seconds.")]
         [Min(0)] public float refractorySecs;
         [Tooltip("Final: every motion ends once, and nothing is taken back.")]
         public MotionUnityEvent onEnd = new MotionUnityEvent();
-        [Tooltip("Tentative: something seems to be under way.")]
+        [Tooltip("Tentative: something seems to be under way. Only with Tentative.")]
         public MotionUnityEvent onStart = new MotionUnityEvent();
         public MotionUnityEvent onUpdate = new MotionUnityEvent();
         public MotionUnityEvent onCancel = new MotionUnityEvent();
+        [Tooltip("One more repetition of an activity is over. Only with Each Repetition.")]
+        public MotionUnityEvent onRepetition = new MotionUnityEvent();
 
         /// <summary>Bones of a humanoid in the order of MorecRole.</summary>
         static readonly HumanBodyBones[] Bones =
@@ -70,7 +85,8 @@ namespace Morec
             }
             var options = new StreamOptions
             {
-                leftHanded = true, early = true, alarmsPerMinute = alarmsPerMinute, refractorySecs = refractorySecs,
+                leftHanded = true, sensitivity = sensitivity, performer = performer, tentative = tentative,
+                eachRepetition = eachRepetition, refractorySecs = refractorySecs,
             };
             try
             {
@@ -126,13 +142,15 @@ namespace Morec
             var motion = new RecognisedMotion
             {
                 name = opened.ClassName(e.class_id), number = e.motion, score = e.score, progress = e.progress,
-                startSecs = e.start_secs, stopSecs = e.stop_secs, repetitions = e.repetitions,
+                startSecs = e.start_secs, stopSecs = e.stop_secs, reportedSecs = e.reported_secs, wallSecs = e.wall_secs,
+                sequence = e.sequence, repetitions = e.repetitions, periodSecs = e.period_secs,
             };
             switch ((MorecPhase)e.phase)
             {
                 case MorecPhase.Start: onStart.Invoke(motion); break;
                 case MorecPhase.Update: onUpdate.Invoke(motion); break;
                 case MorecPhase.Cancel: onCancel.Invoke(motion); break;
+                case MorecPhase.Repetition: onRepetition.Invoke(motion); break;
                 case MorecPhase.End: onEnd.Invoke(motion); break;
             }
         }

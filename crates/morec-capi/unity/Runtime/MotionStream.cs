@@ -4,17 +4,34 @@ using System.Text;
 
 namespace Morec
 {
-    /// <summary>How a stream is recognised.</summary>
+    /// <summary>The expected performer: whoever it is, the person who taught, or anyone.</summary>
+    public enum Performer { Auto, Teacher, Anyone }
+
+    /// <summary>Options of a stream.</summary>
     public struct StreamOptions
     {
         /// <summary>True for axes as Unity's; false for right-handed ones.</summary>
         public bool leftHanded;
-        /// <summary>Starts, updates and cancellations beside the ends.</summary>
-        public bool early;
         /// <summary>False alarms a minute that background motion may raise, 0.1 strict to 1 generous; 0 as trained.</summary>
-        public double alarmsPerMinute;
-        /// <summary>Least seconds between two ends of one class.</summary>
+        public double sensitivity;
+        public Performer performer;
+        /// <summary>Also what seems to be under way: starts, updates and cancellations.</summary>
+        public bool tentative;
+        /// <summary>Each repetition of an activity is an event of its own.</summary>
+        public bool eachRepetition;
+        /// <summary>A motion of the same class that ends less than this after the one before it is not reported, seconds.</summary>
         public double refractorySecs;
+
+        internal uint Flags
+        {
+            get
+            {
+                var flags = (tentative ? Native.MOREC_TENTATIVE : 0) | (eachRepetition ? Native.MOREC_EACH_REPETITION : 0);
+                if (performer == Performer.Anyone) flags |= Native.MOREC_PERFORMER_ANYONE;
+                if (performer == Performer.Teacher) flags |= Native.MOREC_PERFORMER_TEACHER;
+                return (uint)flags;
+            }
+        }
     }
 
     /// <summary>One performer's motions, recognised as they come. Y is up; any one unit of length will do.</summary>
@@ -39,8 +56,8 @@ namespace Morec
                 struct_size = Native.SizeOf<MorecOptions>(),
                 handedness = (int)(options.leftHanded ? MorecHandedness.Left : MorecHandedness.Right),
                 roles = roles,
-                flags = options.early ? (uint)Native.MOREC_EARLY_EVENTS : 0,
-                alarms_per_minute = options.alarmsPerMinute,
+                flags = options.Flags,
+                sensitivity = options.sensitivity,
                 refractory_secs = options.refractorySecs,
             };
             MorecException.Check(Native.morec_recognizer_create(index.Handle, ref given, out handle));

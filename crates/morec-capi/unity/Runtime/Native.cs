@@ -135,7 +135,7 @@ namespace Morec
         public uint flags;
         public UIntPtr event_capacity;
         public double refractory_secs;
-        public double alarms_per_minute;
+        public double sensitivity;
     }
 
     [StructLayout(LayoutKind.Sequential)]
@@ -187,10 +187,10 @@ namespace Morec
         const string Library = "morec_capi";
 #endif
 
-        public const int MOREC_EARLY_EVENTS = 1;
+        public const int MOREC_TENTATIVE = 1;
         public const int MOREC_PERFORMER_ANYONE = 2;
         public const int MOREC_PERFORMER_TEACHER = 4;
-        public const int MOREC_REPETITION_EVENTS = 8;
+        public const int MOREC_EACH_REPETITION = 8;
         public const int MOREC_ROLE_COUNT = 18;
         public const int MOREC_POINT_COUNT = 85;
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
 use morec::index::MotionIndex;
-use morec::live::{EventOptions, EventReader, Session, SessionOptions, Status, StatusHandle};
+use morec::live::{EventReader, Session, SessionOptions, Status, StatusHandle};
 
 use super::recognize::open_index;
 use crate::interrupt::stop_on_ctrl_c;
@@ -18,7 +18,7 @@ use crate::live::sinks::CountedSink;
 use crate::live::status::StatusLine;
 use crate::live::takes::secs;
 use morec_live::{Address, Advice, NamedEvent, Notices, advice_of_status, summary};
-use morec_ops::RecognizeSettings;
+use morec_ops::StreamSettings;
 
 /// Recognise motions live, from a tracker to an event.
 ///
@@ -43,9 +43,10 @@ use morec_ops::RecognizeSettings;
 ///   osc://HOST:PORT         /morec/event and /VMC/Thru/morec/event
 ///   ws://HOST:PORT          whoever connects there with a WebSocket
 ///
-/// An event is a start (tentative), updates with progress (tentative), and then either an end (final, with score, start
-/// and stop) or a cancellation. One motion ends once, and nothing that ended is taken back. With --each-repetition, an
-/// activity also has a repetition (with its start and stop) each time one more is over. Ctrl-C ends the session.
+/// An event is the end of a motion, with score, start and stop. One motion ends once, and nothing that ended is taken back.
+/// With --tentative, a motion also has a start and updates with progress before its end, or a cancellation in its place.
+/// With --each-repetition, an activity also has a repetition (with its start and stop) each time one more is over. Ctrl-C
+/// ends the session.
 #[derive(clap::Args)]
 #[command(
     verbatim_doc_comment,
@@ -59,7 +60,7 @@ pub struct Args {
     /// The index, as `morec train` writes it
     index: PathBuf,
     #[command(flatten)]
-    settings: RecognizeSettings,
+    stream: StreamSettings,
     /// Source of poses
     #[arg(long, required = true, value_name = "SOURCE")]
     listen: Vec<Address>,
@@ -72,15 +73,6 @@ pub struct Args {
     on: Vec<OnClass>,
     #[command(flatten)]
     tracker: TrackerArgs,
-    /// Minimum seconds between two events of a class
-    #[arg(long, value_name = "SECS", default_value = "0", value_parser = secs)]
-    refractory: f64,
-    /// Tell motions at their end only
-    #[arg(long)]
-    no_early: bool,
-    /// Make each repetition of an activity an event of its own
-    #[arg(long)]
-    each_repetition: bool,
     /// Distribution of recognition over threads; detections are the same, and a thread for each stage takes more of the
     /// processor than one for all
     #[arg(long, value_enum, default_value = "inline")]
@@ -104,7 +96,7 @@ struct Listening {
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
     let mut index = open_index(&args.index)?;
-    index.model = args.settings.tuned(index.model)?;
+    index.model = args.stream.options().tuned(index.model)?;
     let mut outlets = match args.emit.as_slice() {
         [] => vec![CountedSink::open(
             &"terminal:-".parse().map_err(anyhow::Error::msg)?,
@@ -219,13 +211,8 @@ fn complain(source: &str, notices: &Notices, line: &mut StatusLine) {
 
 fn listen(address: &Address, index: &MotionIndex, args: &Args) -> Result<Listening> {
     let opened = args.tracker.open(address, Some(index))?;
-    let events = EventOptions {
-        early: !args.no_early,
-        each_repetition: args.each_repetition,
-        refractory_secs: args.refractory,
-    };
     let session_options = SessionOptions {
-        events,
+        events: args.stream.options().events()?,
         overload: opened.overload,
         ..args.layout.options()
     };

@@ -185,7 +185,10 @@ impl Watch {
 
     /// Recognises what `index` knows from now on.
     fn begin(&mut self, index: Option<&MotionIndex>) {
-        let options = EventOptions::default();
+        let options = EventOptions {
+            tentative: true,
+            ..EventOptions::default()
+        };
         self.performers = index.map_or_else(Vec::new, |index| {
             let performer = |actor| Performer::new(&index.model, PerformerId(actor), &options);
             (0..MAX_PERFORMERS as u16).map(performer).collect()
@@ -198,26 +201,25 @@ impl Watch {
         let watched = stage.actor();
         let (next, frame) = stage.next();
         let events = &mut self.events;
-        let mut out = |event| events.push(event);
         match next {
             SourceEvent::Frame => {
                 if let Some(performer) = self.performers.get_mut(frame.actor.index()) {
                     // The skeleton came while this performer's gestures were recorded.
                     let missed = performer.diagnosis().is_none() && frame.actor == watched;
                     if let Some(rig) = known.filter(|_| missed) {
-                        performer.set_rig(&rig, &mut out);
+                        events.extend_from_slice(performer.set_rig(&rig));
                     }
-                    performer.push(frame, &mut out);
+                    events.extend_from_slice(performer.push(frame));
                 }
             }
             SourceEvent::Rig(actor, rig) => {
                 if let Some(performer) = self.performers.get_mut(actor.index()) {
-                    performer.set_rig(&rig, &mut out);
+                    events.extend_from_slice(performer.set_rig(&rig));
                 }
             }
             SourceEvent::Gone(actor) => {
                 if let Some(performer) = self.performers.get_mut(actor.index()) {
-                    performer.finish(&mut out);
+                    events.extend_from_slice(performer.finish());
                 }
             }
             SourceEvent::Quiet | SourceEvent::Ended => {}
@@ -227,7 +229,7 @@ impl Watch {
 
     fn finish(&mut self, index: Option<&MotionIndex>, source: &str) -> Result<()> {
         for performer in &mut self.performers {
-            performer.finish(&mut |event| self.events.push(event));
+            self.events.extend_from_slice(performer.finish());
         }
         self.tell(index, source)
     }

@@ -22,15 +22,7 @@ pub fn recognise_over_vmc(
     let mut network = Network::new(accidents);
     let mut over = Over {
         receiver: VmcReceiver::new(&VmcOptions::default()),
-        performer: Performer::new(
-            model,
-            Default::default(),
-            &EventOptions {
-                early: false,
-                each_repetition: false,
-                refractory_secs: 0.0,
-            },
-        ),
+        performer: Performer::new(model, Default::default(), &EventOptions::default()),
         frame: Frame::default(),
         found: Vec::new(),
     };
@@ -58,7 +50,7 @@ pub fn recognise_over_vmc(
         mut found,
         ..
     } = over;
-    performer.finish(&mut |event| found.extend(detection(&event)));
+    found.extend(performer.finish().iter().filter_map(detection));
     // From the receiver's clock to the clip's.
     let shift_secs = (played.first as f64 - before as f64) / rate_hz;
     for d in &mut found {
@@ -78,15 +70,14 @@ struct Over {
 
 impl Over {
     fn take(&mut self) {
-        let found = &mut self.found;
-        let mut out = |event: Event| found.extend(detection(&event));
         while let Some(next) = self.receiver.next(&mut self.frame) {
-            match next {
-                SourceEvent::Rig(_, rig) => self.performer.set_rig(&rig, &mut out),
-                SourceEvent::Frame => self.performer.push(&self.frame, &mut out),
-                SourceEvent::Gone(_) => self.performer.finish(&mut out),
-                SourceEvent::Quiet | SourceEvent::Ended => {}
-            }
+            let events = match next {
+                SourceEvent::Rig(_, rig) => self.performer.set_rig(&rig),
+                SourceEvent::Frame => self.performer.push(&self.frame),
+                SourceEvent::Gone(_) => self.performer.finish(),
+                SourceEvent::Quiet | SourceEvent::Ended => continue,
+            };
+            self.found.extend(events.iter().filter_map(detection));
         }
     }
 }

@@ -231,7 +231,7 @@ fn a_motion_runs_the_command_of_its_class_and_no_shell() {
     folder.morec(&[&train[..], &["i.index"]].concat()).ok();
     let listen = format!("clip://clips/{}.bvh?speed=0", takes[0].clip.name);
     let live = ["live", "i.index", "--listen", &listen];
-    let events = folder.morec(&[&live[..], &["--emit", "json:-", "--no-early"]].concat());
+    let events = folder.morec(&[&live[..], &["--emit", "json:-"]].concat());
     let waves = events.out.matches("\"class\":\"wave\"").count();
     assert!(waves > 0, "{events:?}");
     // Programs that end before they can be waited for are seen by what they leave.

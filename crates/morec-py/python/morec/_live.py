@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, Literal
 
 from . import _morec
+from ._files import Roles, roles_text
 from ._morec import Index, MorecWarning
 
 __all__ = ["listen"]
@@ -33,10 +34,18 @@ class listen:
         Performers that are followed at once.
     mirror : bool
         Exchange left and right, for senders that show their performer as a mirror would.
+    roles : dict, path or str, optional
+        ``{"left_hand": "LWrist"}``, or a roles file: joints of clips, where names do not tell.
+    sensitivity : float, optional
+        False alarms a minute that background motion may raise, as in training: 0.1 is strict, 1 is generous.
+    performer : {"auto", "teacher", "anyone"}
+        The expected performer, as in `Index.recognize`.
     tentative : bool
         Also what seems to be under way: events of the phases start, update and cancel.
     each_repetition : bool
         Also an event of the phase repetition, with its start and stop, for each repetition of an activity.
+    refractory_secs : float
+        A motion of the same class that ends less than this after the one before it is not reported.
     timeout : float, optional
         End after this many seconds without an event.
 
@@ -67,11 +76,23 @@ class listen:
         *,
         actors: int = 4,
         mirror: bool = False,
+        roles: Roles = None,
+        sensitivity: float | None = None,
+        performer: Literal["auto", "teacher", "anyone"] = "auto",
         tentative: bool = False,
         each_repetition: bool = False,
+        refractory_secs: float = 0.0,
         timeout: float | None = None,
     ) -> None:
-        self._session = _morec.LiveSession(address, index, actors, mirror, tentative, each_repetition)
+        options = {
+            "roles": roles_text(roles),
+            "sensitivity": sensitivity,
+            "performer": performer,
+            "tentative": tentative,
+            "each_repetition": each_repetition,
+            "refractory_secs": refractory_secs,
+        }
+        self._session = _morec.LiveSession(address, index, actors, mirror, options)
         self._timeout = timeout
 
     @property

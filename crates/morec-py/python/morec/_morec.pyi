@@ -202,9 +202,12 @@ class Index:
         joints: Clip | Sequence[str],
         *,
         roles: _Roles = None,
-        up: str | None = None,
+        up: str = "y",
         sensitivity: float | None = None,
-        performer: Literal["auto", "teacher", "anyone"] | None = None,
+        performer: Literal["auto", "teacher", "anyone"] = "auto",
+        tentative: bool = False,
+        each_repetition: bool = False,
+        refractory_secs: float = 0.0,
     ) -> Recognizer:
         """A recogniser for a live stream of joint positions.
 
@@ -215,17 +218,23 @@ class Index:
             whose joints they are.
         roles : dict, optional
             ``{"left_hand": "LWrist", "hips": "LHip+RHip"}``, where names do not tell.
-        up : {"x", "y", "z", "-x", "-y", "-z"}, optional
-            Which way is up in the stream; Y by default. The unit of length does not matter.
+        up : {"x", "y", "z", "-x", "-y", "-z"}
+            Which way is up in the stream. The unit of length does not matter.
         sensitivity : float, optional
             As in `recognize`.
-        performer : {"auto", "teacher", "anyone"}, optional
+        performer : {"auto", "teacher", "anyone"}
             As in `recognize`.
+        tentative : bool
+            Also what seems to be under way: events of the phases start, update and cancel.
+        each_repetition : bool
+            Also an event of the phase repetition, with its start and stop, for each repetition of an activity.
+        refractory_secs : float
+            A motion of the same class that ends less than this after the one before it is not reported.
 
         Raises
         ------
         ValueError
-            Names of which no part of the body is known.
+            Names of which no part of the body is known; an option that cannot be.
         MorecError
             An index that looks at joint rotations, or has no bone in common with the joints.
         """
@@ -283,11 +292,11 @@ class Recognizer:
         Returns
         -------
         list of dict
-            The detections that this pose settled, mostly none: class, start_secs, stop_secs, score, reported_secs,
-            repetitions, period_secs.
+            The events that this pose settled, mostly none, with the keys of the events of `morec.listen`. An event of the phase
+            end is final.
         """
     def push_all(self, times_secs: npt.ArrayLike, positions: npt.ArrayLike) -> list[dict[str, Any]]:
-        """Take many poses, other Python threads running meanwhile; the same detections as of pushing one by one.
+        """Take many poses, other Python threads running meanwhile; the same events as of pushing one by one.
 
         Parameters
         ----------
@@ -295,20 +304,13 @@ class Recognizer:
         positions : array, shape (frames, joints, 3)
         """
     def finish(self) -> list[dict[str, Any]]:
-        """End the stream: the detections that its last moments still hold. The next push begins a new stream."""
-    def early_detection(self) -> dict[str, Any] | None:
-        """The motion that seems to be under way after the last push, or None. Tentative.
-
-        Keys class, score, progress (0 to 1), start_secs, seen_secs, repetitions, period_secs.
-        """
-    def __enter__(self) -> Recognizer: ...
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None, /
-    ) -> None: ...
+        """End the stream: the events that its last moments still hold. The next push begins a new stream."""
+    def diagnosis(self) -> list[str]:
+        """What is wrong with the stream of the last seconds for the index, a sentence each with its severity and what to do."""
 
 class LiveSession:
     def __init__(
-        self, address: str, index: Index, actors: int, mirror: bool, tentative: bool, each_repetition: bool, /
+        self, address: str, index: Index, actors: int, mirror: bool, options: dict[str, Any], /
     ) -> None: ...
     @property
     def address(self) -> str: ...

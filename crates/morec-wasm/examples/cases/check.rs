@@ -36,7 +36,7 @@ fn main() -> Outcome<()> {
             .sum();
         println!(
             "{name}: {count} detections, to the bit; {:.1} µs a push",
-            case.push_us_of(&index)?
+            case.push_us_of(&index.into())?
         );
     }
     Ok(())

@@ -3,12 +3,14 @@
 use std::error::Error;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Instant;
 
 use morec::files::FileReader;
+use morec::live::{PerformerStream, StreamOptions};
 use morec::roles::Role;
 use morec::{ImportOptions, KeyPose, MotionIndex, Take};
-use morec_wasm::{DetectionRow, PointOptions, PointStream};
+use morec_wasm::DetectionRow;
 use serde::{Deserialize, Serialize};
 
 pub type Outcome<T> = Result<T, Box<dyn Error>>;
@@ -57,7 +59,7 @@ impl Case {
     }
 
     /// Microseconds a push, over all frames.
-    pub fn push_us_of(&self, index: &MotionIndex) -> Outcome<f64> {
+    pub fn push_us_of(&self, index: &Arc<MotionIndex>) -> Outcome<f64> {
         let (mut secs, mut frames) = (0.0, 0);
         for take in takes(&self.recognise)? {
             secs += push_secs(index, &take)?;
@@ -68,14 +70,14 @@ impl Case {
 }
 
 /// Seconds that pushing every pose of `take` takes, as the package pushes it.
-fn push_secs(index: &MotionIndex, take: &Take) -> Outcome<f64> {
+fn push_secs(index: &Arc<MotionIndex>, take: &Take) -> Outcome<f64> {
     let points = Role::ALL.map(Role::name);
-    let mut stream = PointStream::new(index, &points, &PointOptions::default())?;
+    let mut stream = PerformerStream::of_points(index, &points, &StreamOptions::default())?;
     let poses = take.poses();
     let begun = Instant::now();
     for (time_secs, pose) in &poses {
         fill(stream.values(), pose);
-        stream.push(*time_secs, *time_secs);
+        stream.push_values(*time_secs, *time_secs);
     }
     Ok(begun.elapsed().as_secs_f64())
 }

@@ -114,13 +114,15 @@ impl EventBroadcast {
         (broadcast, readers)
     }
 
-    /// Puts an event where the next delivery takes it from.
-    pub(super) fn keep(&mut self, event: Event) {
+    /// Puts events where the next delivery takes them from.
+    pub(super) fn keep(&mut self, events: &[Event]) {
         // A frame settles a few motions at most; the buffer never grows.
-        if self.pending.len() < self.pending.capacity() {
-            self.pending.push(event);
-        } else {
-            self.cells.dropped_events.fetch_add(1, Relaxed);
+        let room = self.pending.capacity() - self.pending.len();
+        let kept = events.len().min(room);
+        self.pending.extend_from_slice(&events[..kept]);
+        if kept < events.len() {
+            let dropped = (events.len() - kept) as u64;
+            self.cells.dropped_events.fetch_add(dropped, Relaxed);
         }
     }
 
@@ -190,7 +192,7 @@ mod tests {
             wall_secs: 0.0,
             repetitions: None,
         };
-        (0..PENDING + 3).for_each(|_| broadcast.keep(event));
+        (0..PENDING + 3).for_each(|_| broadcast.keep(&[event]));
         assert!(broadcast.deliver());
         let taken = std::iter::from_fn(|| readers[0].pop()).count();
         let dropped = cells.dropped_events.load(Relaxed);

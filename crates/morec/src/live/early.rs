@@ -4,8 +4,8 @@ use crate::TimeSpan;
 use crate::classes::ClassId;
 use crate::decode::Repetitions;
 
-use super::emitter::EventEmitter;
-use super::{Detection, EarlyDetection, Event, EventOptions, Phase};
+use super::event_buffer::EventBuffer;
+use super::{Detection, EarlyDetection, EventOptions, Phase};
 
 /// Progress is reported again when it has grown by this.
 const STEP: f64 = 0.1;
@@ -47,7 +47,7 @@ struct RepeatedActivity {
 impl EarlyTracker {
     pub(super) fn new(options: &EventOptions) -> Self {
         Self {
-            tells_early: options.early,
+            tells_early: options.tentative,
             tells_repetitions: options.each_repetition,
             ..Self::default()
         }
@@ -69,7 +69,7 @@ impl EarlyTracker {
         early: Option<EarlyDetection>,
         after_secs: f64,
         now_secs: f64,
-        say: &mut EventEmitter<impl FnMut(Event)>,
+        out: &mut EventBuffer,
     ) {
         let is_news = |h: &EarlyDetection| h.goes_on || middle_secs(h) > after_secs;
         match (early.filter(is_news), &mut self.open) {
@@ -79,7 +79,7 @@ impl EarlyTracker {
                     last_reported: early,
                     heard_secs: now_secs,
                 });
-                self.tell(Phase::Start, now_secs, say);
+                self.tell(Phase::Start, now_secs, out);
             }
             (Some(early), Some(open)) => {
                 open.heard_secs = now_secs;
@@ -90,11 +90,11 @@ impl EarlyTracker {
                     || early.repetitions.map(|r| r.count) != last.repetitions.map(|r| r.count);
                 if news {
                     open.last_reported = early;
-                    self.tell(Phase::Update, now_secs, say);
+                    self.tell(Phase::Update, now_secs, out);
                 }
             }
             (None, Some(open)) if now_secs - open.heard_secs > FORGET_SECS => {
-                self.cancel(Some(now_secs), say)
+                self.cancel(Some(now_secs), out)
             }
             (None, _) => {}
         }
@@ -102,8 +102,8 @@ impl EarlyTracker {
             && let (Some(whole), Some(repeated)) = (early.whole, early.repetitions)
             && self.tells_repetitions
         {
-            let motion = open.number(say);
-            self.tell_repetitions(motion, &early, (whole, repeated.period_secs), now_secs, say);
+            let motion = open.number(out);
+            self.tell_repetitions(motion, &early, (whole, repeated.period_secs), now_secs, out);
         }
     }
 
@@ -115,7 +115,7 @@ impl EarlyTracker {
         of: &EarlyDetection,
         ((count, stop_secs), period_secs): ((u32, f64), f64),
         now_secs: f64,
-        say: &mut EventEmitter<impl FnMut(Event)>,
+        out: &mut EventBuffer,
     ) {
         let mut told = self.repeated_in(of);
         for number in told.count + 1..=count {
@@ -132,7 +132,7 @@ impl EarlyTracker {
                 }),
                 ..*of
             };
-            say.event(Phase::Repetition, motion, one, now_secs);
+            out.add(Phase::Repetition, motion, one, now_secs);
         }
         self.repeated = Some(told);
     }
@@ -155,7 +155,7 @@ impl EarlyTracker {
         motion: u64,
         ended: &EarlyDetection,
         now_secs: f64,
-        say: &mut EventEmitter<impl FnMut(Event)>,
+        out: &mut EventBuffer,
     ) {
         let Some(repeated) = ended.repetitions.filter(|_| self.tells_repetitions) else {
             return;
@@ -166,7 +166,7 @@ impl EarlyTracker {
             .period_secs
             .min((ended.seen_secs - told.span.stop_secs) / left.max(1.0));
         let whole = (repeated.count, told.span.stop_secs + left * period_secs);
-        self.tell_repetitions(motion, ended, (whole, period_secs), now_secs, say);
+        self.tell_repetitions(motion, ended, (whole, period_secs), now_secs, out);
     }
 
     /// The motion's number, if `detection` is the end of the one that is open.
@@ -180,29 +180,25 @@ impl EarlyTracker {
     }
 
     /// Cancels the motion that was reported.
-    pub(super) fn cancel(
-        &mut self,
-        now_secs: Option<f64>,
-        say: &mut EventEmitter<impl FnMut(Event)>,
-    ) {
+    pub(super) fn cancel(&mut self, now_secs: Option<f64>, out: &mut EventBuffer) {
         if let Some(open) = self.open {
-            self.tell(Phase::Cancel, now_secs.unwrap_or(open.heard_secs), say);
+            self.tell(Phase::Cancel, now_secs.unwrap_or(open.heard_secs), out);
         }
         self.open = None;
     }
 
     /// Says so much of the motion that is open.
-    fn tell(&mut self, phase: Phase, now_secs: f64, say: &mut EventEmitter<impl FnMut(Event)>) {
+    fn tell(&mut self, phase: Phase, now_secs: f64, out: &mut EventBuffer) {
         if let Some(open) = self.open.as_mut().filter(|_| self.tells_early) {
-            let motion = open.number(say);
-            say.event(phase, motion, open.last_reported, now_secs);
+            let motion = open.number(out);
+            out.add(phase, motion, open.last_reported, now_secs);
         }
     }
 }
 
 impl OpenMotion {
-    fn number(&mut self, say: &mut EventEmitter<impl FnMut(Event)>) -> u64 {
-        *self.motion.get_or_insert_with(|| say.new_motion())
+    fn number(&mut self, out: &mut EventBuffer) -> u64 {
+        *self.motion.get_or_insert_with(|| out.new_motion())
     }
 }
 
@@ -214,8 +210,8 @@ fn middle_secs(early: &EarlyDetection) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::live::PerformerId;
     use crate::live::event_tracker::EventTracker;
+    use crate::live::{Event, PerformerId};
 
     const JOG: ClassId = ClassId(0);
     const WAVE: ClassId = ClassId(1);
@@ -255,31 +251,30 @@ mod tests {
     }
 
     /// A jog of ten seconds with a wave in its middle.
-    fn told(early: bool, each_repetition: bool) -> Vec<Event> {
+    fn told(tentative: bool, each_repetition: bool) -> Vec<Event> {
         let options = EventOptions {
-            early,
+            tentative,
             each_repetition,
             ..Default::default()
         };
         let mut looked = EarlyTracker::new(&options);
-        let mut tracker = EventTracker::new(PerformerId(0), 2, 0.0);
-        let mut events = Vec::new();
+        let mut tracker = EventTracker::new(2, 0.0);
+        let mut out = EventBuffer::new(PerformerId(0));
         for tick in 0..=48 {
             let now_secs = 10.0 + f64::from(tick) / 4.0;
             if tick == 24 {
                 let wave = ends(WAVE, 15.0, 16.0, 0);
-                tracker.emit(&wave, &mut looked, 0.0, &mut |e| events.push(e));
+                tracker.emit(&wave, &mut looked, &mut out);
             }
             if tick == 48 {
                 let jog = ends(JOG, 10.0, 19.2, 5);
-                tracker.emit(&jog, &mut looked, 0.0, &mut |e| events.push(e));
+                tracker.emit(&jog, &mut looked, &mut out);
             }
             let early = (8..48).contains(&tick).then(|| jogs(now_secs));
             let after_secs = tracker.last_stop_secs();
-            let mut out = |e| events.push(e);
-            looked.look(early, after_secs, now_secs, &mut tracker.say(0.0, &mut out));
+            looked.look(early, after_secs, now_secs, &mut out);
         }
-        events
+        out.events().to_vec()
     }
 
     #[test]

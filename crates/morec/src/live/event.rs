@@ -42,7 +42,7 @@ pub struct Event {
     pub phase: Phase,
     /// Number of the motion, from 1, for each performer: its start, updates and end share it.
     pub motion: u64,
-    /// Number of the event in its session, from 1, without gaps as long as nothing is lost on the way.
+    /// Number of the event in its session or stream, from 1, without gaps as long as nothing is lost on the way.
     pub sequence: u64,
     /// Whose motion.
     pub actor: PerformerId,
@@ -80,25 +80,15 @@ impl Event {
     }
 }
 
-/// Selection and rate of events.
-#[derive(Debug, Clone, PartialEq)]
+/// Selection and rate of events: those of [`StreamOptions`](super::StreamOptions), with its defaults.
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct EventOptions {
-    /// Say what seems to be under way, too.
-    pub early: bool,
+    /// Report what seems to be under way, too.
+    pub tentative: bool,
     /// Make each repetition of an activity an event of its own ([`Phase::Repetition`]).
     pub each_repetition: bool,
     /// A motion of the same class that ends less than this after the one before it is not reported (but counted), seconds.
     /// At 0 the decoder's own rule holds: motions of one performer follow each other and never share more than two
     /// ticks, so one performance is one event.
     pub refractory_secs: f64,
-}
-
-impl Default for EventOptions {
-    fn default() -> Self {
-        Self {
-            early: true,
-            each_repetition: false,
-            refractory_secs: 0.0,
-        }
-    }
 }

@@ -1,15 +1,13 @@
-//! Detections to events: numbers for motions, the refractory rule.
+//! Detections to events: the refractory rule.
 
 use super::early::EarlyTracker;
-use super::emitter::EventEmitter;
-use super::{Detection, EarlyDetection, Event, PerformerId, Phase};
+use super::event_buffer::EventBuffer;
+use super::{Detection, EarlyDetection, Phase};
 
 /// Tells one performer's motions.
 #[derive(Debug)]
 pub(super) struct EventTracker {
-    actor: PerformerId,
     refractory_secs: f64,
-    motions: u64,
     /// When the last motion ended that was reported: of all classes, and of each.
     any_secs: f64,
     class_secs: Vec<f64>,
@@ -17,12 +15,10 @@ pub(super) struct EventTracker {
 }
 
 impl EventTracker {
-    pub(super) fn new(actor: PerformerId, classes: usize, refractory_secs: f64) -> Self {
+    pub(super) fn new(classes: usize, refractory_secs: f64) -> Self {
         let (any_secs, class_secs) = (f64::NEG_INFINITY, vec![f64::NEG_INFINITY; classes]);
         Self {
-            actor,
             refractory_secs,
-            motions: 0,
             any_secs,
             class_secs,
             suppressed: 0,
@@ -30,24 +26,17 @@ impl EventTracker {
     }
 
     /// Tells the end of a motion, unless the refractory rule says otherwise.
-    pub(super) fn emit(
-        &mut self,
-        d: &Detection,
-        early: &mut EarlyTracker,
-        wall_secs: f64,
-        out: &mut impl FnMut(Event),
-    ) {
+    pub(super) fn emit(&mut self, d: &Detection, early: &mut EarlyTracker, out: &mut EventBuffer) {
         let before_secs = &mut self.class_secs[d.class.index()];
         // A method that lets rivals wait may report what ended first after what ended later.
         if (d.span.stop_secs - *before_secs).abs() < self.refractory_secs {
             self.suppressed += 1;
-            early.cancel(Some(d.reported_secs), &mut self.say(wall_secs, out));
+            early.cancel(Some(d.reported_secs), out);
             return;
         }
         *before_secs = before_secs.max(d.span.stop_secs);
         self.any_secs = self.any_secs.max(d.span.stop_secs);
-        let mut say = self.say(wall_secs, out);
-        let motion = early.take(d).unwrap_or_else(|| say.new_motion());
+        let motion = early.take(d).unwrap_or_else(|| out.new_motion());
         let ended = EarlyDetection {
             class: d.class,
             score: d.score,
@@ -58,22 +47,8 @@ impl EventTracker {
             repetitions: d.repetitions,
             whole: None,
         };
-        early.end_repetitions(motion, &ended, d.reported_secs, &mut say);
-        say.event(Phase::End, motion, ended, d.reported_secs);
-    }
-
-    /// For saying something else than an end.
-    pub(super) fn say<'a, F: FnMut(Event)>(
-        &'a mut self,
-        wall_secs: f64,
-        out: &'a mut F,
-    ) -> EventEmitter<'a, F> {
-        EventEmitter {
-            actor: self.actor,
-            wall_secs,
-            motions: &mut self.motions,
-            out,
-        }
+        early.end_repetitions(motion, &ended, d.reported_secs, out);
+        out.add(Phase::End, motion, ended, d.reported_secs);
     }
 
     /// When the last motion ended that was reported.

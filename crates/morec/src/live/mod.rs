@@ -1,8 +1,9 @@
 //! Live recognition: poses in, detections out, nothing taken back.
 //!
-//! Three ways to run it, with the same detections:
+//! Four ways to run it, with the same detections:
 //!
-//! - [`Recognizer`]: poses of one performer in, detections out, on the caller's thread.
+//! - [`PerformerStream`]: points or a skeleton of one performer in, events out, on the caller's thread, with [`StreamOptions`].
+//! - [`Recognizer`]: poses of one performer in, detections out.
 //! - [`Session`]: a [`Source`] on a thread, recognition on another, events for any number of readers. Several
 //!   performers, skeletons that change, sources that break off and come back.
 //! - [`Pool`]: many streams on a few threads.
@@ -53,14 +54,15 @@ mod clock;
 mod detection;
 mod divided;
 mod early;
-mod emitter;
 mod event;
+mod event_buffer;
 mod event_tracker;
 mod feed;
 mod frame;
 mod of_clip;
 mod of_index;
 mod performer;
+mod performer_stream;
 mod performer_table;
 mod pipeline;
 mod pool;
@@ -74,6 +76,7 @@ mod shown;
 mod source;
 mod start;
 mod status;
+mod stream_options;
 mod svrdm;
 mod sync;
 mod template_pipeline;
@@ -91,6 +94,7 @@ pub use feed::{FeedSender, OverflowPolicy};
 pub use frame::{Frame, PerformerId, Rig};
 pub use of_clip::{recognize_clip, recognize_clip_in_session, recognize_poses};
 pub use performer::Performer;
+pub use performer_stream::{PerformerStream, StreamError};
 pub use performer_table::{Arrival, PerformerTable, largest_holder};
 pub use pool::{Pool, PoolStream};
 pub use pose::{PoseExtractor, RecognizerInput};
@@ -103,5 +107,6 @@ pub use shown::ShownBones;
 pub use source::{Source, SourceCounts, SourceEvent};
 pub use start::StartError;
 pub use status::{MAX_PERFORMERS, PerformerStatus, Status, StatusHandle};
+pub use stream_options::{OptionError, StreamOptions};
 pub(crate) use template_pipeline::restricted;
 pub use waits::LatencyHistogram;

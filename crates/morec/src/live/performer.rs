@@ -4,15 +4,18 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use super::early::EarlyTracker;
+use super::event_buffer::EventBuffer;
 use super::event_tracker::EventTracker;
 use super::{
     EarlyDetection, Event, EventOptions, Frame, Model, PerformerId, PoseExtractor, Recognizer,
     RecognizerCache, RecognizerInput, Rig, ShownBones, StartError,
 };
 use crate::diagnosis::{Diagnoser, Diagnosis};
-use crate::features::BoneSet;
+use crate::features::{BoneSet, KeyPose};
+use crate::kinematics::WorldPose;
 
-/// Follows one performer: skeletons and frames in, events out.
+/// Follows one performer: skeletons and frames in, events out. [`PerformerStream`](super::PerformerStream) is the same for a performer
+/// whose skeleton or points are known from the beginning, with all options.
 ///
 /// Takes memory when a skeleton is new (a recogniser is made for its bones at its first frame), and when a second shows that the
 /// stream has other bones than that was made for ([`ShownBones`]); other frames take none.
@@ -27,7 +30,7 @@ pub struct Performer {
     reader: Option<Box<PoseExtractor>>,
     early: EarlyTracker,
     tracker: EventTracker,
-    wall_secs: f64,
+    out: EventBuffer,
     unusable: u64,
     dropped: u64,
     problem: Option<StartError>,
@@ -53,24 +56,25 @@ impl Performer {
     ) -> Self {
         let model = recognizers.model();
         Self {
-            tracker: EventTracker::new(actor, model.classes().len(), options.refractory_secs),
+            tracker: EventTracker::new(model.classes().len(), options.refractory_secs),
             shown: ShownBones::new(model.bones()),
             recognizers: recognizers.clone(),
             reader: None,
             rig: None,
             recognizer: None,
             early: EarlyTracker::new(options),
-            wall_secs: 0.0,
+            out: EventBuffer::new(actor),
             unusable: 0,
             dropped: 0,
-            problem: None,
+            problem: Some(StartError::NoSkeleton),
             diagnoser: None,
         }
     }
 
-    /// Begins with a new skeleton; ends what went on with the old one.
-    pub fn set_rig(&mut self, rig: &Arc<Rig>, out: &mut impl FnMut(Event)) {
-        self.finish(out);
+    /// Begins with a new skeleton; the events of the end of what went on with the old one.
+    pub fn set_rig(&mut self, rig: &Arc<Rig>) -> &[Event] {
+        self.finish();
+        self.out.reserve();
         let rig = match self.recognizers.model().roles_of(&rig.skeleton, &rig.roles) {
             Cow::Borrowed(_) => rig.clone(),
             Cow::Owned(roles) => Arc::new(Rig {
@@ -85,6 +89,7 @@ impl Performer {
         let reader = PoseExtractor::new(self.recognizers.model(), &rig.skeleton, &rig.roles);
         self.reader = reader.ok().map(Box::new);
         self.rig = Some(rig);
+        self.out.events()
     }
 
     /// Makes a recogniser for `bones` now and not at the first frame, so that what does not fit is said now, and no bone is given up
@@ -97,82 +102,93 @@ impl Performer {
         Ok(())
     }
 
-    /// Takes a frame and calls `out` with what it settled. A frame without a rig, or of a skeleton that shows none of
-    /// the index's bones, says nothing and is counted.
-    pub fn push(&mut self, frame: &Frame, out: &mut impl FnMut(Event)) {
-        let Some(rig) = &self.rig else {
-            self.unusable += 1;
-            return;
+    /// Takes a frame; the events that it settled. A frame without a rig, or of a skeleton that shows none of the index's bones, gives
+    /// none and is counted as [unusable](Self::unusable); [`problem`](Self::problem) is then why.
+    pub fn push(&mut self, frame: &Frame) -> &[Event] {
+        let key = match &self.rig {
+            Some(rig) => frame.key_pose(rig),
+            None => KeyPose::default(),
         };
-        let pose = frame.key_pose(rig);
+        self.take(frame.time_secs, frame.wall_secs, &key, &frame.pose)
+    }
+
+    /// [`push`](Self::push) of a pose whose roles are known, as of a rig [of roles](Rig::of_roles).
+    pub fn push_pose(&mut self, time_secs: f64, wall_secs: f64, pose: &KeyPose) -> &[Event] {
+        self.take(time_secs, wall_secs, pose, &WorldPose::default())
+    }
+
+    fn take(
+        &mut self,
+        time_secs: f64,
+        wall_secs: f64,
+        pose: &KeyPose,
+        world: &WorldPose,
+    ) -> &[Event] {
+        self.out.clear();
+        if self.rig.is_none() {
+            self.unusable += 1;
+            return self.out.events();
+        }
         if let Some(diagnoser) = &mut self.diagnoser {
-            diagnoser.push(frame.time_secs, frame.wall_secs, &pose);
-            diagnoser.see_turns(&frame.pose.rotations);
+            diagnoser.push(time_secs, wall_secs, pose);
+            diagnoser.see_turns(&world.rotations);
         }
         let bones = match &self.recognizer {
             Some(recognizer) => {
                 let used = recognizer.model().bones();
-                self.shown.take(used, frame.time_secs, &pose)
+                self.shown.take(used, time_secs, pose)
             }
-            None => Some(rig.bones(&pose)),
+            None => Some(BoneSet::of_pose(pose)),
         };
         if let Some(bones) = bones {
-            self.look_at(bones, out);
+            self.look_at(bones);
         }
         let Some(recognizer) = &mut self.recognizer else {
             self.unusable += 1;
-            return;
+            return self.out.events();
         };
-        self.wall_secs = frame.wall_secs;
-        let pivots = self
-            .reader
-            .as_mut()
-            .and_then(|reader| reader.pivots(&frame.pose));
-        for detection in recognizer.push(frame.time_secs, RecognizerInput { key: &pose, pivots }) {
-            self.tracker
-                .emit(detection, &mut self.early, self.wall_secs, out);
+        self.out.arrive(wall_secs);
+        let reader = self.reader.as_mut();
+        let pivots = reader.and_then(|reader| reader.pivots(world));
+        for detection in recognizer.push(time_secs, RecognizerInput { key: pose, pivots }) {
+            self.tracker.emit(detection, &mut self.early, &mut self.out);
         }
         if self.early.is_wanted() {
-            let after_secs = self.tracker.last_stop_secs();
-            let say = &mut self.tracker.say(self.wall_secs, out);
-            self.early.look(
-                recognizer.early_detection(),
-                after_secs,
-                frame.time_secs,
-                say,
-            );
+            let (early, after_secs) = (recognizer.early_detection(), self.tracker.last_stop_secs());
+            self.early.look(early, after_secs, time_secs, &mut self.out);
         }
+        self.out.events()
     }
 
     /// Goes on with a recogniser for other bones, if there can be one.
-    fn look_at(&mut self, bones: BoneSet, out: &mut impl FnMut(Event)) {
+    fn look_at(&mut self, bones: BoneSet) {
         let new = self.recognizers.recognizer(bones);
         self.problem = new.as_ref().err().cloned();
         if let Ok(new) = new {
-            self.end(out);
+            self.end();
             self.dropped = self.dropped();
             self.recognizer = Some(Box::new(new));
         }
     }
 
-    /// The stream ends or breaks off: tells what its last moments hold. It may go on with another frame.
-    pub fn finish(&mut self, out: &mut impl FnMut(Event)) {
-        self.end(out);
+    /// The stream ends or breaks off: the events that its last moments hold. It may go on with another frame.
+    pub fn finish(&mut self) -> &[Event] {
+        self.out.clear();
+        self.end();
         self.tracker.forget();
         self.shown.reset();
+        self.out.events()
     }
 
-    /// Tells what the recogniser still holds.
-    fn end(&mut self, out: &mut impl FnMut(Event)) {
+    /// Adds the events that the recogniser still holds.
+    fn end(&mut self) {
         let Some(recognizer) = &mut self.recognizer else {
             return;
         };
         for detection in recognizer.finish() {
-            self.tracker
-                .emit(detection, &mut self.early, self.wall_secs, out);
+            self.tracker.emit(detection, &mut self.early, &mut self.out);
         }
-        self.early
-            .cancel(None, &mut self.tracker.say(self.wall_secs, out));
+        self.early.cancel(None, &mut self.out);
     }
 
     /// Frames that could not be used: no skeleton was known, or none of its bones are the index's.
@@ -197,7 +213,7 @@ impl Performer {
             .map(|diagnoser| diagnoser.diagnosis())
     }
 
-    /// Why what the stream shows cannot be recognised.
+    /// Why what the stream shows cannot be recognised: nothing of it is the index's, or [no rig](Self::set_rig) was set.
     pub fn problem(&self) -> Option<&StartError> {
         self.problem.as_ref()
     }

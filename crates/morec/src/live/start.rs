@@ -31,6 +31,9 @@ pub enum StartError {
     /// The model's parts do not fit together.
     #[error(transparent)]
     Svrdm(#[from] crate::svrdm::ModelError),
+    /// No skeleton is known yet.
+    #[error("no skeleton is known: one must come before the first frame")]
+    NoSkeleton,
     /// The stream shows a performer of another kind than the index is of.
     #[error("this index is of {index}; what is shown here is {shown}")]
     OtherProfile {

@@ -104,7 +104,7 @@ impl StreamWorker {
     fn frame(&mut self, frame: &Frame) {
         match self.performers.get_mut(frame.actor.index()) {
             Some(performer) => {
-                performer.push(frame, &mut |event| self.broadcast.keep(event));
+                self.broadcast.keep(performer.push(frame));
                 self.cells
                     .admits_strangers(frame.actor, performer.admits_strangers());
                 let frames = &mut self.frames[frame.actor.index()];
@@ -120,13 +120,13 @@ impl StreamWorker {
 
     fn set_rig(&mut self, actor: PerformerId, rig: &Arc<Rig>) {
         if let Some(performer) = self.performers.get_mut(actor.index()) {
-            performer.set_rig(rig, &mut |event| self.broadcast.keep(event));
+            self.broadcast.keep(performer.set_rig(rig));
         }
     }
 
     fn gone(&mut self, actor: PerformerId) {
         if let Some(performer) = self.performers.get_mut(actor.index()) {
-            performer.finish(&mut |event| self.broadcast.keep(event));
+            self.broadcast.keep(performer.finish());
             self.cells.diagnosis(actor, performer.diagnosis());
             self.cells
                 .admits_strangers(actor, performer.admits_strangers());

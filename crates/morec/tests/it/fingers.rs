@@ -134,19 +134,18 @@ fn fists_of_a_body_are_recognised_where_fingers_count() {
         roles: stranger.roles.clone(),
     };
     let mut ends = Vec::new();
-    let mut say = |event: morec::live::Event| {
-        if event.phase == Phase::End {
-            ends.push(event.detection());
-        }
+    let mut say = |events: &[morec::live::Event]| {
+        let of_end = events.iter().filter(|event| event.phase == Phase::End);
+        ends.extend(of_end.map(morec::live::Event::detection));
     };
-    performer.set_rig(&Arc::new(rig), &mut say);
+    performer.set_rig(&Arc::new(rig));
     let mut frame = Frame::default();
     for_each_world_pose(&stranger.clip, &stranger.rest, |time_secs, world| {
         frame.time_secs = time_secs;
         frame.pose.clone_from(world);
-        performer.push(&frame, &mut say);
+        say(performer.push(&frame));
     });
-    performer.finish(&mut say);
+    say(performer.finish());
     assert_eq!(ends, found);
 }
 

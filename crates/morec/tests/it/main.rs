@@ -23,6 +23,7 @@ mod layers;
 mod living_room;
 mod made;
 mod parameters;
+mod performer_stream;
 mod pose_golden;
 mod positions;
 mod rows;

@@ -98,16 +98,11 @@ fn parts_that_were_announced_and_are_never_seen_are_left_out() {
     // Sees the legs from then on.
     let recognised = |legs_from_secs: f64| {
         let mut performer = Performer::new(&model, PerformerId(0), &EventOptions::default());
-        performer.set_rig(&Rig::of_roles().into(), &mut |_| {});
+        performer.set_rig(&Rig::of_roles().into());
         // As a caller does who has announced everything.
         performer.announce(BoneSet::BODY).unwrap();
         let (mut frame, mut found) = (Frame::default(), Vec::new());
         let mut looked_at = vec![BoneSet::BODY.len()];
-        let mut take_event = |event: morec::live::Event| {
-            if event.phase == Phase::End {
-                found.push((event.class, event.span.stop_secs));
-            }
-        };
         for_each_pose(
             &take.clip,
             &take.roles,
@@ -121,14 +116,18 @@ fn parts_that_were_announced_and_are_never_seen_are_left_out() {
                 }
                 frame.time_secs = secs;
                 frame.set_key_pose(&pose);
-                performer.push(&frame, &mut take_event);
+                let ends = performer.push(&frame).iter();
+                let ends = ends.filter(|event| event.phase == Phase::End);
+                found.extend(ends.map(|event| (event.class, event.span.stop_secs)));
                 let bones = performer.bones().unwrap().len();
                 if looked_at.last() != Some(&bones) {
                     looked_at.push(bones);
                 }
             },
         );
-        performer.finish(&mut take_event);
+        let ends = performer.finish().iter();
+        let ends = ends.filter(|event| event.phase == Phase::End);
+        found.extend(ends.map(|event| (event.class, event.span.stop_secs)));
         (looked_at, found)
     };
     let (looked_at, all) = recognised(0.0);

@@ -16,7 +16,7 @@ use morec::templates::TemplateModel;
 use crate::engines::{Played, ended, inline};
 use crate::made::{self, Timed};
 
-fn stream() -> Vec<Timed> {
+pub fn stream() -> Vec<Timed> {
     let person = Person {
         hand: LimbSide::Right,
         ..Person::draw(90, 1)
@@ -72,8 +72,15 @@ impl Source for Scripted {
     }
 }
 
+fn tentative() -> EventOptions {
+    EventOptions {
+        tentative: true,
+        ..EventOptions::default()
+    }
+}
+
 fn run(steps: Vec<Step>) -> (Vec<Event>, morec::live::Status) {
-    run_with(&made::model(), EventOptions::default(), steps)
+    run_with(&made::model(), tentative(), steps)
 }
 
 fn run_with(
@@ -184,7 +191,7 @@ fn an_activity_is_heard_of_every_second_and_its_repetitions_are_counted() {
     let model = Arc::new(made::activity_model());
     let poses = made::poses(&made::waving(3)).1;
     let steps = || vec![rig(0, Rig::of_roles()), Step::Frames(0, poses.clone())];
-    let (events, _) = run_with(&model, EventOptions::default(), steps());
+    let (events, _) = run_with(&model, tentative(), steps());
     let (end, going_on) = events.split_last().unwrap();
     assert_eq!(end.phase, Phase::End);
     let told: Vec<&Event> = going_on.iter().filter(|e| e.motion == end.motion).collect();
@@ -202,7 +209,6 @@ fn an_activity_is_heard_of_every_second_and_its_repetitions_are_counted() {
     assert!((7..=9).contains(&repeated.count), "{repeated:?}");
 
     let options = EventOptions {
-        early: false,
         each_repetition: true,
         ..Default::default()
     };

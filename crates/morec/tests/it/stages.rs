@@ -131,7 +131,7 @@ fn events_are_those_of_the_inline_layout_to_the_bit() {
     for model in [trained(SvrdmTrainParams::faithful()).0, tuned()] {
         for refractory_secs in [0.0, 5.0] {
             let events = EventOptions {
-                early: true,
+                tentative: true,
                 each_repetition: false,
                 refractory_secs,
             };

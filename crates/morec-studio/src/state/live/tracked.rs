@@ -46,16 +46,16 @@ impl LivePerformer {
             frames: VecDeque::new(),
             speeds: VecDeque::new(),
             gone: false,
-            performer: model.map(|m| Performer::new(m, actor, &EventOptions::default())),
+            performer: model.map(|m| recogniser(m, actor)),
         }
     }
 
     /// Recognises with this model from the next frame on. What went on with the last one is reported before.
     pub fn recognise_with(&mut self, model: &Model, events: &mut Vec<Event>) {
         self.finish(events);
-        let mut performer = Performer::new(model, self.actor, &EventOptions::default());
+        let mut performer = recogniser(model, self.actor);
         if let Some(rig) = &self.rig {
-            performer.set_rig(rig, &mut |_| {});
+            performer.set_rig(rig);
         }
         self.performer = Some(performer);
     }
@@ -63,13 +63,13 @@ impl LivePerformer {
     /// Ends the motions that are under way.
     pub fn finish(&mut self, events: &mut Vec<Event>) {
         if let Some(performer) = &mut self.performer {
-            performer.finish(&mut |event| events.push(event));
+            events.extend_from_slice(performer.finish());
         }
     }
 
     pub fn set_rig(&mut self, rig: Arc<Rig>, events: &mut Vec<Event>) {
         if let Some(performer) = &mut self.performer {
-            performer.set_rig(&rig, &mut |event| events.push(event));
+            events.extend_from_slice(performer.set_rig(&rig));
         }
         // Frames of another skeleton cannot stand beside these.
         let other = self
@@ -94,7 +94,7 @@ impl LivePerformer {
             self.body = Body::new(&parents, &rig.roles, &frame.pose);
         }
         if let Some(performer) = &mut self.performer {
-            performer.push(frame, &mut |event| events.push(event));
+            events.extend_from_slice(performer.push(frame));
         }
         self.gone = false;
         self.now_secs = frame.time_secs;
@@ -169,4 +169,13 @@ impl LivePerformer {
         let pose = |f: &Frame| (f.time_secs, f.key_pose(rig));
         self.frames.iter().map(pose).collect()
     }
+}
+
+/// The window shows what seems to be under way.
+fn recogniser(model: &Model, actor: PerformerId) -> Performer {
+    let options = EventOptions {
+        tentative: true,
+        ..EventOptions::default()
+    };
+    Performer::new(model, actor, &options)
 }

@@ -8,6 +8,7 @@ use std::time::Duration;
 use crate::live::broadcast::EventBroadcast;
 use crate::live::broadcast::WorkerOptions;
 use crate::live::early::EarlyTracker;
+use crate::live::event_buffer::EventBuffer;
 use crate::live::event_tracker::EventTracker;
 use crate::live::status::SessionCounters;
 use crate::live::{Detection, MAX_PERFORMERS, PerformerId, wall_now_secs};
@@ -31,6 +32,7 @@ struct TrackedPerformer {
     tracker: EventTracker,
     /// Nothing is reported early by this method.
     early: EarlyTracker,
+    out: EventBuffer,
 }
 
 impl Tracking {
@@ -44,12 +46,9 @@ impl Tracking {
         let performer = |actor| TrackedPerformer {
             tracking: SegmentTracking::of_model(model, scoring),
             column: vec![Cell::NOTHING; model.params.lengths()],
-            tracker: EventTracker::new(
-                PerformerId(actor as u16),
-                model.classes.len(),
-                options.events.refractory_secs,
-            ),
+            tracker: EventTracker::new(model.classes.len(), options.events.refractory_secs),
             early: EarlyTracker::default(),
+            out: EventBuffer::new(PerformerId(actor as u16)),
         };
         Self {
             performers: (0..MAX_PERFORMERS).map(performer).collect(),
@@ -92,18 +91,20 @@ impl Tracking {
                     column,
                     tracker,
                     early,
+                    out,
                 } = performer;
-                let (frames, broadcast) = (self.chunk_frames, &mut self.broadcast);
+                let frames = self.chunk_frames;
+                out.clear();
+                out.arrive(wall_secs);
                 let mut tell = |found: ChunkDetection| {
                     let detection = detection(&found, &message.mark, frames);
-                    tracker.emit(&detection, early, wall_secs, &mut |event| {
-                        broadcast.keep(event)
-                    });
+                    tracker.emit(&detection, early, out);
                 };
                 match message.what {
                     What::Column => tracking.push(column, &mut tell),
                     _ => tracking.finish(&mut tell),
                 }
+                self.broadcast.keep(out.events());
                 column.fill(Cell::NOTHING);
                 if let What::End(End::Gone) = message.what {
                     tracker.forget();

@@ -6,7 +6,8 @@ use std::str::FromStr;
 use crate::math::{Axis, Quat, Vec3};
 
 /// An axis with a direction; written `y`, `-z`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
+#[serde(try_from = "String")]
 pub struct SignedAxis {
     /// The axis.
     pub axis: Axis,
@@ -38,6 +39,14 @@ impl SignedAxis {
             (Axis::X, false) => Axis::Z.rotation(FRAC_PI_2),
             (Axis::X, true) => Axis::Z.rotation(-FRAC_PI_2),
         }
+    }
+}
+
+impl TryFrom<String> for SignedAxis {
+    type Error = NoAxis;
+
+    fn try_from(text: String) -> Result<Self, NoAxis> {
+        text.parse()
     }
 }
 

@@ -1,0 +1,160 @@
+//! Options of a stream.
+
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+
+use super::{EventOptions, Model, SensitivityError};
+use crate::SignedAxis;
+use crate::index::PerformerError;
+use crate::roles::mapping::Mapping;
+use crate::templates::PerformerKind;
+
+/// The longest [`StreamOptions::refractory_secs`].
+const MOST_REFRACTORY_SECS: f64 = 3600.0;
+
+/// Options of one performer's stream, the same behind every door: names and defaults of the command, of Python's keywords, of the
+/// npm package's objects and of the engines' properties are these.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct StreamOptions {
+    /// False alarms a minute that background motion may raise, as in training: 0.1 is strict, 1 is generous. As trained, unless given.
+    pub sensitivity: Option<f64>,
+    /// The expected performer: `auto`, `teacher`, `anyone`.
+    pub performer: PerformerKind,
+    /// Report what seems to be under way, too: events of the phases start, update and cancel.
+    pub tentative: bool,
+    /// Make each repetition of an activity an event of its own, of the phase repetition.
+    pub each_repetition: bool,
+    /// A motion of the same class that ends less than this after the one before it is not reported, seconds.
+    pub refractory_secs: f64,
+    /// Roles of joints or points whose names do not tell them.
+    pub roles: Mapping,
+    /// The axis that points up in the stream; `-y` for landmarks of pictures.
+    pub up: SignedAxis,
+}
+
+impl Default for StreamOptions {
+    fn default() -> Self {
+        Self {
+            sensitivity: None,
+            performer: PerformerKind::default(),
+            tentative: false,
+            each_repetition: false,
+            refractory_secs: 0.0,
+            roles: Mapping::default(),
+            up: SignedAxis::Y,
+        }
+    }
+}
+
+/// An option that cannot be; its text begins with the option's name.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum OptionError {
+    /// There is no option of a name, or it cannot have the value.
+    #[error("{0}")]
+    Value(String),
+    /// The index does not have this sensitivity.
+    #[error("sensitivity: {0}")]
+    Sensitivity(#[from] SensitivityError),
+    /// The index does not have a gate for this performer.
+    #[error("performer: {0}")]
+    Performer(#[from] PerformerError),
+    /// A time below 0, or no number.
+    #[error("refractory_secs: expected 0 to {MOST_REFRACTORY_SECS}, found {0}")]
+    Refractory(f64),
+}
+
+impl StreamOptions {
+    /// Options from the text of a JSON object; what is not in it, or null, is as usual.
+    ///
+    /// # Errors
+    /// The option that does not exist, or that cannot have its value.
+    pub fn from_json(text: &str) -> Result<Self, OptionError> {
+        let given: Map<String, Value> =
+            serde_json::from_str(text).map_err(|e| OptionError::Value(format!("options: {e}")))?;
+        let given = given.into_iter().filter(|(_, value)| !value.is_null());
+        let mut options = Map::new();
+        for (name, value) in given {
+            let one = Value::Object(Map::from_iter([(name.clone(), value.clone())]));
+            let read = serde_json::from_value::<Self>(one);
+            read.map_err(|error| OptionError::Value(format!("{name}: {error}")))?;
+            options.insert(name, value);
+        }
+        serde_json::from_value(Value::Object(options))
+            .map_err(|error| OptionError::Value(error.to_string()))
+    }
+
+    /// `model` with the sensitivity and for the performer of these options.
+    ///
+    /// # Errors
+    /// The model notes no rates of false alarms, has no gate for others than the teacher, or the sensitivity makes no sense.
+    pub fn tuned(&self, mut model: Model) -> Result<Model, OptionError> {
+        if let Some(alarms_per_minute) = self.sensitivity {
+            model = model.with_sensitivity(alarms_per_minute)?;
+        }
+        if self.performer != PerformerKind::Auto {
+            model = model.with_performer(self.performer)?;
+        }
+        Ok(model)
+    }
+
+    /// The selection and rate of events.
+    ///
+    /// # Errors
+    /// A refractory time below 0 or above an hour.
+    pub fn events(&self) -> Result<EventOptions, OptionError> {
+        if !(0.0..=MOST_REFRACTORY_SECS).contains(&self.refractory_secs) {
+            return Err(OptionError::Refractory(self.refractory_secs));
+        }
+        Ok(EventOptions {
+            tentative: self.tentative,
+            each_repetition: self.each_repetition,
+            refractory_secs: self.refractory_secs,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn options_come_back_from_json_and_mistakes_are_named() {
+        let options = StreamOptions {
+            sensitivity: Some(0.5),
+            performer: PerformerKind::Anyone,
+            tentative: true,
+            roles: Mapping::read(b"hips\tLHip+RHip\nleft_hand\tLWrist\nneck\t-").unwrap(),
+            up: "-z".parse().unwrap(),
+            ..StreamOptions::default()
+        };
+        let text = serde_json::to_string(&options).unwrap();
+        assert!(text.contains(r#""neck":null"#), "{text}");
+        assert_eq!(StreamOptions::from_json(&text).unwrap(), options);
+        let error = |text: &str| StreamOptions::from_json(text).unwrap_err().to_string();
+        let unknown = error(r#"{"early":true}"#);
+        assert!(unknown.starts_with("early: unknown field"), "{unknown}");
+        assert!(unknown.contains("tentative"), "{unknown}");
+        assert!(error(r#"{"up":"w"}"#).starts_with("up: expected x, y, z"));
+        assert!(error(r#"{"performer":"me"}"#).contains("`auto`, `teacher`, `anyone`"));
+        let role = error(r#"{"roles":{"nose":"a"}}"#);
+        assert!(role.starts_with("roles: line 1: expected a role"), "{role}");
+        assert_eq!(
+            StreamOptions::from_json(r#"{"roles":null}"#).unwrap(),
+            StreamOptions::default()
+        );
+        let refused = |refractory_secs| {
+            let options = StreamOptions {
+                refractory_secs,
+                ..StreamOptions::default()
+            };
+            options.events().unwrap_err().to_string()
+        };
+        assert_eq!(
+            refused(-1.0),
+            "refractory_secs: expected 0 to 3600, found -1"
+        );
+        assert!(refused(f64::NAN).ends_with("found NaN"));
+    }
+}
