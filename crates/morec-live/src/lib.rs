@@ -39,6 +39,7 @@ mod notices;
 pub mod osc;
 mod places;
 mod playable;
+mod ready;
 mod sink;
 mod sinks;
 mod sources;

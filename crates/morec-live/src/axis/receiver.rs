@@ -1,13 +1,13 @@
 //! Frames to poses, performer by performer.
 
-use std::collections::VecDeque;
 use std::sync::Arc;
 
 use super::clock::FrameClock;
 use super::decoder::{AxisDecoder, AxisError, AxisFrame};
 use super::{AXIS_BONE_COUNT, AxisSkeleton};
+use crate::ready::ReadyItems;
 use morec::live::{
-    Arrival, Frame, PerformerId, PerformerTable, Rig, SourceCounts, SourceEvent, largest_holder,
+    Arrival, Frame, PerformerTable, Rig, SourceCounts, SourceEvent, SourceItem, largest_holder,
 };
 use morec::math::{Axis, Quat, Vec3};
 
@@ -54,8 +54,7 @@ struct Followed {
     performers: PerformerTable<(u128, u32)>,
     /// For each place.
     avatars: Vec<Avatar>,
-    items: VecDeque<AxisItem>,
-    spare: Vec<Frame>,
+    ready: ReadyItems,
     counts: SourceCounts,
     begun_secs: Option<f64>,
 }
@@ -67,13 +66,6 @@ struct Avatar {
     clock: FrameClock,
 }
 
-#[derive(Debug)]
-enum AxisItem {
-    Frame(Frame),
-    Rig(PerformerId),
-    Gone(PerformerId),
-}
-
 impl AxisReceiver {
     /// A receiver that has heard nothing yet.
     pub fn new(options: &AxisOptions) -> Self {
@@ -82,8 +74,7 @@ impl AxisReceiver {
             rig: Arc::new(Rig { skeleton, roles }),
             performers: PerformerTable::new(options.actors),
             avatars: Vec::new(),
-            items: VecDeque::new(),
-            spare: Vec::new(),
+            ready: ReadyItems::default(),
             counts: SourceCounts::default(),
             begun_secs: None,
         };
@@ -145,32 +136,24 @@ impl AxisReceiver {
     pub fn lost(&mut self) {
         self.cut();
         let Followed {
-            performers, items, ..
+            performers, ready, ..
         } = &mut self.followed;
-        performers.leave_if(|_| true, |actor| items.push_back(AxisItem::Gone(actor)));
+        performers.leave_if(|_| true, |actor| ready.push(SourceItem::Gone(actor)));
     }
 
     /// Time passes: says who has gone.
     pub fn tick(&mut self, now_secs: f64) {
         let Followed {
-            performers, items, ..
+            performers, ready, ..
         } = &mut self.followed;
         performers.leave_silent(now_secs, GONE_SECS, |actor| {
-            items.push_back(AxisItem::Gone(actor));
+            ready.push(SourceItem::Gone(actor));
         });
     }
 
     /// The next complete event, oldest first; fills `frame` for [`SourceEvent::Frame`].
     pub fn next(&mut self, frame: &mut Frame) -> Option<SourceEvent> {
-        Some(match self.followed.items.pop_front()? {
-            AxisItem::Frame(mut full) => {
-                std::mem::swap(frame, &mut full);
-                self.followed.spare.push(full);
-                SourceEvent::Frame
-            }
-            AxisItem::Rig(actor) => SourceEvent::Rig(actor, self.followed.rig.clone()),
-            AxisItem::Gone(actor) => SourceEvent::Gone(actor),
-        })
+        self.followed.ready.next(frame)
     }
 }
 
@@ -185,8 +168,8 @@ impl Followed {
         };
         let present = self.performers.present().copied();
         if let Some(last) = present.filter(|(machine, _)| *machine == largest).last() {
-            let items = &mut self.items;
-            let gone = |actor| items.push_back(AxisItem::Gone(actor));
+            let ready = &mut self.ready;
+            let gone = |actor| ready.push(SourceItem::Gone(actor));
             self.performers.leave_if(|key| *key == last, gone);
         }
     }
@@ -210,7 +193,7 @@ impl Followed {
             Arrival::New => self.avatars.push(Avatar::default()),
         }
         if matches!(arrival, Arrival::New | Arrival::Replaced) {
-            self.items.push_back(AxisItem::Rig(actor));
+            self.ready.push(SourceItem::Rig(actor, self.rig.clone()));
         }
         if matches!(arrival, Arrival::Returned | Arrival::Replaced) {
             self.counts.interruptions += 1;
@@ -222,12 +205,12 @@ impl Followed {
             return;
         }
         avatar.frame = Some(frame.number);
-        let mut full = self.spare.pop().unwrap_or_default();
+        let mut full = self.ready.spare();
         full.time_secs = avatar.clock.stamp(frame.number, now_secs - begun_secs);
         full.wall_secs = now_secs;
         full.actor = actor;
         pose(&self.rig, frame, &mut full);
-        self.items.push_back(AxisItem::Frame(full));
+        self.ready.push(SourceItem::Frame(full));
     }
 }
 

@@ -3,10 +3,13 @@
 //! After the specification V3.1 (sh-akira/VirtualMotionCaptureProtocol). [`VmcReceiver`] makes frames of packets,
 //! [`VmcSender`] packets of frames: both take and give bytes, whoever has the socket. [`VmcSource`] is a receiver with a socket.
 
+mod assembly;
 mod clock;
+mod datagram;
 mod message;
 mod peers;
 mod receiver;
+mod receiver_options;
 mod rest;
 mod sender;
 mod skeleton;
@@ -19,7 +22,8 @@ pub use message::{
 };
 pub use morec::humanoid::{HUMANOID, HUMANOID_BONES, HumanoidBone, bone_of_name};
 pub use peers::Peer;
-pub use receiver::{VmcOptions, VmcReceiver};
+pub use receiver::VmcReceiver;
+pub use receiver_options::VmcOptions;
 pub use rest::is_t_pose;
 pub use sender::{Bundling, VmcSender};
 pub use source::VmcSource;

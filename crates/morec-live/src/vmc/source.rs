@@ -4,7 +4,8 @@ use std::io::ErrorKind;
 use std::net::{SocketAddr, UdpSocket};
 use std::time::Duration;
 
-use super::receiver::{VmcOptions, VmcReceiver};
+use super::receiver::VmcReceiver;
+use super::receiver_options::VmcOptions;
 use morec::live::{Frame, Source, SourceCounts, SourceEvent, wall_now_secs};
 
 use crate::address::openness;

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 pub(super) use super::waker::Waker;
 
 use super::waker::NAP;
-use super::{Frame, PerformerId, Rig};
+use super::{Frame, PerformerId, Rig, SourceItem};
 
 /// Fate of a frame that arrives while earlier frames still wait for recognition.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -19,12 +19,7 @@ pub enum OverflowPolicy {
 }
 
 /// An item of the ring.
-#[derive(Debug)]
-pub(super) enum QueueItem {
-    Frame(Box<Frame>),
-    Rig(PerformerId, Arc<Rig>),
-    Gone(PerformerId),
-}
+pub(super) type QueueItem = SourceItem<Box<Frame>>;
 
 /// Room for skeletons beside the frames, so that these are never dropped for lack of it.
 const BESIDE_FRAMES: usize = 16;

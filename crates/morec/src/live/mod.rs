@@ -104,7 +104,7 @@ pub use recording::{Recording, RecordingError};
 pub use session::{Session, SessionOptions, Threading};
 pub use session_error::SessionError;
 pub use shown::ShownBones;
-pub use source::{Source, SourceCounts, SourceEvent};
+pub use source::{Source, SourceCounts, SourceEvent, SourceItem};
 pub use start::StartError;
 pub use status::{MAX_PERFORMERS, PerformerStatus, Status, StatusHandle};
 pub use stream_options::{OptionError, StreamOptions};

@@ -19,6 +19,17 @@ pub enum SourceEvent {
     Ended,
 }
 
+/// Something of a source's performers on its way, a frame as `F`.
+#[derive(Debug)]
+pub enum SourceItem<F> {
+    /// A frame.
+    Frame(F),
+    /// From now on this performer has this skeleton.
+    Rig(PerformerId, Arc<Rig>),
+    /// This performer has stopped sending, for now.
+    Gone(PerformerId),
+}
+
 /// Counts of a source since its beginning. Those that do not apply stay 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
 pub struct SourceCounts {

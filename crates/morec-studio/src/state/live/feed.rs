@@ -16,7 +16,7 @@ const PAUSE_SECS: f64 = 1.0;
 const WAITING: usize = 16_384;
 
 /// Something that a source said.
-pub enum SourceItem {
+pub enum LiveItem {
     Rig(PerformerId, Arc<Rig>),
     Frame(Box<Frame>),
     Gone(PerformerId),
@@ -31,7 +31,7 @@ pub enum Feed {
 
 impl Feed {
     /// Appends what has come while `dt` seconds passed on the wall.
-    pub fn poll(&mut self, dt: f64, out: &mut Vec<SourceItem>) {
+    pub fn poll(&mut self, dt: f64, out: &mut Vec<LiveItem>) {
         match self {
             Feed::Clip(feed) => feed.poll(dt, out),
             Feed::Thread(feed) => feed.poll(out),
@@ -121,17 +121,17 @@ impl ClipFeed {
         (self.next_secs() - self.now_secs).max(0.0) / self.speed.max(1e-3)
     }
 
-    fn poll(&mut self, dt: f64, out: &mut Vec<SourceItem>) {
+    fn poll(&mut self, dt: f64, out: &mut Vec<LiveItem>) {
         if !self.announced {
             self.announced = true;
             let rig = Rig {
                 skeleton: self.motion.clip.skeleton.clone(),
                 roles: self.motion.roles.clone(),
             };
-            out.push(SourceItem::Rig(PerformerId(0), Arc::new(rig)));
+            out.push(LiveItem::Rig(PerformerId(0), Arc::new(rig)));
         }
         if std::mem::take(&mut self.leapt) {
-            out.push(SourceItem::Gone(PerformerId(0)));
+            out.push(LiveItem::Gone(PerformerId(0)));
         }
         self.now_secs += dt.max(0.0) * self.speed;
         let motion = self.motion.clone();
@@ -141,7 +141,7 @@ impl ClipFeed {
             if self.next_frame >= clip.frames {
                 self.laps.push((time_secs + PAUSE_SECS, begin));
                 self.next_frame = begin;
-                out.push(SourceItem::Gone(PerformerId(0)));
+                out.push(LiveItem::Gone(PerformerId(0)));
                 continue;
             }
             let mut frame = Frame {
@@ -152,7 +152,7 @@ impl ClipFeed {
             };
             frame.pose.set(clip, self.next_frame);
             self.next_frame += 1;
-            out.push(SourceItem::Frame(Box::new(frame)));
+            out.push(LiveItem::Frame(Box::new(frame)));
         }
     }
 }
@@ -163,7 +163,7 @@ fn first(motion: &ClipMotion) -> usize {
 
 /// A source that is asked on a thread of its own.
 pub struct ThreadFeed {
-    items: Receiver<SourceItem>,
+    items: Receiver<LiveItem>,
     counts: Receiver<SourceCounts>,
     last: std::cell::Cell<SourceCounts>,
     stop: Arc<AtomicBool>,
@@ -187,13 +187,13 @@ impl ThreadFeed {
         })
     }
 
-    fn poll(&mut self, out: &mut Vec<SourceItem>) {
+    fn poll(&mut self, out: &mut Vec<LiveItem>) {
         loop {
             match self.items.try_recv() {
                 Ok(item) => out.push(item),
                 Err(TryRecvError::Empty) => return,
                 Err(TryRecvError::Disconnected) => {
-                    out.push(SourceItem::Ended);
+                    out.push(LiveItem::Ended);
                     return;
                 }
             }
@@ -216,7 +216,7 @@ impl Drop for ThreadFeed {
 
 fn ask(
     mut source: Box<dyn Source>,
-    sender: &SyncSender<SourceItem>,
+    sender: &SyncSender<LiveItem>,
     counter: &SyncSender<SourceCounts>,
     stop: &AtomicBool,
     wake: &Wake,
@@ -224,16 +224,16 @@ fn ask(
     let mut frame = Frame::default();
     while !stop.load(Ordering::Relaxed) {
         let item = match source.next(&mut frame) {
-            SourceEvent::Frame => SourceItem::Frame(Box::new(frame.clone())),
-            SourceEvent::Rig(actor, rig) => SourceItem::Rig(actor, rig),
-            SourceEvent::Gone(actor) => SourceItem::Gone(actor),
+            SourceEvent::Frame => LiveItem::Frame(Box::new(frame.clone())),
+            SourceEvent::Rig(actor, rig) => LiveItem::Rig(actor, rig),
+            SourceEvent::Gone(actor) => LiveItem::Gone(actor),
             SourceEvent::Quiet => {
                 // Nobody has asked for the last ones yet: these are newer, and come with the next.
                 let _ = counter.try_send(source.counts());
                 continue;
             }
             SourceEvent::Ended => {
-                let _ = sender.send(SourceItem::Ended);
+                let _ = sender.send(LiveItem::Ended);
                 wake();
                 return;
             }

@@ -7,7 +7,7 @@ use morec::index::MotionIndex;
 use morec::live::{EarlyDetection, Event, Frame, Model, PerformerId, Phase};
 use morec_db::ClipId;
 
-use super::feed::{Feed, SourceItem};
+use super::feed::{Feed, LiveItem};
 use super::tracked::LivePerformer;
 use crate::state::player::LONGEST_FRAME;
 
@@ -104,12 +104,12 @@ impl Run {
         }
         for item in items {
             match item {
-                SourceItem::Rig(actor, rig) => {
+                LiveItem::Rig(actor, rig) => {
                     if let Some(performer) = self.performer(actor) {
                         performer.set_rig(rig, &mut events);
                     }
                 }
-                SourceItem::Frame(frame) => {
+                LiveItem::Frame(frame) => {
                     self.silent_secs = 0.0;
                     self.now_secs = self.now_secs.max(frame.time_secs);
                     let Some(performer) = self.performer(frame.actor) else {
@@ -120,13 +120,13 @@ impl Run {
                         frames.push(*frame);
                     }
                 }
-                SourceItem::Gone(actor) => {
+                LiveItem::Gone(actor) => {
                     if let Some(performer) = self.performer(actor) {
                         performer.finish(&mut events);
                         performer.gone = true;
                     }
                 }
-                SourceItem::Ended => self.ended = true,
+                LiveItem::Ended => self.ended = true,
             }
         }
         self.take_events(&events);
