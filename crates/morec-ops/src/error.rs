@@ -5,6 +5,7 @@ use morec::eval::EvalError;
 use morec::index::IndexError;
 use morec::live::OptionError;
 use morec::train::{DataError, TrainError};
+#[cfg(feature = "db")]
 use morec_db::DbError;
 
 use crate::ParamError;
@@ -38,6 +39,7 @@ pub enum OperationError {
     #[error(transparent)]
     Index(#[from] IndexError),
     /// The database cannot be read.
+    #[cfg(feature = "db")]
     #[error(transparent)]
     Database(#[from] DbError),
 }
@@ -50,6 +52,7 @@ impl OperationError {
             OperationError::Crossval(CrossvalError::Train { source, .. }) => {
                 *source == TrainError::Cancelled
             }
+            #[cfg(feature = "db")]
             OperationError::Database(error) => matches!(error, DbError::Cancelled),
             _ => false,
         }

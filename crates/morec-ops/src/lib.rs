@@ -4,7 +4,8 @@
 //! Python function and what the studio's panel sets (serde), and [`arguments`] writes them as the command line that does the
 //! same. The operation is a method of them: material in, progress on the way, a report out.
 //!
-//! ```no_run
+#![cfg_attr(feature = "db", doc = "```no_run")]
+#![cfg_attr(not(feature = "db"), doc = "```ignore")]
 //! use morec_db::MotionDb;
 //! use morec_ops::{MaterialBeside, TrainSettings, arguments, training_data};
 //!
@@ -19,39 +20,65 @@
 //! # }
 //! ```
 
+#[cfg(feature = "db")]
 mod arguments;
+#[cfg(feature = "db")]
 mod crossval;
+#[cfg(feature = "db")]
 mod curve;
+#[cfg(feature = "db")]
 mod cut;
+#[cfg(feature = "db")]
 mod discover;
 mod error;
+#[cfg(feature = "db")]
 mod evaluate;
+#[cfg(feature = "db")]
 mod group;
+#[cfg(feature = "db")]
 mod import;
+#[cfg(feature = "db")]
 mod material;
 mod params;
+#[cfg(feature = "db")]
 mod propose;
 mod recognize;
+#[cfg(feature = "db")]
 mod search;
 mod text;
 mod train;
+#[cfg(feature = "clap")]
 mod words;
 
+#[cfg(feature = "db")]
 pub use arguments::arguments;
+#[cfg(feature = "db")]
 pub use crossval::{CrossvalMeasures, CrossvalSettings, LeftOut};
+#[cfg(feature = "db")]
 pub use curve::{CurveFigures, CurvePoint, LearningCurve};
+#[cfg(feature = "db")]
 pub use cut::{CutMethod, CutSettings};
+#[cfg(feature = "db")]
 pub use discover::{
     AloneStretch, DiscoverClip, DiscoverSettings, DiscoveredSet, DiscoveredSets, DiscoveredStretch,
 };
 pub use error::OperationError;
+#[cfg(feature = "db")]
 pub use evaluate::{EvaluateMeasures, EvaluateSettings};
+#[cfg(feature = "db")]
 pub use group::{GroupMethod, GroupSettings, GroupedStretch, Grouping, Shapes, largest_first};
+#[cfg(feature = "db")]
 pub use import::{CopiedClip, ImportSettings, ImportedFiles};
+#[cfg(feature = "db")]
 pub use material::{MaterialBeside, accepted_labels, training_data};
 pub use params::{Param, ParamError, from_fields};
+#[cfg(feature = "db")]
 pub use propose::ProposeSettings;
-pub use recognize::{RecognizeSettings, StreamSettings};
+pub use recognize::RecognizeSettings;
+#[cfg(feature = "clap")]
+pub use recognize::StreamSettings;
+#[cfg(feature = "db")]
 pub use search::{SearchSettings, example_of_clip, example_of_database};
 pub use train::{Method, TrainSettings, Unlabelled};
+#[cfg(feature = "clap")]
 pub use words::share;

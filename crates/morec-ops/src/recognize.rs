@@ -5,23 +5,25 @@ use morec::templates::PerformerKind;
 use serde::{Deserialize, Serialize};
 
 use crate::OperationError;
+#[cfg(feature = "clap")]
 use crate::words::choices;
 
 /// Readiness to report motions.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, clap::Args)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
 #[serde(default, deny_unknown_fields)]
 pub struct RecognizeSettings {
     /// False alarms a minute that background motion may raise, as in training: 0.1 is strict, 1 is generous [default:
     /// as trained, usually 0.3]
-    #[arg(long, value_name = "ALARMS")]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "ALARMS"))]
     pub sensitivity: Option<f64>,
     /// Who performs: auto raises the bound of the score to half of the performer's recent scores, from the fourth report
     /// on; teacher raises it from the first frame by the scores of the teacher's samples, anyone never raises it [default: auto]
-    #[arg(long, value_parser = choices::<PerformerKind>([
+    #[cfg_attr(feature = "clap", arg(long, value_parser = choices::<PerformerKind>([
         ("auto", "Whoever it is"),
         ("teacher", "The person who taught"),
         ("anyone", "Somebody else"),
-    ]))]
+    ])))]
     pub performer: Option<PerformerKind>,
 }
 
@@ -45,6 +47,7 @@ impl RecognizeSettings {
 }
 
 /// Options of a live stream: those of [`StreamOptions`], as a command line says them.
+#[cfg(feature = "clap")]
 #[derive(Debug, Clone, Default, PartialEq, clap::Args)]
 pub struct StreamSettings {
     /// Readiness to report motions.
@@ -61,6 +64,7 @@ pub struct StreamSettings {
     pub refractory_secs: f64,
 }
 
+#[cfg(feature = "clap")]
 impl StreamSettings {
     /// The options.
     pub fn options(&self) -> StreamOptions {

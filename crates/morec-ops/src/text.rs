@@ -19,6 +19,7 @@ where
 }
 
 /// Lists of them.
+#[cfg(feature = "db")]
 pub(crate) mod list {
     use super::*;
 

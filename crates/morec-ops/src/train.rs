@@ -3,73 +3,89 @@
 use morec::features::BoneSet;
 use morec::index::MotionIndex;
 use morec::progress::Progress;
-use morec::reproduce::Setting;
 use morec::svrdm::SegmentDistance;
-use morec::train::thesis::{SvrdmOptions, SvrdmTrainParams};
+use morec::train::thesis::{Setting, SvrdmOptions, SvrdmTrainParams};
 use morec::train::{
     Everyday, Mirror, Recipe, TrainOptions, TrainParams, TrainingData, TrainingReport, train_index,
 };
 use serde::{Deserialize, Serialize};
 
 use crate::params::{self, Param, ParamError};
+#[cfg(feature = "clap")]
 use crate::words::choices;
 use crate::{OperationError, text};
 
 /// How an index is trained.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, clap::Args)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
 #[serde(default, deny_unknown_fields)]
-#[command(next_help_heading = "Training")]
+#[cfg_attr(feature = "clap", command(next_help_heading = "Training"))]
 pub struct TrainSettings {
     /// Learn only these classes, separated by commas [default: every class of the labels]
-    #[arg(long, value_delimiter = ',', value_name = "CLASSES")]
+    #[cfg_attr(
+        feature = "clap",
+        arg(long, value_delimiter = ',', value_name = "CLASSES")
+    )]
     pub classes: Vec<String>,
     /// The method of recognition
-    #[arg(long, value_enum, default_value = "auto")]
+    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value = "auto"))]
     pub method: Method,
     /// With --method auto: classes that are activities whatever their samples say, separated by commas
-    #[arg(long, value_delimiter = ',', value_name = "CLASSES")]
+    #[cfg_attr(
+        feature = "clap",
+        arg(long, value_delimiter = ',', value_name = "CLASSES")
+    )]
     pub activities: Vec<String>,
     /// With --method auto: classes that are gestures whatever their samples say, separated by commas
-    #[arg(long, value_delimiter = ',', value_name = "CLASSES")]
+    #[cfg_attr(
+        feature = "clap",
+        arg(long, value_delimiter = ',', value_name = "CLASSES")
+    )]
     pub gestures: Vec<String>,
     /// With --method svrdm: the thesis' parameters, or parameters tuned to accept what was not seen
-    #[arg(long, default_value = "tuned", value_parser = choices::<Setting>([
+    #[cfg_attr(feature = "clap", arg(long, default_value = "tuned", value_parser = choices::<Setting>([
         ("faithful", "The thesis's own figures"),
         ("tuned", "The same method, made to accept what it has not seen"),
-    ]))]
+    ])))]
     pub svrdm: Setting,
     /// Use of the unlabelled parts of labelled clips: motion that is none of the classes, or nothing to go by
-    #[arg(long, value_enum, default_value = "background")]
+    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value = "background"))]
     pub unlabelled: Unlabelled,
     /// Everyday motion that is built in, synthetic and real, as background, too (not with --method svrdm); auto: if --background holds less than a
     /// minute
-    #[arg(long, default_value = "always", value_parser = choices::<Everyday>([
+    #[cfg_attr(feature = "clap", arg(long, default_value = "always", value_parser = choices::<Everyday>([
         ("auto", "If the clips named as background hold less than a minute"),
         ("always", "In any case"),
         ("never", "Not at all"),
-    ]))]
+    ])))]
     pub everyday: Everyday,
     /// Training on mirrored copies of samples, too (not with --method svrdm). yes: every class is the same on both sides; auto:
     /// only classes named as two sides of one motion, as wave_left and wave_right, teach each other
-    #[arg(long, default_value = "auto", value_parser = choices::<Mirror>([
+    #[cfg_attr(feature = "clap", arg(long, default_value = "auto", value_parser = choices::<Mirror>([
         ("auto", "Between classes that are named as two sides of one motion"),
         ("yes", "Every class is the same on both sides, but for those of --one-sided"),
         ("no", "Not at all"),
-    ]))]
+    ])))]
     pub mirror: Mirror,
     /// With --mirror yes: classes whose mirror image is another motion, separated by commas; it then teaches what the
     /// class is not
-    #[arg(long, value_delimiter = ',', value_name = "CLASSES")]
+    #[cfg_attr(
+        feature = "clap",
+        arg(long, value_delimiter = ',', value_name = "CLASSES")
+    )]
     pub one_sided: Vec<String>,
     /// Parts that count (not with --method svrdm): all (of clips without a body: their hands), upper (nothing below the hips: for
     /// seated performers), arms, hand (left ones as in a mirror), left_hand, hands, body_and_hands, points3 (head and hands
     /// as tracked points), or names of bones, separated by commas, as the report of training lists them
-    #[arg(long, value_name = "PARTS", default_value = "all")]
+    #[cfg_attr(
+        feature = "clap",
+        arg(long, value_name = "PARTS", default_value = "all")
+    )]
     #[serde(with = "text")]
     pub bones: BoneSet,
     /// Set a parameter of the method by its path, as `rho=0.4`, `decode.lag_ticks=2`, `stages.scaling=unit_range`; may be
     /// given several times
-    #[arg(long = "param", value_name = "NAME=VALUE")]
+    #[cfg_attr(feature = "clap", arg(long = "param", value_name = "NAME=VALUE"))]
     #[serde(
         serialize_with = "params::to_table",
         deserialize_with = "params::from_table"
@@ -96,7 +112,8 @@ impl Default for TrainSettings {
 }
 
 /// Methods of recognition.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, clap::ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "snake_case")]
 pub enum Method {
     /// Each class as its samples say: gestures matched elastically, activities (which go on for longer, like walking) by what a
@@ -110,7 +127,8 @@ pub enum Method {
 }
 
 /// Use of the unlabelled parts of labelled clips.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, clap::ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "snake_case")]
 pub enum Unlabelled {
     /// None of the classes
@@ -142,18 +160,32 @@ impl TrainSettings {
     /// # Errors
     /// A parameter that the method does not have, or settings that are for another method.
     pub fn recipe(&self) -> Result<Recipe, OperationError> {
+        if self.method == Method::Svrdm {
+            self.check_kinds()?;
+            return Ok(self.svrdm_options(self.svrdm, &self.params)?.into());
+        }
+        Ok(self.template_options()?.into())
+    }
+
+    fn check_kinds(&self) -> Result<(), OperationError> {
         let names_kinds = !self.activities.is_empty() || !self.gestures.is_empty();
         if names_kinds && self.method != Method::Auto {
             let why = "activities and gestures are for the method auto";
             return Err(OperationError::Settings(why.to_owned()));
         }
-        Ok(match self.method {
-            Method::Auto | Method::Templates => self.template_options()?.into(),
-            Method::Svrdm => self.svrdm_options(self.svrdm, &self.params)?.into(),
-        })
+        Ok(())
     }
 
-    fn template_options(&self) -> Result<TrainOptions, ParamError> {
+    /// The options of the methods auto and templates, for programs without the method of 2009.
+    ///
+    /// # Errors
+    /// As [`recipe`](Self::recipe); the method of 2009.
+    pub fn template_options(&self) -> Result<TrainOptions, OperationError> {
+        if self.method == Method::Svrdm {
+            let why = "method: expected auto or templates, found svrdm";
+            return Err(OperationError::Settings(why.to_owned()));
+        }
+        self.check_kinds()?;
         let mut params = params::with(TrainParams::default(), &self.params)?;
         params.activities &= self.method == Method::Auto;
         params.set_kinds(&self.activities, &self.gestures);

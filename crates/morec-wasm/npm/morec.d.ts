@@ -9,15 +9,28 @@ export interface LabelRow {
   person?: string;
 }
 
+/** Settings of training, those of `morec train`. */
 export interface LearnOptions {
-  /** Only these classes, in this order. */
+  /** Only these classes, in this order. Every class of the labels by default. */
   classes?: string[];
-  /** Mirrored copies of samples. */
-  mirror?: "auto" | "yes" | "no";
-  /** Made everyday motion as background. */
-  everyday?: "auto" | "always" | "never";
-  /** What unlabelled parts of labelled clips are. */
+  /** `auto`: each class as its samples say, a gesture or an activity; `templates`: every class as a gesture. `auto` by default. */
+  method?: "auto" | "templates";
+  /** With the method `auto`: classes that are activities whatever their samples say. */
+  activities?: string[];
+  /** With the method `auto`: classes that are gestures whatever their samples say. */
+  gestures?: string[];
+  /** Use of the unlabelled parts of labelled clips. `background` by default. */
   unlabelled?: "background" | "ignore";
+  /** Everyday motion that is built in, as background, too; `auto`: if `background` holds less than a minute. `always` by default. */
+  everyday?: "auto" | "always" | "never";
+  /** Training on mirrored copies of samples, too; `auto`: between classes named as two sides of one motion. `auto` by default. */
+  mirror?: "auto" | "yes" | "no";
+  /** With the mirror `yes`: classes whose mirror image is another motion. */
+  one_sided?: string[];
+  /** Body parts to use: `all`, `upper`, `arms`, `hand`, `left_hand`, `hands`, `body_and_hands`, `points3`, or names of bones with commas. */
+  bones?: string;
+  /** Parameters of the method by their paths: `{ "decode.lag_ticks": 2 }`. */
+  params?: Record<string, unknown>;
 }
 
 /** Takes a stage, steps done, steps in all; `false` cancels. */
@@ -51,7 +64,11 @@ export interface Detection {
   class: string;
   start_secs: number;
   stop_secs: number;
-  /** 0 just accepted … 1 identical to a sample. */
+  /**
+   * Probability that the motion is right, 0 to 1: a just accepted one has 0.05 to 0.44, by the kind of index. Of held poses and of
+   * indexes without calibration (svrdm, older ones) it is the closeness to a sample instead. Of a tentative event: how near what
+   * was seen so far is to the beginning of a sample, 0 to 1.
+   */
   score: number;
   reported_secs: number;
   /** Of an activity that is counted, so far. */

@@ -18,7 +18,8 @@ use wasm_bindgen::prelude::*;
 
 use crate::bindings::{JsIndex, copy, given, to_js};
 
-use crate::{DetectionRow, LearnOptions, SampleRow, labels};
+use crate::{DetectionRow, SampleRow, labels};
+use morec_ops::{TrainSettings, from_fields};
 
 /// A clip in metres, Y up.
 #[wasm_bindgen(js_name = Clip)]
@@ -179,16 +180,15 @@ impl JsTraining {
         progress: Option<Function>,
     ) -> Result<JsIndex, JsError> {
         let labels = labels_of(labels)?;
-        let options: LearnOptions = given("options", options)?.unwrap_or_default();
-        let method = options
-            .train_options()
-            .map_err(|error| JsError::new(&error))?;
+        let fields: serde_json::Map<_, _> = given("options", options)?.unwrap_or_default();
+        let settings: TrainSettings = from_fields(fields)?;
+        let method = settings.template_options()?;
         LISTENER.set(progress);
         let listener = CallerProgress::default();
         let trained = Trainer::new()
             .labels(&labels)
             .background(&self.background)
-            .classes(&options.classes)
+            .classes(&settings.classes)
             .method(method)
             .progress(&listener)
             .train_with_report(&self.takes);

@@ -12,5 +12,5 @@ mod material;
 mod rows;
 
 #[cfg(feature = "train")]
-pub use material::{LearnOptions, SampleRow, labels};
+pub use material::{SampleRow, labels};
 pub use rows::{DetectionRow, EventRow};

@@ -1,9 +1,8 @@
-//! What training takes from JavaScript: rows of labels, and options.
+//! What training takes from JavaScript: rows of labels.
 
 use morec::Labels;
 use morec::TimeSpan;
 use morec::labels::{Extent, Label};
-use morec::train::{Everyday, Mirror, TrainOptions};
 use serde::Deserialize;
 
 /// A label: in the clip of that name, the class happens from start to stop; without times, the whole clip is one sample.
@@ -44,74 +43,6 @@ pub fn labels(rows: Vec<SampleRow>) -> Result<Labels, String> {
     Ok(labels)
 }
 
-/// Options of training; the words are those of the Python package.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct LearnOptions {
-    /// Only these classes, in this order; all if empty.
-    pub classes: Vec<String>,
-    /// Mirrored copies of samples: `auto`, `yes`, `no`.
-    pub mirror: String,
-    /// Made everyday motion as background: `auto`, `always`, `never`.
-    pub everyday: String,
-    /// What unlabelled parts of labelled clips are: `background`, `ignore`.
-    pub unlabelled: String,
-}
-
-impl Default for LearnOptions {
-    fn default() -> Self {
-        Self {
-            classes: Vec::new(),
-            mirror: "auto".to_owned(),
-            everyday: "always".to_owned(),
-            unlabelled: "background".to_owned(),
-        }
-    }
-}
-
-impl LearnOptions {
-    /// The options of the library.
-    ///
-    /// # Errors
-    /// An option that is none of its words.
-    pub fn train_options(&self) -> Result<TrainOptions, String> {
-        Ok(TrainOptions {
-            mirror: word(
-                "mirror",
-                &self.mirror,
-                [
-                    ("auto", Mirror::Auto),
-                    ("yes", Mirror::Yes),
-                    ("no", Mirror::No),
-                ],
-            )?,
-            everyday: word(
-                "everyday",
-                &self.everyday,
-                [
-                    ("auto", Everyday::Auto),
-                    ("always", Everyday::Always),
-                    ("never", Everyday::Never),
-                ],
-            )?,
-            unlabelled_is_background: word(
-                "unlabelled",
-                &self.unlabelled,
-                [("background", true), ("ignore", false)],
-            )?,
-            ..TrainOptions::default()
-        })
-    }
-}
-
-/// What `found` means as the option `name`.
-fn word<T, const N: usize>(name: &str, found: &str, words: [(&str, T); N]) -> Result<T, String> {
-    let known = words.each_ref().map(|(word, _)| *word).join(", ");
-    let meant = words.into_iter().find(|(word, _)| *word == found);
-    let meant = meant.map(|(_, meant)| meant);
-    meant.ok_or_else(|| format!("{name}: expected one of {known}, found `{found}`"))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -121,18 +52,5 @@ mod tests {
         let rows = r#"[{"clip":"a","class":"x"},{"clip":"a","class":"x","start_secs":1}]"#;
         let error = labels(serde_json::from_str(rows).unwrap()).unwrap_err();
         assert!(error.starts_with("labels: row 2: expected both"), "{error}");
-    }
-
-    #[test]
-    fn an_unknown_word_is_refused_with_those_that_are_known() {
-        let options = LearnOptions {
-            mirror: "maybe".to_owned(),
-            ..LearnOptions::default()
-        };
-        let error = options.train_options().unwrap_err();
-        assert_eq!(
-            error,
-            "mirror: expected one of auto, yes, no, found `maybe`"
-        );
     }
 }

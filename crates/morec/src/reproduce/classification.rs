@@ -17,7 +17,8 @@ use crate::train::LabelSet;
 use crate::train::thesis::{Estimated, SvrdmOptions, train_svrdm};
 use morec_svrdm::train_tree::{BranchReport, FeatureSample};
 
-use super::study::{Picture, ReproduceError, Setting, Study, frames_of, rows_of};
+use super::study::{Picture, ReproduceError, Study, frames_of, rows_of};
+use crate::train::thesis::Setting;
 
 /// Classification rates of samples (Eq. 5.1).
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]

@@ -23,7 +23,9 @@ pub use page::page;
 pub use performance::{StageClock, StageCost, StagePerformance};
 pub use segmentation::Segmented;
 pub use streams::Streamed;
-pub use study::{Picture, ReproduceError, Setting, Study};
+pub use study::{Picture, ReproduceError, Study};
+
+pub use crate::train::thesis::Setting;
 pub use unlabelled::UnlabelledChain;
 
 /// Everything that came out.

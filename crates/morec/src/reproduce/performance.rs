@@ -9,7 +9,8 @@ use crate::svrdm::{Stage, SvrdmEngine};
 use crate::train::LabelSet;
 use crate::train::thesis::{SvrdmOptions, train_svrdm};
 
-use super::study::{ReproduceError, Setting, Study, rows_of};
+use super::study::{ReproduceError, Study, rows_of};
+use crate::train::thesis::Setting;
 
 /// Passes over the clips; the one of median time counts.
 const PASSES: usize = 5;

@@ -14,7 +14,8 @@ use crate::train::StreamKind;
 
 use crate::train::thesis::SvrdmOptions;
 
-use super::study::{Picture, ReproduceError, Setting, Study, rows_of};
+use super::study::{Picture, ReproduceError, Study, rows_of};
+use crate::train::thesis::Setting;
 
 /// One half split.
 #[derive(Debug, Clone, PartialEq, Serialize)]

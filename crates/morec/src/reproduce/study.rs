@@ -2,8 +2,6 @@
 
 use std::ops::Range;
 
-use serde::{Deserialize, Serialize};
-
 use crate::crossval::CrossvalError;
 use crate::eval::EvalError;
 use crate::features::Rows;
@@ -11,7 +9,7 @@ use crate::index::IndexError;
 use crate::labels::Sample;
 use crate::pivots::{NoPivots, PivotMap, PivotSet, PoseParams, pose_rows_of_clip};
 use crate::segment::SegmentError;
-use crate::train::thesis::{SvrdmOptions, SvrdmTrainParams};
+use crate::train::thesis::{Setting, SvrdmOptions};
 use crate::train::{TrainClip, TrainError};
 
 /// Data of the study.
@@ -29,35 +27,6 @@ pub struct Study<'a> {
     pub seeds: &'a [u64],
     /// Options of training, by setting.
     pub settings: &'a [(Setting, SvrdmOptions)],
-}
-
-/// The two settings.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Setting {
-    /// The thesis's own parameters.
-    Faithful,
-    /// Made to accept what was not seen.
-    #[default]
-    Tuned,
-}
-
-impl Setting {
-    /// As it is written.
-    pub fn name(self) -> &'static str {
-        match self {
-            Setting::Faithful => "faithful",
-            Setting::Tuned => "tuned",
-        }
-    }
-
-    /// The parameters of training.
-    pub fn params(self) -> SvrdmTrainParams {
-        match self {
-            Setting::Faithful => SvrdmTrainParams::faithful(),
-            Setting::Tuned => SvrdmTrainParams::tuned(),
-        }
-    }
 }
 
 /// A picture to be kept beside the page.

@@ -10,7 +10,7 @@ mod sample;
 mod thresholds;
 
 pub use details::SvrdmReport;
-pub use options::{Pivots, SvrdmOptions, SvrdmTrainParams, ThresholdRule};
+pub use options::{Pivots, Setting, SvrdmOptions, SvrdmTrainParams, ThresholdRule};
 pub use sample::ThesisSample;
 pub use thresholds::Estimated;
 

@@ -155,3 +155,32 @@ impl Default for SvrdmOptions {
         }
     }
 }
+
+/// The two settings of training.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Setting {
+    /// The thesis's own parameters.
+    Faithful,
+    /// Made to accept what was not seen.
+    #[default]
+    Tuned,
+}
+
+impl Setting {
+    /// As it is written.
+    pub fn name(self) -> &'static str {
+        match self {
+            Setting::Faithful => "faithful",
+            Setting::Tuned => "tuned",
+        }
+    }
+
+    /// The parameters of training.
+    pub fn params(self) -> SvrdmTrainParams {
+        match self {
+            Setting::Faithful => SvrdmTrainParams::faithful(),
+            Setting::Tuned => SvrdmTrainParams::tuned(),
+        }
+    }
+}
