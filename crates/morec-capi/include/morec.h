@@ -421,7 +421,8 @@ typedef struct MotionSeg {
      */
     double stop_secs;
     /**
-     * 0 just accepted … 1 identical to a sample.
+     * Probability that the motion is right, 0 to 1: a just accepted one has 0.05 to 0.44, by the kind of index. Of held poses and
+     * of indexes without calibration (svrdm, older ones) it is the closeness to a sample instead.
      */
     double confidence;
     /**
@@ -601,7 +602,9 @@ typedef struct MorecEvent {
      */
     uint64_t sequence;
     /**
-     * Of an end: 0 just accepted … 1 identical to a sample. Tentative: how near what was seen so far is, likewise.
+     * Probability that the motion is right, 0 to 1: a just accepted one has 0.05 to 0.44, by the kind of index. Of held poses and
+     * of indexes without calibration (svrdm, older ones) it is the closeness to a sample instead. Of a tentative event: how near
+     * what was seen so far is to the beginning of a sample, 0 to 1.
      */
     double score;
     /**

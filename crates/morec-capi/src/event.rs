@@ -31,7 +31,9 @@ pub struct MorecEvent {
     pub motion: u64,
     /// Number of the event, from 1. A gap would be a lost event, and be counted in `MorecStats.lost_events`.
     pub sequence: u64,
-    /// Of an end: 0 just accepted … 1 identical to a sample. Tentative: how near what was seen so far is, likewise.
+    /// Probability that the motion is right, 0 to 1: a just accepted one has 0.05 to 0.44, by the kind of index. Of held poses and
+    /// of indexes without calibration (svrdm, older ones) it is the closeness to a sample instead. Of a tentative event: how near
+    /// what was seen so far is to the beginning of a sample, 0 to 1.
     pub score: f64,
     /// Share of the motion seen so far, 0 to 1; 1 at its end.
     pub progress: f64,

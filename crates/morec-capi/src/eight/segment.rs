@@ -23,7 +23,8 @@ pub struct MotionSeg {
     pub start_secs: f64,
     /// Stop, seconds.
     pub stop_secs: f64,
-    /// 0 just accepted … 1 identical to a sample.
+    /// Probability that the motion is right, 0 to 1: a just accepted one has 0.05 to 0.44, by the kind of index. Of held poses and
+    /// of indexes without calibration (svrdm, older ones) it is the closeness to a sample instead.
     pub confidence: f64,
     /// The name of its class, UTF-8, with a zero at its end; cut if it is longer.
     pub class_name: [c_char; 64],

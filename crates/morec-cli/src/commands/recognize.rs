@@ -28,8 +28,11 @@ use morec_live::PlayableClip;
 /// Recognise motions in clips, frame by frame as in a live stream.
 ///
 /// Writes one line for each motion: clip, start, stop and reported_at in frames of the clip (stop exclusive), class,
-/// score (0 just accepted … 1 identical to a sample), and the times in seconds; with activities in the index also how often
-/// one was repeated, and the seconds of a repetition.
+/// score, and the times in seconds; with activities in the index also how often one was repeated, and the seconds of a
+/// repetition.
+///
+/// Score: Probability that the motion is right, 0 to 1: a just accepted one has 0.05 to 0.44, by the kind of index. Of
+/// held poses and of indexes without calibration (svrdm, older ones) it is the closeness to a sample instead.
 #[derive(clap::Args)]
 #[command(
     after_help = "Exit codes: 0 all clips done; 1 something cannot be read (the others are done all the same); \

@@ -56,6 +56,10 @@ class listen:
         sequence, wall_secs (seconds since 1970 at the arrival of the frame that settled it), and of an activity that repeats
         repetitions so far and period_secs (None where nothing is counted).
 
+        score: Probability that the motion is right, 0 to 1: a just accepted one has 0.05 to 0.44, by the kind of index.
+        Of held poses and of indexes without calibration (svrdm, older ones) it is the closeness to a sample instead. Of
+        a tentative event: how near what was seen so far is to the beginning of a sample, 0 to 1.
+
     Warns
     -----
     MorecWarning

@@ -187,10 +187,13 @@ class Index:
         Returns
         -------
         Table
-            Columns clip, class, start_secs, stop_secs, score (0 just accepted … 1 identical to a sample), reported_secs, and of
-            activities that repeat repetitions and period_secs (None where nothing is counted). With `deviation` also deviation: a
+            Columns clip, class, start_secs, stop_secs, score, reported_secs, and of activities that repeat repetitions and
+            period_secs (None where nothing is counted). With `deviation` also deviation: a
             dict of off_degrees (mean angle off the nearest sample), pace (duration over its), bones (each with off_degrees,
             worst_degrees, worst_secs; the farthest off first) and over_time_degrees; None for activities and held poses.
+
+            score: Probability that the motion is right, 0 to 1: a just accepted one has 0.05 to 0.44, by the kind of index.
+            Of held poses and of indexes without calibration (svrdm, older ones) it is the closeness to a sample instead.
 
         Warns
         -----

@@ -87,7 +87,7 @@ mod worker;
 pub use crate::index::{Model, SensitivityError};
 pub use broadcast::EventReader;
 pub use clock::wall_now_secs;
-pub use detection::{Detection, EarlyDetection};
+pub use detection::{Detection, EarlyDetection, SCORE};
 pub use divided::{PartMatcher, match_clip, recognize_matched};
 pub use event::{Event, EventOptions, Phase};
 pub use feed::{FeedSender, OverflowPolicy};
