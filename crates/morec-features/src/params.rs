@@ -39,10 +39,16 @@ pub struct FeatureParams {
     /// A feature row is made of every n-th frame: 4 at 120 Hz gives 30 ticks a second.
     pub frames_per_tick: usize,
     /// Standard deviation of the Gaussian over bone directions, in frames.
+    ///
+    /// 25 ms.
     pub smooth_sigma_frames: f64,
     /// The Gaussian is cut off this many frames away: its half width, and its delay.
+    ///
+    /// 50 ms of delay.
     pub smooth_cut_frames: usize,
     /// Standard deviation of the Gaussian over root motion, in frames.
+    ///
+    /// Cut to the delay of the directions.
     pub root_sigma_frames: f64,
     /// Half width of the Gaussian over root motion, in frames.
     pub root_cut_frames: usize,
@@ -53,6 +59,9 @@ pub struct FeatureParams {
     /// Weight of root motion against directions.
     pub root_weight: f64,
     /// True if the filters follow the noise of the stream: as given while it is clean, longer as they must be.
+    ///
+    /// Without it 1 cm of white noise on referee signals by clip gave F1 0.765 instead of 0.947, 2 cm 0 instead of
+    /// 0.911; nothing changes on clean clips.
     #[serde(default = "follows_noise")]
     pub follow_noise: bool,
     /// Line of the body that gives the heading and the root: `hips` (shoulders until hips are seen) or `shoulders`, which training

@@ -11,9 +11,15 @@ pub struct TreeParams {
     /// `T`, `t` and `C` of the machines: 1, 0.4 and 10 (thesis, §4.5).
     pub machine: MachineParams,
     /// Solver of the machines' programs.
+    ///
+    /// `sor` is Algorithm 3; both find the same optimum, `active_set` sooner and whatever the kernel's width.
     #[serde(default)]
     pub solver: Solver,
     /// Rule for widths: Algorithm 4 (§4.5).
+    ///
+    /// Thesis, §4.5. Algorithm 4 settles on narrow kernels: it asks that samples lie on the boundary, which they do
+    /// when each is alone, and new samples then fall outside. `algorithm4`, `scaled`, `quantile`, `fixed` and
+    /// `cross_validated` are the alternatives.
     pub sigma: SigmaRule,
     /// The parameters of Algorithm 4.
     pub algorithm4: Algorithm4,
@@ -31,6 +37,9 @@ pub struct MachineParams {
     /// `C`: the penalty for samples that miss it.
     pub penalty: f64,
     /// When the optimiser stops.
+    ///
+    /// Outputs are about 1: eight digits; the thesis stops when weights hardly move, which says little where the
+    /// kernel is wide.
     pub stop: Stop,
 }
 
@@ -49,6 +58,8 @@ impl Default for MachineParams {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct PartitionParams {
     /// Up to this many classes every split is tried (at most 20).
+    ///
+    /// Every split is tried for few classes; with narrow kernels nearly every split stops Algorithm 6.
     pub exact_up_to: usize,
     /// Beyond, clustering starts this often from chance.
     pub restarts: usize,
@@ -56,6 +67,8 @@ pub struct PartitionParams {
     pub seed: u64,
     /// True if the functions `h_j` are brought to length 1 first. As printed they are not, and with narrow kernels a
     /// class of many samples has a long one.
+    ///
+    /// As printed; without it a class of many samples tends to stand alone.
     pub unit_length: bool,
 }
 
@@ -111,8 +124,15 @@ pub struct Algorithm4 {
     /// By so much less is tried while no sample is found on the boundary: 0.1 (§5.3).
     pub radius_step: f64,
     /// True if a sample alone in its ball counts as on the boundary: its ball has radius 0 and no machine.
+    ///
+    /// A sample alone in its ball has no machine to ask.
     pub lone_is_boundary: bool,
     /// Widths tried.
+    ///
+    /// The thesis names no range but prints ten widths (Figs. 5.3 to 5.12: 0.0575 to 0.6725), each the mean of two
+    /// sides': all are multiples of 0.0025, so steps are of 0.005, and the first width is at most 0.0575. That it
+    /// is 0.05 and the last is 1 is inferred. `geometric` and `linear` go by the samples' distances. A side of
+    /// fewer than two different samples takes the other side's width: Algorithm 4 does not cover it.
     pub sweep: Sweep,
 }
 

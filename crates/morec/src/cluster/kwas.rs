@@ -22,6 +22,9 @@ pub struct KwasParams {
     /// Eigenpairs that count, at most all there are.
     pub k: usize,
     /// Two samples are alike if their similarity is above this, τ.
+    ///
+    /// For rows centred on the database. Tables 5.2–5.4 of the thesis come nearer to uncentred rows (`morec group
+    /// --method kwas --centre none`), where 0.995 is best on referee samples.
     pub tau: f64,
     /// Scaling of the similarity.
     pub form: KwasForm,

@@ -25,8 +25,8 @@ pub fn page(result: &Reproduction, about: &[(String, String)]) -> String {
     out.push_str(
         "</dl>\n<p>Bucur, <i>Efficient Motion Capture Database Indexing on the Cell Processor</i>, Trinity College Dublin \
          2009, chapter 5. The thesis had other clips, other labels and 11 classes; figures can be compared in kind, \
-         not to the digit. <b>Faithful</b> keeps every parameter of the thesis, <b>tuned</b> changes what \
-         docs/parameters.md lists.</p>\n",
+         not to the digit. <b>Faithful</b> keeps every parameter of the thesis, <b>tuned</b> changes some of them \
+         (docs/parameters.md).</p>\n",
     );
     push_classes(&mut out, result);
     push_segmentation(&mut out, result);

@@ -11,6 +11,9 @@ pub struct EarlyDetectionParams {
     /// And have lasted for this many ticks.
     pub least_ticks: usize,
     /// Its distance must be below this times the index's threshold,
+    ///
+    /// 0.85 and the gates of 0.9 after 1.8 and 1.1: precision of tentative events 0.96 for 0.68 on referee signals,
+    /// 0.67 for 0.53 in Kinect sessions; recall 0.86 as before, and 0.94 for 0.96.
     pub reach: f32,
     /// below this times that of the nearest beginning of a negative,
     pub gate: f32,

@@ -77,10 +77,14 @@ pub struct SvrdmTrainParams {
     /// Parameters of the stages; training describes its samples the same way.
     pub stages: SvrdmParams,
     /// Estimation of sign vectors.
+    ///
+    /// The printed rule depends on the signs that eigenvectors come with.
     pub sign: SignRule,
     /// Parameters of the tree's growth.
     pub tree: TreeParams,
     /// Origin of the thresholds of recognition.
+    ///
+    /// Tuned: `accept` and `min_confidence` from left-out samples and background (`train/thesis/thresholds.rs`).
     pub thresholds: ThresholdRule,
 }
 
