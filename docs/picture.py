@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Draws docs/stream.svg from what `cargo run --release -- demo` leaves in morec-demo/. Standard library only.
+"""Draws docs/stream.svg, which moves, from what `cargo run --release -- demo` leaves in morec-demo/. Standard library only.
 
-    python3 docs/picture.py morec-demo docs/stream.svg 6.8 21.8    (from, to: seconds)
+    morec convert morec-demo/new/signals_2.mclip -o morec-demo/new/signals_2.bvh
+    python3 docs/picture.py morec-demo docs/stream.svg 9.95 24.3    (from, to: seconds)
 """
 import colorsys
 import csv
@@ -11,6 +12,7 @@ import sys
 
 WIDTH, LEFT, RIGHT = 1120, 104, 28
 FIGURES = 16
+MOVES = 12
 GROUND, SCALE = 222, 88  # y of the floor, pixels a metre
 LANES = {"performed": 270, "recognised": 318}
 BAR = 30
@@ -115,6 +117,12 @@ def line(points, width, colour, opacity=1.0):
     return f'<polyline points="{path}" stroke="{colour}" stroke-width="{width}" opacity="{opacity}"/>'
 
 
+def crown(neck, head):
+    """The middle of the head, beyond its joint."""
+    length = math.dist(neck, head) or 1
+    return [h + (h - n) / length * 8 for h, n in zip(head, neck)]
+
+
 def figure(names, poses, frame, rate, x, colour, unit):
     at = {name: i for i, name in enumerate(names)}
     points = seen(poses[frame], x, unit)
@@ -125,10 +133,28 @@ def figure(names, poses, frame, rate, x, colour, unit):
         out.append(line(trail, 2.2, colour, 0.35))
     for chain, width in CHAINS:
         out.append(line([points[at[name]] for name in chain], width, colour))
-    neck, head = points[at["Neck"]], points[at["Head"]]
-    length = math.dist(neck, head) or 1
-    top = [h + (h - n) / length * 8 for h, n in zip(head, neck)]
+    top = crown(points[at["Neck"]], points[at["Head"]])
     out.append(f'<circle cx="{top[0]:.1f}" cy="{top[1]:.1f}" r="9.5" fill="{colour}" stroke="none"/>')
+    return out
+
+
+def animated(attribute, values, secs, extra=""):
+    return f'<animate attributeName="{attribute}" dur="{secs:.2f}s" repeatCount="indefinite" values="{values}" {extra}/>'
+
+
+def performer(names, poses, times, rate, place, secs, unit):
+    """The performer as one who moves along with the playhead, `MOVES` poses a second."""
+    at = {name: i for i, name in enumerate(names)}
+    shown = [seen(poses[round(t * rate)], place(t), unit) for t in times]
+    path = lambda points, chain: " ".join(f"{points[at[n]][0]:.0f},{points[at[n]][1]:.0f}" for n in chain)
+    out = []
+    for chain, width in CHAINS:
+        values = [path(points, chain) for points in shown]
+        move = animated("points", ";".join(values), secs)
+        out.append(f'<polyline points="{values[0]}" stroke="#20262c" stroke-width="{width}">{move}</polyline>')
+    heads = [crown(points[at["Neck"]], points[at["Head"]]) for points in shown]
+    move = "".join(animated(a, ";".join(f"{h[k]:.0f}" for h in heads), secs) for k, a in enumerate(("cx", "cy")))
+    out.append(f'<circle cx="{heads[0][0]:.0f}" cy="{heads[0][1]:.0f}" r="9.5" fill="#20262c" stroke="none">{move}</circle>')
     return out
 
 
@@ -168,7 +194,7 @@ def main():
         "<title>A stream of poses, what was performed in it, and what morec recognised</title>",
         f'<rect x="0.5" y="0.5" width="{WIDTH - 1}" height="387" rx="10" fill="#fcfcfb" stroke="#d9d9d4"/>',
         f'<line x1="{LEFT}" y1="{GROUND + 6}" x2="{WIDTH - RIGHT}" y2="{GROUND + 6}" stroke="#d9d9d4" stroke-width="2"/>',
-        '<g fill="none" stroke-linecap="round" stroke-linejoin="round">',
+        '<g fill="none" stroke-linecap="round" stroke-linejoin="round" opacity="0.45">',
     ]
     step = (end - begin) / FIGURES
     for i in range(FIGURES):
@@ -176,6 +202,10 @@ def main():
         now = [row[0] for row in truth if row[1] <= at <= row[2]]
         colour = dark(now[0]) if now else "#9a9a94"
         out += figure(names, poses, round(at * rate), rate, to_x(at), colour, unit)
+    count = round((end - begin) * MOVES)
+    times = [begin + i / MOVES for i in range(count)]
+    out.append('</g><g fill="none" stroke-linecap="round" stroke-linejoin="round">')
+    out += performer(names, poses, times, rate, to_x, end - begin, unit)
     out.append("</g>")
     for name, y in [("stream", 160), *[(lane, y + 20) for lane, y in LANES.items()]]:
         out.append(f'<text x="18" y="{y}" fill="#55554f">{name}</text>')
@@ -187,8 +217,13 @@ def main():
             x, width = to_x(row[1]), to_x(row[2]) - to_x(row[1])
             fill = pale(row[0]) if lane == "performed" else dark(row[0])
             ink = dark(row[0]) if lane == "performed" else "#ffffff"
+            appears = ""
+            if lane == "recognised":
+                share = (row[3] - begin) / (end - begin)
+                appears = animated("opacity", "0;1", end - begin, f'keyTimes="0;{share:.4f}" calcMode="discrete"')
+            out.append(f"<g>{appears}")
             out.append(f'<rect x="{x:.1f}" y="{y}" width="{width:.1f}" height="{BAR}" rx="4" fill="{fill}"/>')
-            if width > 7.2 * len(row[0]) + 2:
+            if lane == "performed" or width > 7.2 * len(row[0]) + 2:
                 out.append(
                     f'<text x="{x + width / 2:.1f}" y="{y + 20}" text-anchor="middle" fill="{ink}">{row[0]}</text>'
                 )
@@ -197,6 +232,7 @@ def main():
                 out.append(
                     f'<path d="M{said:.1f},{y + BAR + 2} l-5,9 h10 z" fill="{dark(row[0])}" stroke="none"/>'
                 )
+            out.append("</g>")
     for second in range(math.ceil(begin), math.floor(end) + 1):
         x = to_x(second)
         out.append(f'<line x1="{x:.1f}" y1="{GROUND + 6}" x2="{x:.1f}" y2="{GROUND + 12}" stroke="#b8b8b2"/>')
@@ -208,6 +244,8 @@ def main():
         f'<text x="{WIDTH - RIGHT}" y="377" text-anchor="end" font-size="12" fill="#77776f">'
         "▲ the moment of the report; grey: motion that is none of the classes</text>"
     )
+    move = "".join(animated(attribute, f"{LEFT};{WIDTH - RIGHT}", end - begin) for attribute in ("x1", "x2"))
+    out.append(f'<line x1="{LEFT}" x2="{LEFT}" y1="24" y2="352" stroke="#20262c" opacity="0.5">{move}</line>')
     out.append("</svg>")
     target.write_text("\n".join(out) + "\n")
 

@@ -1,4 +1,4 @@
-"""Archives: a bucket of clips, on one machine and on many (``pip install morec[archive]``).
+"""Archives: a bucket of clips, on one machine and on many (``pip install './crates/morec-py[archive]'``).
 
 An archive is a folder of Parquet tables, local or in an S3-compatible store. Daft does the work: on this machine by
 default, on a Ray cluster after `use_ray`.
