@@ -8,5 +8,5 @@ mod names;
 mod packages;
 mod sources;
 mod spans;
+mod terms;
 mod unsafe_code;
-mod words;
