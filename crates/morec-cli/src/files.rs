@@ -18,24 +18,26 @@ use crate::output;
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Reading clips")]
 pub struct ReadArgs {
-    /// The ASF skeleton of AMC clips, or the OSIM model of MOT and STO clips. Without it, the one beside the clip or a folder above is taken: of the same
-    /// stem (a.asf for a.amc), of the subject (13.asf for 13_29.amc), or the one that fits.
-    #[arg(long, value_name = "ASF")]
+    /// ASF skeleton of AMC clips, or OSIM model of MOT and STO clips
+    ///
+    /// By default it is searched for beside the clip and in the folders above: of the same stem (a.asf for a.amc), of the
+    /// subject (13.asf for 13_29.amc), or one that fits.
+    #[arg(hide_short_help = true, long, value_name = "ASF")]
     pub skeleton: Option<PathBuf>,
-    /// Frames a second, in place of what the file says (AMC files say nothing: 120 is assumed).
-    #[arg(long, value_name = "HZ", value_parser = rate)]
+    /// Frame rate, instead of the file's (AMC states none: 120 Hz)
+    #[arg(hide_short_help = true, long, value_name = "HZ", value_parser = rate)]
     pub file_rate: Option<f64>,
-    /// Meaning of BVH position channels below the root; decided from the data if not given.
-    #[arg(long, value_enum)]
+    /// Meaning of BVH position channels below the root [default: inferred]
+    #[arg(hide_short_help = true, long, value_enum)]
     pub positions: Option<Positions>,
 }
 
 /// Meaning of BVH position channels below the root.
 #[derive(ValueEnum, Clone, Copy, Debug)]
 pub enum Positions {
-    /// The joint's position; OFFSET is not used.
+    /// The joint's position, instead of OFFSET
     Replace,
-    /// A movement from OFFSET.
+    /// A movement from OFFSET
     Add,
 }
 

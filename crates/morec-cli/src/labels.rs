@@ -16,23 +16,34 @@ use crate::files;
 #[derive(clap::Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Reading labels")]
 pub struct LabelArgs {
-    /// Only these tiers of labels that have some (ELAN, Praat), separated by commas
-    #[arg(long, value_name = "TIERS", value_delimiter = ',')]
+    /// Read only these tiers (ELAN, Praat), separated by commas
+    #[arg(
+        hide_short_help = true,
+        long,
+        value_name = "TIERS",
+        value_delimiter = ','
+    )]
     pub tier: Vec<String>,
-    /// Seconds that are added to the times of labels: what was labelled began so much after the clip
+    /// Seconds to add to the times of labels
+    ///
+    /// For labels of a recording, such as a video, that began later than the clip.
     #[arg(
         long,
+        hide_short_help = true,
         value_name = "SECS",
         default_value_t = 0.0,
         allow_negative_numbers = true
     )]
     pub offset: f64,
-    /// Frames a second of what was labelled, where frames are not the clip's: a video's
-    #[arg(long, value_name = "HZ", value_parser = files::rate)]
+    /// Frame rate of the labels, if it is not the clip's
+    ///
+    /// Such as that of a video.
+    #[arg(hide_short_help = true, long, value_name = "HZ", value_parser = files::rate)]
     pub label_rate: Option<f64>,
-    /// The number that frames of labels begin with: 0, or what a C3D file calls its first frame (often 1)
+    /// Number of the first frame in labels: 0, or as in the C3D file
     #[arg(
         long,
+        hide_short_help = true,
         value_enum,
         value_name = "file|0",
         default_value = "0",

@@ -27,7 +27,7 @@ mod table;
 
 use std::process::ExitCode;
 
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{ArgAction, CommandFactory, Parser, Subcommand};
 
 /// Index a motion-capture database, recognise its motions live.
 #[derive(Parser)]
@@ -35,9 +35,16 @@ use clap::{CommandFactory, Parser, Subcommand};
     name = "morec",
     version = env!("MOREC_VERSION"),
     propagate_version = true,
+    disable_help_flag = true,
     max_term_width = 80
 )]
 struct Cli {
+    /// Print help
+    #[arg(short, long, global = true, display_order = 998, action = ArgAction::HelpShort)]
+    help: Option<bool>,
+    /// Print help with all options and details
+    #[arg(long, global = true, display_order = 999, action = ArgAction::HelpLong)]
+    help_all: Option<bool>,
     #[command(subcommand)]
     command: Subcommands,
 }
@@ -103,7 +110,7 @@ fn main() -> ExitCode {
     };
     match outcome.and_then(|code| console::finish().map(|()| code)) {
         Ok(code) => code,
-        // Whoever reads our output has seen enough: that is not a failure of ours.
+        // The reader of our output has seen enough: no failure of ours.
         Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("morec: {error:#}");

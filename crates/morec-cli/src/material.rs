@@ -21,29 +21,36 @@ use crate::labels::{self, LabelArgs};
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Clips and labels")]
 pub struct MaterialArgs {
-    /// Clips, or folders of clips, that the labels refer to
+    /// Labelled clips, or folders of clips
     #[arg(long, value_name = "DIR|CLIP", num_args = 1.., required_unless_present = "db")]
     pub clips: Vec<PathBuf>,
-    /// Clips and accepted samples of this database, in place of --clips and --labels; its clips with the tag `background` are
-    /// background (`morec db clips --add-tag background`), and --background also names its clips. See `morec db`
+    /// Take clips and accepted samples from this database
+    ///
+    /// In place of --clips and --labels. Its clips with the tag `background` are background (`morec db clips --add-tag
+    /// background`); --background can name its clips too.
     #[arg(long, value_name = "DB", conflicts_with_all = ["clips", "labels"])]
     pub db: Option<PathBuf>,
-    /// Labels, in a form that `morec db label` reads; of tables columns clip (file stem), class, and start, stop (frames,
-    /// stop exclusive) or start_secs, stop_secs, or neither: then the whole clip is one sample, its still ends trimmed
+    /// Labels: a table, or a form that `morec db label` reads
+    ///
+    /// Columns of a table: clip (file stem), class, and start, stop (frames, stop exclusive) or start_secs, stop_secs.
+    /// Without times the whole clip is one sample, its still ends trimmed.
     #[arg(long, value_name = "FILE|DIR", required_unless_present = "db")]
     pub labels: Option<PathBuf>,
-    /// Leave these clips out, by file stem, separated by commas
+    /// Leave out these clips (file stems, separated by commas)
     #[arg(long, value_delimiter = ',', value_name = "CLIPS")]
     pub exclude: Vec<String>,
-    /// Persons of clips: columns clip and person (or give the labels a column person)
+    /// Persons of clips: a table with columns clip and person
+    ///
+    /// Or give the labels a column person.
     #[arg(long, value_name = "TSV")]
     pub people: Option<PathBuf>,
-    /// Clips or folders that hold none of the classes, also by the file stem of one of --clips: what comes near
-    /// the classes in them sets how near is near enough
+    /// Background clips without any class; they set the detection threshold
+    ///
+    /// Clips, folders, or file stems of --clips.
     #[arg(long, value_name = "DIR|CLIP", num_args = 1..)]
     pub background: Vec<PathBuf>,
-    /// Roles of joints, where inference fails: lines of `role<TAB>joint name`
-    #[arg(long, value_name = "FILE")]
+    /// Roles of joints, where inference fails: lines of `role<TAB>joint`
+    #[arg(hide_short_help = true, long, value_name = "FILE")]
     pub roles: Option<PathBuf>,
     #[command(flatten)]
     pub settings: TrainSettings,
@@ -167,7 +174,7 @@ impl MaterialArgs {
 
     /// The labels, and the table of people.
     fn labels(&self) -> Result<(Labels, Option<People>)> {
-        let path = self.labels.as_deref().context("--labels: which?")?;
+        let path = self.labels.as_deref().context("--labels is required")?;
         let labels = labels::read(path, &self.reading, &self.clips)?;
         warn(path, &labels.warnings);
         let classes = labels.rows.iter().map(|row| row.class.as_str());
@@ -201,7 +208,7 @@ impl MaterialArgs {
             match taught.iter().find(|t| t.file_stem() == Some(stem)) {
                 Some(clip) => paths.push(clip.clone()),
                 None => bail!(
-                    "{}: no such file or folder, and none of --clips is called so",
+                    "{}: no such file or folder, and no clip of --clips has this name",
                     path.display()
                 ),
             }

@@ -16,12 +16,19 @@ use crate::progress::SlowProgress;
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Poses")]
 pub struct PoseArgs {
-    /// The joints whose rotations count: `thesis` (16, by the CMU skeleton's names, by role on others), `roles` (12,
-    /// by role alone) or a JSON file: a list of {"name", "parent", "joints", "role"}
-    #[arg(long, value_name = "SET|FILE", default_value = "thesis")]
+    /// Joints whose rotations count: thesis, roles or a JSON file
+    ///
+    /// thesis: 16, by the CMU skeleton's names, by role on others; roles: 12, by role alone; a JSON list of {"name",
+    /// "parent", "joints", "role"}.
+    #[arg(
+        hide_short_help = true,
+        long,
+        value_name = "SET|FILE",
+        default_value = "thesis"
+    )]
     pub pivots: String,
-    /// Roles of joints, where inference fails: lines of `role<TAB>joint name`
-    #[arg(long, value_name = "FILE")]
+    /// Roles of joints, where inference fails: lines of `role<TAB>joint`
+    #[arg(hide_short_help = true, long, value_name = "FILE")]
     pub roles: Option<PathBuf>,
     #[command(flatten)]
     pub read: ReadArgs,

@@ -57,19 +57,12 @@ const MEANINGS: [(&str, &[&str]); 9] = [
     (
         "labels",
         &[
-            "Labels, in a form that `morec db label` reads",
-            "Labels of clips in files, in a form that `morec db label` reads",
+            "Labels: a table, or a form that `morec db label` reads",
+            "Labels to show: a table, or a form that `morec db label` reads",
+            "Labels of clips in files: a table, or a form that `morec db label` reads",
         ],
     ),
-    (
-        "output",
-        &[
-            "File to write",
-            "Folder for ",
-            "Output",
-            "The file to write",
-        ],
-    ),
+    ("output", &["File to write", "Folder for ", "Output"]),
     ("roles", &["Roles "]),
     (
         "class",

@@ -18,23 +18,25 @@ use crate::{OperationError, TrainSettings, text};
 #[serde(default, deny_unknown_fields)]
 #[command(next_help_heading = "Cross-validation")]
 pub struct CrossvalSettings {
-    /// Part that is left out of training in turn
+    /// What to leave out of training in turn
     #[arg(long, value_enum, default_value = "person")]
     pub by: LeftOut,
-    /// Let at most N samples of each class teach, from its people in turn
+    /// Train on at most N samples per class, drawn evenly across people
     #[arg(long, value_name = "N")]
     pub samples: Option<usize>,
-    /// Also test copies that are worse in one way each, separated by commas: white:METRES, slow:METRES, const:METRES,
-    /// tilt:DEGREES, speed:FACTOR (of durations), drop:SHARE, repeat:SHARE, spikes:SHARE, occlude:SHARE, cam:FACTOR,
-    /// rate:HZ, mirror
+    /// Also test worse copies: white:0.01, cam:1, drop:0.3 …
+    ///
+    /// Kinds, separated by commas: white:METRES, slow:METRES, const:METRES, tilt:DEGREES, speed:FACTOR (of durations),
+    /// drop:SHARE, repeat:SHARE, spikes:SHARE, occlude:SHARE, cam:FACTOR, rate:HZ, mirror.
     #[arg(long, value_delimiter = ',', value_name = "KIND:SIZE")]
     #[serde(with = "text::list")]
     pub perturb: Vec<Perturbation>,
-    /// Also test at these rates of false alarms a minute (see `morec recognize --sensitivity`), separated by commas
-    /// [default with --report: 0.03 to 2]
+    /// Also test at these false alarms a minute, separated by commas
+    ///
+    /// As of `morec recognize --sensitivity` [default with --report: 0.03 to 2].
     #[arg(long, value_delimiter = ',', value_name = "RATE")]
     pub sensitivities: Vec<f64>,
-    /// Seed of the shuffle that halves the samples
+    /// Seed of the split into halves
     #[arg(long, default_value_t = 1, value_name = "N")]
     pub seed: u64,
 }
@@ -57,12 +59,12 @@ impl Default for CrossvalSettings {
 pub enum LeftOut {
     /// Half of each class's samples
     Half,
-    /// One clip after the other
+    /// Each clip
     Clip,
-    /// One person after the other
+    /// Each person
     #[default]
     Person,
-    /// Nothing: each person teaches alone and is tested in their own clips of --test
+    /// Nothing: train on each person, test on that person's clips of --test
     Own,
 }
 
@@ -155,12 +157,12 @@ impl CrossvalSettings {
         };
         Ok(match (self.by, named.len(), unnamed) {
             (LeftOut::Person, 0, _) => format!(
-                "each clip in turn, {}, as nobody is named: a column `person` of the labels, or a table of people, names them",
+                "each clip in turn, {}, as no person is named: add a column `person` to the labels, or a table of people",
                 clips(unnamed)
             ),
             (LeftOut::Person, people, 0) => format!("{}, {people} people", self.by.said()),
             (LeftOut::Person, people, others) => format!(
-                "{}, {people} named and {} of nobody known, each like a person",
+                "{}, {people} named, and {} clips without a person, each as a person",
                 self.by.said(),
                 clips(others)
             ),

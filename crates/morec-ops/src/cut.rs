@@ -16,28 +16,31 @@ pub struct CutSettings {
     /// Method of cutting
     #[arg(long, value_enum, default_value = "kernel")]
     pub method: CutMethod,
-    /// Length of the windows whose statistics are compared, seconds (kernel)
-    #[arg(long, value_name = "SECS", default_value_t = KernelParams::default().window_secs)]
+    /// Window length, seconds (kernel)
+    #[arg(hide_short_help = true, long, value_name = "SECS", default_value_t = KernelParams::default().window_secs)]
     pub window: f64,
-    /// Price of a cut: a higher one gives fewer cuts (kernel)
+    /// Price of a cut; higher gives fewer cuts (kernel)
     #[arg(long, value_name = "P", default_value_t = KernelParams::default().penalty)]
     pub penalty: f64,
-    /// No segment is shorter, seconds (kernel)
+    /// Shortest segment, seconds (kernel)
     #[arg(long, value_name = "SECS", default_value_t = KernelParams::default().least_secs)]
     pub least: f64,
-    /// Direction through a clip: forward finds what begins, backward what ceases (ppca)
-    #[arg(long, default_value = "both", value_parser = choices::<PassDirections>([
+    /// Direction of the passes (ppca)
+    ///
+    /// Forward finds what begins, backward what ends.
+    #[arg(hide_short_help = true, long, default_value = "both", value_parser = choices::<PassDirections>([
         ("forward", "From start to end"),
         ("backward", "From end to start"),
         ("both", "Both, and the cuts of either"),
     ]))]
     pub direction: PassDirections,
-    /// Rise of the misfit before a cut, in multiples of that of fitting poses: a higher one gives fewer cuts
-    /// (ppca)
+    /// Rise of the misfit before a cut; higher gives fewer cuts (ppca)
+    ///
+    /// In multiples of the misfit of poses that fit.
     #[arg(long, value_name = "R", default_value_t = PpcaParams::default().rise)]
     pub rise: f64,
-    /// Share of the variance that the model of a segment keeps (ppca)
-    #[arg(long, value_name = "SHARE", default_value_t = PpcaParams::default().quality)]
+    /// Share of the variance that a segment's model keeps (ppca)
+    #[arg(hide_short_help = true, long, value_name = "SHARE", default_value_t = PpcaParams::default().quality)]
     pub quality: f64,
 }
 
@@ -48,9 +51,9 @@ pub enum CutMethod {
     /// Kernel change points over feature rows
     #[default]
     Kernel,
-    /// Probabilistic principal components over joint rotations, as in the thesis of 2009 with its distance corrected
+    /// Probabilistic principal components over rotations, as in the thesis of 2009
     Ppca,
-    /// Where repetitions begin and end that `morec discover` finds in all clips together
+    /// Boundaries of repetitions that `morec discover` finds in all clips
     Repeats,
 }
 

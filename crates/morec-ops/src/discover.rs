@@ -18,10 +18,12 @@ use crate::OperationError;
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize, clap::Args)]
 #[serde(default, deny_unknown_fields)]
 pub struct DiscoverSettings {
-    /// Compare by the plain metric, in one pass: half the time, and as good where people rest between motions
+    /// Use the plain metric in one pass: half the time
+    ///
+    /// As good where people rest between motions.
     #[arg(long)]
     pub plain: bool,
-    /// Join repetitions that follow each other at once: walking is one stretch, not steps
+    /// Join successive repetitions: walking is one stretch
     #[arg(long)]
     pub runs: bool,
 }

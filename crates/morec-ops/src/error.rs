@@ -14,7 +14,7 @@ use crate::ParamError;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum OperationError {
-    /// A parameter of the method that there is not, or a value that it cannot have.
+    /// Unknown parameter, or a value that it cannot have.
     #[error(transparent)]
     Param(#[from] ParamError),
     /// Settings that contradict each other.

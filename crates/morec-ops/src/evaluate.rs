@@ -20,8 +20,9 @@ use crate::OperationError;
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, clap::Args)]
 #[serde(default, deny_unknown_fields)]
 pub struct EvaluateSettings {
-    /// Classes that count, separated by commas; samples of others are taken as unlabelled, and a clip with samples
-    /// of others only as unknown [default: every class of the labels]
+    /// Classes that count, separated by commas [default: all]
+    ///
+    /// Samples of other classes are taken as unlabelled.
     #[arg(long, value_delimiter = ',', value_name = "CLASSES")]
     pub classes: Vec<String>,
 }
@@ -109,7 +110,7 @@ impl EvaluateSettings {
             let names = some_of(unlabelled.iter().map(|(name, _)| *name));
             let count = unlabelled.len();
             notes.push(format!(
-                "{count} clips have no label; left out (if they hold no class, name them as unknown): {names}"
+                "{count} clips have no label; left out (if they contain no class, name them with --unknown): {names}"
             ));
         }
         let streams = used.into_iter().map(|(name, length)| StreamInfo {
@@ -119,8 +120,7 @@ impl EvaluateSettings {
         });
         let streams: Vec<StreamInfo> = streams.filter(|s| s.duration_secs > 0.0).collect();
         if streams.is_empty() {
-            let why =
-                "nothing to measure: no label names any of the clips, and none is named as unknown";
+            let why = "nothing to measure: no clip has labels, and none is named with --unknown";
             return Err(OperationError::Settings(why.to_owned()));
         }
         Ok(LabelledStreams {

@@ -23,32 +23,34 @@ use crate::words::share;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, clap::Args)]
 #[serde(default, deny_unknown_fields)]
 pub struct GroupSettings {
-    /// Stretches to group [default: labelled samples if --labels are given, else cuts]
+    /// Stretches to group [default: samples if there are labels, else cuts]
     #[arg(long, value_enum)]
     pub of: Option<Grouping>,
-    /// Samples of these classes only, separated by commas
+    /// Only samples of these classes, separated by commas
     #[arg(long, value_delimiter = ',', value_name = "CLASSES")]
     pub classes: Vec<String>,
     /// Method of grouping
     #[arg(long, value_enum, default_value = "affinity")]
     pub method: GroupMethod,
-    /// Preference of a sample to represent a group, as a quantile of similarities (affinity)
+    /// Number of groups: higher gives more, 0 to 1 (affinity)
+    ///
+    /// Preference of a sample to represent a group, as a quantile of similarities.
     #[arg(long, value_name = "Q", value_parser = share, default_value_t = AffinityParams::default().preference)]
     pub preference: f64,
-    /// Cut the hierarchy into N groups
+    /// Number of groups (hierarchy)
     #[arg(long, value_name = "N", conflicts_with = "height")]
     pub groups: Option<usize>,
-    /// Cut the hierarchy where groups are so far apart on average
+    /// Mean distance at which groups stay apart (hierarchy)
     #[arg(long, value_name = "DISTANCE")]
     pub height: Option<f64>,
-    /// Similarity above which two are of one group, 0 to 1 (kwas)
-    #[arg(long, value_name = "TAU", value_parser = share, default_value_t = KwasParams::default().tau)]
+    /// Similarity above which two samples are in one group (kwas)
+    #[arg(hide_short_help = true, long, value_name = "TAU", value_parser = share, default_value_t = KwasParams::default().tau)]
     pub tau: f64,
     /// Principal directions of a sample that count (kwas)
-    #[arg(short, long, value_name = "N", default_value_t = KwasParams::default().k)]
+    #[arg(hide_short_help = true, short, long, value_name = "N", default_value_t = KwasParams::default().k)]
     pub k: usize,
-    /// Scale similarity so that a sample is 1 like itself, however few directions count (kwas)
-    #[arg(long)]
+    /// Scale similarity so that a sample has 1 with itself (kwas)
+    #[arg(hide_short_help = true, long)]
     pub normalised: bool,
 }
 

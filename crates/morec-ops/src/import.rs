@@ -18,13 +18,13 @@ pub struct ImportSettings {
     /// Origin of the material
     #[arg(long, value_name = "TEXT")]
     pub source: Option<String>,
-    /// Under which terms it may be used
+    /// Licence of the material
     #[arg(long, value_name = "TEXT")]
     pub licence: Option<String>,
     /// Person in the clips
     #[arg(long, value_name = "NAME")]
     pub subject: Option<String>,
-    /// A word to find the clips by; may be given several times
+    /// Tag for the clips; can be repeated
     #[arg(long = "tag", value_name = "WORD")]
     pub tags: Vec<String>,
 }

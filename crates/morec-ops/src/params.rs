@@ -66,7 +66,7 @@ pub(crate) fn from_table<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<Param
     Ok(table.into_iter().map(param).collect())
 }
 
-/// Settings as usual but for `fields`, of which a mistake is named.
+/// Defaults overridden by `fields`; the error names the bad field.
 ///
 /// # Errors
 /// There is no field of a name, or it cannot have the value.

@@ -12,19 +12,21 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, clap::Args)]
 #[serde(default, deny_unknown_fields)]
 pub struct SearchSettings {
-    /// Find what the example's mirror image is like, too
+    /// Also find mirrored motions
     #[arg(long)]
     pub mirror: bool,
     /// At most N
     #[arg(long, value_name = "N", default_value_t = 20)]
     pub limit: usize,
-    /// Only the best of each clip
+    /// Only the best hit of each clip
     #[arg(long)]
     pub one_a_clip: bool,
-    /// Learn from the accepted samples what matters: at least two classes with two samples each
+    /// Learn from accepted samples which differences matter
+    ///
+    /// Needs two classes with two samples each.
     #[arg(long)]
     pub learned: bool,
-    /// Learn from these classes only
+    /// Learn from these classes only, separated by commas
     #[arg(
         long,
         value_name = "CLASSES",
@@ -32,7 +34,7 @@ pub struct SearchSettings {
         requires = "learned"
     )]
     pub classes: Vec<String>,
-    /// Weight of the exact path against the summary of poses and pace, 0 to 1
+    /// Weight of the exact path, 0 to 1, against the summary
     #[arg(long, value_name = "SHARE", default_value_t = SearchOptions::default().warp_share)]
     pub warp_share: f32,
 }
@@ -125,6 +127,6 @@ pub fn example_of_database(
 
 fn too_short(name: &str) -> DbError {
     DbError::Invalid(format!(
-        "{name}: the example must hold at least 0.1 s of motion"
+        "{name}: the example must contain at least 0.1 s of motion"
     ))
 }

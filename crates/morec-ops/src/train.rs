@@ -21,70 +21,95 @@ use crate::{OperationError, text};
 #[serde(default, deny_unknown_fields)]
 #[cfg_attr(feature = "clap", command(next_help_heading = "Training"))]
 pub struct TrainSettings {
-    /// Learn only these classes, separated by commas [default: every class of the labels]
+    /// Learn only these classes, separated by commas [default: all]
     #[cfg_attr(
         feature = "clap",
         arg(long, value_delimiter = ',', value_name = "CLASSES")
     )]
     pub classes: Vec<String>,
-    /// The method of recognition
+    /// Method of recognition
     #[cfg_attr(feature = "clap", arg(long, value_enum, default_value = "auto"))]
     pub method: Method,
-    /// With --method auto: classes that are activities whatever their samples say, separated by commas
+    /// Classes that are activities, whatever their samples show
+    ///
+    /// Separated by commas; with --method auto.
     #[cfg_attr(
         feature = "clap",
-        arg(long, value_delimiter = ',', value_name = "CLASSES")
+        arg(
+            hide_short_help = true,
+            long,
+            value_delimiter = ',',
+            value_name = "CLASSES"
+        )
     )]
     pub activities: Vec<String>,
-    /// With --method auto: classes that are gestures whatever their samples say, separated by commas
+    /// Classes that are gestures, whatever their samples show
+    ///
+    /// Separated by commas; with --method auto.
     #[cfg_attr(
         feature = "clap",
-        arg(long, value_delimiter = ',', value_name = "CLASSES")
+        arg(
+            hide_short_help = true,
+            long,
+            value_delimiter = ',',
+            value_name = "CLASSES"
+        )
     )]
     pub gestures: Vec<String>,
-    /// With --method svrdm: the thesis' parameters, or parameters tuned to accept what was not seen
-    #[cfg_attr(feature = "clap", arg(long, default_value = "tuned", value_parser = choices::<Setting>([
-        ("faithful", "The thesis's own figures"),
-        ("tuned", "The same method, made to accept what it has not seen"),
+    /// Parameters of --method svrdm
+    #[cfg_attr(feature = "clap", arg(hide_short_help = true, long, default_value = "tuned", value_parser = choices::<Setting>([
+        ("faithful", "The values of the thesis"),
+        ("tuned", "Values that generalise better"),
     ])))]
     pub svrdm: Setting,
-    /// Use of the unlabelled parts of labelled clips: motion that is none of the classes, or nothing to go by
+    /// Use unlabelled parts of labelled clips as background, or ignore them
     #[cfg_attr(feature = "clap", arg(long, value_enum, default_value = "background"))]
     pub unlabelled: Unlabelled,
-    /// Everyday motion that is built in, synthetic and real, as background, too (not with --method svrdm); auto: if --background holds less than a
-    /// minute
-    #[cfg_attr(feature = "clap", arg(long, default_value = "always", value_parser = choices::<Everyday>([
-        ("auto", "If the clips named as background hold less than a minute"),
-        ("always", "In any case"),
-        ("never", "Not at all"),
+    /// Use the built-in everyday motion as background
+    ///
+    /// Not with --method svrdm. The motion is synthetic and real.
+    #[cfg_attr(feature = "clap", arg(hide_short_help = true, long, default_value = "always", value_parser = choices::<Everyday>([
+        ("auto", "If --background holds less than a minute"),
+        ("always", "Always"),
+        ("never", "Never"),
     ])))]
     pub everyday: Everyday,
-    /// Training on mirrored copies of samples, too (not with --method svrdm). yes: every class is the same on both sides; auto:
-    /// only classes named as two sides of one motion, as wave_left and wave_right, teach each other
+    /// Train on mirrored copies of samples too
+    ///
+    /// Not with --method svrdm.
     #[cfg_attr(feature = "clap", arg(long, default_value = "auto", value_parser = choices::<Mirror>([
-        ("auto", "Between classes that are named as two sides of one motion"),
-        ("yes", "Every class is the same on both sides, but for those of --one-sided"),
-        ("no", "Not at all"),
+        ("auto", "Between classes named as two sides of a motion: wave_left, wave_right"),
+        ("yes", "All classes but those of --one-sided"),
+        ("no", "Never"),
     ])))]
     pub mirror: Mirror,
-    /// With --mirror yes: classes whose mirror image is another motion, separated by commas; it then teaches what the
-    /// class is not
+    /// Classes whose mirror image is a negative example (--mirror yes)
+    ///
+    /// Separated by commas. The mirror image of such a class is another motion, as of `sweep_left`.
     #[cfg_attr(
         feature = "clap",
-        arg(long, value_delimiter = ',', value_name = "CLASSES")
+        arg(
+            hide_short_help = true,
+            long,
+            value_delimiter = ',',
+            value_name = "CLASSES"
+        )
     )]
     pub one_sided: Vec<String>,
-    /// Parts that count (not with --method svrdm): all (of clips without a body: their hands), upper (nothing below the hips: for
-    /// seated performers), arms, hand (left ones as in a mirror), left_hand, hands, body_and_hands, points3 (head and hands
-    /// as tracked points), or names of bones, separated by commas, as the report of training lists them
+    /// Body parts to use: all, upper, arms, hand, hands, points3 …
+    ///
+    /// all: the body, or else the hands; upper: nothing below the hips, for seated performers; arms; hand: a left hand
+    /// counts as a mirrored right one; left_hand; hands; body_and_hands; points3: head and hands as tracked points; custom;
+    /// or names of bones, separated by commas, as the report of training lists them. Not with --method svrdm.
     #[cfg_attr(
         feature = "clap",
         arg(long, value_name = "PARTS", default_value = "all")
     )]
     #[serde(with = "text")]
     pub bones: BoneSet,
-    /// Set a parameter of the method by its path, as `rho=0.4`, `decode.lag_ticks=2`, `stages.scaling=unit_range`; may be
-    /// given several times
+    /// Set a parameter, such as `rho=0.4`; can be repeated
+    ///
+    /// By its path: `decode.lag_ticks=2`, `stages.scaling=unit_range`. docs/parameters.md lists those worth changing.
     #[cfg_attr(feature = "clap", arg(long = "param", value_name = "NAME=VALUE"))]
     #[serde(
         serialize_with = "params::to_table",
@@ -116,13 +141,12 @@ impl Default for TrainSettings {
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "snake_case")]
 pub enum Method {
-    /// Each class as its samples say: gestures matched elastically, activities (which go on for longer, like walking) by what a
-    /// window of them shows
+    /// Gestures by templates, activities (such as walking) by windows; training decides for each class
     #[default]
     Auto,
-    /// Every class as a gesture
+    /// All classes are gestures
     Templates,
-    /// The method of the thesis of 2009: support vector machines over the directions of motion, in a tree
+    /// The method of the thesis of 2009: a tree of support vector machines
     Svrdm,
 }
 
@@ -131,10 +155,10 @@ pub enum Method {
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "snake_case")]
 pub enum Unlabelled {
-    /// None of the classes
+    /// Belongs to no class
     #[default]
     Background,
-    /// Unknown: used for nothing
+    /// May be unlabelled samples: not used
     Ignore,
 }
 

@@ -13,24 +13,24 @@ use crate::files::{ReadArgs, expand, mapping, open, say_doubts};
 use crate::progress::SlowProgress;
 use crate::stats::Stats;
 
-/// Measure how fast clips are recognised, stage by stage.
+/// Measure the speed of recognition, stage by stage.
 ///
-/// Recognises all clips again and again on one core and prints the pass of median time: microseconds a frame, share of the whole path
-/// and frames a second of each stage. Stages run once more by themselves, so their sum differs from the whole path, where a
-/// recogniser is laid out once for all clips of the same bones. Other programs that run at the same time count, too.
+/// Recognises all clips repeatedly on one core and prints the pass with the median time: microseconds a frame, share of
+/// the whole and frames a second of each stage. Stages also run alone, so their sum differs from the whole. Other
+/// running programs affect the figures.
 #[derive(clap::Args)]
 #[command(after_help = "Example: morec bench signs.index new/")]
 pub struct Args {
-    /// The index, as `morec train` writes it
+    /// Index file of `morec train`
     index: PathBuf,
     /// Clips, or folders of clips
     #[arg(required = true, value_name = "CLIP")]
     clips: Vec<PathBuf>,
-    /// Recognise all clips N times
+    /// Number of passes over all clips
     #[arg(long, value_name = "N", default_value = "5", value_parser = clap::value_parser!(u16).range(1..))]
     passes: u16,
-    /// Roles of joints, where inference fails: lines of `role<TAB>joint name`
-    #[arg(long, value_name = "FILE")]
+    /// Roles of joints, where inference fails: lines of `role<TAB>joint`
+    #[arg(hide_short_help = true, long, value_name = "FILE")]
     roles: Option<PathBuf>,
     #[command(flatten)]
     read: ReadArgs,
@@ -42,7 +42,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let mut read = Stats::default();
     let takes = takes(args, &index, &mut read)?;
     if takes.iter().all(|take| take.clip.frames == 0) {
-        bail!("no frame of motion in the clips; nothing to measure");
+        bail!("the clips contain no motion");
     }
     let recognizers = RecognizerCache::new(&index.model);
     let mut passes = Vec::new();

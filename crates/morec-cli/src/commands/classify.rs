@@ -15,13 +15,13 @@ use super::recognize::{OutputFormat, adapt, open_index, write_rows};
 use crate::files::{ReadArgs, expand, mapping, takes};
 use crate::progress::SlowProgress;
 
-/// Name the class of whole clips.
+/// Name the class of whole clips, each cut around one motion.
 ///
-/// For clips that were cut around one motion each: all that moves in a clip is compared with the samples of every class. A clip is given
-/// the nearest class if that is more probable than everything else, else none. For clips in which motions have to be found, see
-/// `morec recognize`.
+/// Everything that moves in a clip is compared with the samples of every class. The nearest class is given if it is
+/// more probable than everything else, otherwise none. To find motions in longer clips, use `morec recognize`.
 ///
-/// Writes one line for each clip: clip, class (empty: none of them), its probability, the nearest class, and the probability of each class.
+/// Writes one line for each clip: clip, class (empty: none), its probability, the nearest class, and the probability of
+/// each class.
 #[derive(clap::Args)]
 #[command(
     after_help = "Exit codes: 0 all clips done; 1 something cannot be read (the others are done all the same); \
@@ -29,9 +29,9 @@ use crate::progress::SlowProgress;
     Example: morec classify signs.index cut/ -o classes.tsv"
 )]
 pub struct Args {
-    /// The index, as `morec train` writes it
+    /// Index file of `morec train`
     index: PathBuf,
-    /// Clips, or folders of clips; - reads one clip from standard input
+    /// Clips, or folders of clips; - is standard input
     #[arg(required = true, value_name = "CLIP")]
     clips: Vec<PathBuf>,
     /// Form of the output
@@ -40,8 +40,8 @@ pub struct Args {
     /// File to write to [default: standard output]
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Roles of joints, where inference fails: lines of `role<TAB>joint name`
-    #[arg(long, value_name = "FILE")]
+    /// Roles of joints, where inference fails: lines of `role<TAB>joint`
+    #[arg(hide_short_help = true, long, value_name = "FILE")]
     roles: Option<PathBuf>,
     #[command(flatten)]
     read: ReadArgs,

@@ -25,7 +25,7 @@ pub struct Completions {
 Example:
   morec man ~/.local/share/man/man1")]
 pub struct Man {
-    /// The folder; it is made if it is not there
+    /// Folder to write to; created if it does not exist
     #[arg(value_name = "FOLDER")]
     folder: PathBuf,
 }

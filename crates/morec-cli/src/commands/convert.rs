@@ -43,7 +43,7 @@ pub fn run(args: Args) -> Result<ExitCode> {
         false => ClipForm::of(output).with_context(|| output.display().to_string())?,
     };
     if args.table != CsvContent::Positions && form != ClipForm::Csv {
-        bail!("--table says what a .csv holds, and the output is none");
+        bail!("--table is for .csv output");
     }
     let opened = files::open(path, &args.read)?;
     for warning in &opened.warnings {
@@ -68,8 +68,8 @@ fn one_of(mut clips: Vec<Clip>, character: Option<usize>) -> Result<Clip> {
     let count = clips.len();
     match character {
         None if count == 1 => Ok(clips.remove(0)),
-        None => bail!("the file holds {count} characters; say which with --character"),
+        None => bail!("the file has {count} characters; choose one with --character"),
         Some(n) if (1..=count).contains(&n) => Ok(clips.remove(n - 1)),
-        Some(n) => bail!("there is no character {n}; the file holds {count}"),
+        Some(n) => bail!("there is no character {n}; the file has {count}"),
     }
 }

@@ -23,13 +23,13 @@ use crate::output;
 use crate::progress::StageBar;
 use crate::table::TextTable;
 
-/// Cross-validate: train without a part of the labels, recognise that part, and measure.
+/// Cross-validate: train without a part of the labels, recognise that part, measure.
 ///
-/// --by half trains on half of each class's samples (rounded up) and recognises all clips; --by clip and --by
-/// person leave out one clip or person after the other. Prints what `morec evaluate` prints.
+/// --by half trains on half of each class's samples and recognises all clips; --by clip and --by person leave out each
+/// clip or person in turn. Prints what `morec evaluate` prints.
 ///
-/// A clip may be named both as --background and as --unknown: it is then background except in the folds that leave
-/// its person out, in which it is tested.
+/// A clip can be named both as --background and as --unknown: it is tested in the folds that leave its person out, and
+/// is background in the others.
 #[derive(clap::Args)]
 #[command(
     after_help = "Exit codes: 0 measured; 1 something cannot be read or trained; 2 wrong command line.\n\n\
@@ -40,14 +40,17 @@ pub struct Args {
     material: MaterialArgs,
     #[command(flatten)]
     settings: CrossvalSettings,
-    /// Other clips to test on, each in the fold of its person; what --clips and --labels name then only teaches
+    /// Test on these clips, each in the fold of its person
+    ///
+    /// The clips of --clips and --labels then only train.
     #[arg(long, value_name = "DIR|CLIP", num_args = 1.., requires = "test_labels")]
     test: Vec<PathBuf>,
     /// Labels of --test, with a column person
     #[arg(long, value_name = "FILE|DIR", requires = "test")]
     test_labels: Option<PathBuf>,
-    /// Clips or folders that hold none of the classes, also by file stem: what is recognised in them is a false
-    /// alarm
+    /// Test clips without any class: every detection is a false alarm
+    ///
+    /// Clips, folders, or file stems.
     #[arg(long, value_name = "DIR|CLIP", num_args = 1..)]
     unknown: Vec<PathBuf>,
     /// Print what 1, 2, 4 … samples of each class and 1, 2, 4 … people are worth instead, three draws each: takes many times as long
@@ -59,7 +62,7 @@ pub struct Args {
     /// Print one JSON object instead of tables
     #[arg(long, help_heading = "Output")]
     json: bool,
-    /// Write a page of HTML too, one file without outside links
+    /// Write a page of HTML too
     #[arg(long, value_name = "HTML", help_heading = "Output")]
     report: Option<PathBuf>,
 }

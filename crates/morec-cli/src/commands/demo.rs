@@ -22,11 +22,10 @@ use crate::show::{self, ShownClip};
 use cast::Cast;
 use folder::DemoFolder;
 
-/// See the whole job in a few seconds, without a clip of your own.
+/// Try everything in a few seconds, without your own clips.
 ///
-/// Unpacks clips of two basketball referees, some other motion and their labels; trains an index; recognises another
-/// recording, shows it in the terminal, and measures. Each step is printed as the command that does it, to be repeated
-/// with clips of your own.
+/// Unpacks clips of two basketball referees, other motion and labels; trains an index; recognises another recording,
+/// plays it in the terminal, and measures. Each step is printed as a command that you can repeat with your clips.
 ///
 /// The clips were obtained from mocap.cs.cmu.edu; the database was created with funding from NSF EIA-0196217. With
 /// --synthetic, seven synthetic people perform eight gestures instead, which takes about a minute.
@@ -35,16 +34,16 @@ use folder::DemoFolder;
     after_help = "Exit codes: 0 all done; 1 something failed, the message says what; 2 wrong command line."
 )]
 pub struct Args {
-    /// Folder for everything; one that is not empty must be an earlier demo's
+    /// Folder for everything: new, empty, or of an earlier demo
     #[arg(long, value_name = "DIR", default_value = "morec-demo")]
     folder: std::path::PathBuf,
-    /// Play the stream N times as fast as it was performed
+    /// Play the stream N times as fast
     #[arg(long, value_name = "TIMES", default_value = "4", value_parser = speed)]
     speed: f64,
-    /// Synthetic people in place of real ones
+    /// Use synthetic people
     #[arg(long)]
     synthetic: bool,
-    /// Print what was recognised instead of playing the stream, as without a terminal
+    /// Print what was recognised instead of playing it
     #[arg(long)]
     quiet: bool,
 }
@@ -118,7 +117,7 @@ fn show(folder: &DemoFolder, cast: &Cast, args: &Args) -> Result<()> {
     let path = folder.path(&cast.clip);
     let takes = takes(&path, &ReadArgs::default(), &ImportOptions::default())?;
     let Some(take) = takes.first() else {
-        bail!("{}: holds no clip", path.display());
+        bail!("{}: contains no clip", path.display());
     };
     let length = ClipLength::from(&take.clip);
     let lengths = BTreeMap::from([(cast.name.clone(), length)]);

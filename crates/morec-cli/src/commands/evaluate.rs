@@ -27,12 +27,11 @@ use crate::output;
 /// Measure detections against labels.
 ///
 /// Prints how many samples were found, F1 of events and at overlaps of 0.1, 0.25, 0.5 and 0.75, false alarms a minute,
-/// delay, errors of starts and stops, P_C/P_E/P_R and the confusion matrix, over all clips and class by class.
+/// delay, errors of starts and stops, P_C/P_E/P_R and the confusion matrix, over all clips and for each class.
 ///
-/// Labels and detections are tables of tab-separated text with a header: `clip`, `class`, and `start`, `stop`
-/// (frames of the clip, stop exclusive) or `start_secs`, `stop_secs`. In a labelled clip, what has no label counts
-/// as none of the classes. Clips that no label names are left out, unless --unknown says that they hold none of
-/// the classes.
+/// Tables are tab-separated with a header: `clip`, `class`, and `start`, `stop` (frames, stop exclusive) or
+/// `start_secs`, `stop_secs`. In a labelled clip, what has no label counts as none of the classes. Clips without labels
+/// are ignored, unless --unknown names them.
 #[derive(clap::Args)]
 #[command(
     after_help = "Exit codes: 0 measured; 1 a file cannot be read or nothing can be measured; 2 wrong command line.\n\n\
@@ -40,28 +39,29 @@ use crate::output;
     morec evaluate --labels labels.tsv --found found.tsv --clips new/ --report report.html"
 )]
 pub struct Args {
-    /// Labels, in a form that `morec db label` reads; of tables columns clip, class, and start, stop or start_secs,
-    /// stop_secs, or neither for whole clips
+    /// Labels: a table, or a form that `morec db label` reads
     #[arg(long, alias = "truth", value_name = "FILE|DIR")]
     labels: PathBuf,
-    /// Detections, as `morec recognize` writes them or with as little as clip, start, stop, class; - reads them
-    /// from standard input
+    /// Detections of `morec recognize`; - is standard input
+    ///
+    /// Columns clip, class, start and stop are enough.
     #[arg(long, value_name = "TSV")]
     found: PathBuf,
-    /// Clips, or folders of clips, that were searched: they tell each clip's rate and length
+    /// Clips, or folders of clips, that were searched
     #[arg(long, value_name = "DIR|CLIP", num_args = 1.., required = true)]
     clips: Vec<PathBuf>,
-    /// Clips, or folders, that hold none of the classes: what is found there counts apart from the rest
+    /// Test clips without any class: every detection is a false alarm
     #[arg(long, value_name = "DIR|CLIP", num_args = 1..)]
     unknown: Vec<PathBuf>,
-    /// The index that recognised: says of each missed sample what kept it from being reported, and in the report how well the others were
-    /// performed
+    /// The index that recognised: gives reasons for missed samples
+    ///
+    /// In the report also how well the others were performed.
     #[arg(long, value_name = "INDEX")]
     index: Option<PathBuf>,
     /// Print one JSON object instead of tables
     #[arg(long)]
     json: bool,
-    /// Write a page of HTML too, one file without outside links
+    /// Write a page of HTML too
     #[arg(long, value_name = "HTML")]
     report: Option<PathBuf>,
     #[command(flatten)]
@@ -95,7 +95,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     };
     if measure_as_taught(&mut resolved.samples, &moving) > 0 {
         eprintln!(
-            "morec: labels of whole clips are measured as they teach, without the still ends"
+            "morec: labels of whole clips are measured without their still ends, as in training"
         );
     }
     let (founds, absent) = table.resolve(&clips);

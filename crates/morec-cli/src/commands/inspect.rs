@@ -19,12 +19,11 @@ use draw::Drawing;
 use report::summary::FolderSummary;
 use report::{FileReport, InspectReport};
 
-/// Show what a clip is: skeleton, roles, rate, units, repairs
+/// Show a clip: skeleton, roles, rate, units, repairs
 ///
-/// One clip is shown joint by joint, several in a few lines each and a summary; a folder stands for all clips in it and below.
-/// Unit, up axis and rest pose are inferred from the motion; how they were taken is how every other command
-/// takes them. Exit code 1 if a file could not be read (the others are shown), or a folder holds motion in a format that is
-/// not read (it is named).
+/// One clip is shown joint by joint, several in a few lines each with a summary; a folder means all clips in it and
+/// below. Unit, up axis and rest pose are inferred from the motion, in the same way as by every other command. Exit
+/// code 1 if a file could not be read, or a folder holds motion in a format that is not read.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -42,32 +41,33 @@ A roles file has one role a line, a tab, and the joint's name (or - for none):
 Names between + stand for the middle of these joints or markers:
   left_knee<TAB>LKNE+LKNM")]
 pub struct Args {
-    /// Clips in any format that is read, skeletons (ASF) or folders of clips; FILE#2 and FILE#name are one clip of a file;
-    /// - is standard input
+    /// Clips, skeletons (ASF) or folders; - is standard input
+    ///
+    /// FILE#2 and FILE#name are one clip of a file.
     #[arg(required = true, value_name = "CLIP")]
     clips: Vec<PathBuf>,
     /// Print one JSON array, with an object for each file
     #[arg(long)]
     json: bool,
-    /// Print every joint of every clip, even of several
+    /// Print every joint of every clip
     #[arg(long, conflicts_with = "json")]
     full: bool,
-    /// Draw the body as it was understood, left and right in colours of their own
+    /// Draw the body, left and right in different colours
     #[arg(long, conflicts_with = "json")]
     draw: bool,
-    /// File to write with --draw: the picture of one clip as SVG, with the names of its joints
+    /// File to write with --draw: one clip as SVG with joint names
     #[arg(short, long, value_name = "FILE", requires = "draw")]
     output: Option<PathBuf>,
-    /// Roles that override those found: a file of `role<TAB>joint` lines
+    /// Roles of joints, where inference fails: lines of `role<TAB>joint`
     #[arg(long, value_name = "FILE")]
     roles: Option<PathBuf>,
-    /// Print a roles file to start from: the roles that are found, and which markers would make the others
+    /// Print a file for --roles to start from
     #[arg(long, conflicts_with_all = ["json", "draw", "full"])]
     roles_template: bool,
-    /// Axis that is up in the files: x, y, z, -x, -y or -z
+    /// Up axis of the files: x, y, z, -x, -y or -z [default: inferred]
     #[arg(long, value_name = "AXIS", allow_hyphen_values = true)]
     up: Option<SignedAxis>,
-    /// Metres in the files' unit of length, 0.01 for centimetres
+    /// Metres in the files' unit of length, 0.01 for cm [default: inferred]
     #[arg(long, value_name = "METRES", value_parser = metres)]
     unit: Option<f64>,
     #[command(flatten)]

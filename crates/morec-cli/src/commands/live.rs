@@ -1,4 +1,4 @@
-//! `morec live`: recognise whoever moves in front of a tracker, and tell others.
+//! `morec live`: recognises performers in front of a tracker and sends events to other programs.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -22,60 +22,68 @@ use morec_ops::StreamSettings;
 
 /// Recognise motions live, from a tracker to an event.
 ///
-/// Sources (--listen, several if you like):
-///   vmc://127.0.0.1:39539   VMC senders on this UDP port, any number of performers
-///   axis://127.0.0.1:7001   the BVH broadcast of Axis Neuron or Axis Studio at this address; axis+udp:// listens
-///   json:-                  poses as lines of JSON on standard input
-///   json+tcp://127.0.0.1:9000 the same from whoever connects
-///   webcam                  this machine's camera, by a page that opens in the browser and the files that --mediapipe
-///                           names; webcam://127.0.0.1:8000 serves the page there and leaves opening it to you
-///   clip://FILE             a clip, in real time; ?speed=4 (0: as fast as it goes), ?loop, ?loss=0.05, ?jitter=20
+/// A line of JSON is a pose:
+///   {"t": 1.25, "positions": {"hips": [0, 0.92, 0], "left_hand": [0.7, 1.4, 0]}}
+/// t is in seconds; axes are right-handed, Y up, in any unit of length. Parts of
+/// the body are hips, torso, neck, head, and left_ and right_
+/// thigh, shin, foot, shoulder, arm, forearm, hand, each at its near end: thigh
+/// at the hip joint, shin at the knee, foot at the ankle, arm at the shoulder
+/// joint, forearm at the elbow, hand at the wrist.
 ///
-/// A line of JSON is a pose: {"t": 1.25, "positions": {"hips": [0, 0.92, 0], "left_hand": [0.7, 1.4, 0.1]}}, t in
-/// seconds, right-handed axes, Y up, any unit of length. Parts of the body are hips, torso, neck, head, and left_ and
-/// right_ thigh, shin, foot, shoulder, arm, forearm, hand, each placed at its near end: the thigh at the hip joint,
-/// the shin at the knee, the foot at the ankle, the arm at the shoulder joint, the forearm at the elbow, the hand at
-/// the wrist.
-///
-/// Events go (--emit) to:
-///   terminal:-              a line for each motion (the default)
-///   json:- or json:FILE     a JSON object for each event
-///   osc://HOST:PORT         /morec/event and /VMC/Thru/morec/event
-///   ws://HOST:PORT          whoever connects there with a WebSocket
-///
-/// An event is the end of a motion, with score, start and stop. One motion ends once, and nothing that ended is taken back.
-/// With --tentative, a motion also has a start and updates with progress before its end, or a cancellation in its place.
-/// With --each-repetition, an activity also has a repetition (with its start and stop) each time one more is over. Ctrl-C
-/// ends the session.
+/// An event is the end of a motion, with score, start and stop, and is never
+/// taken back. With --tentative, a motion also has a start and updates with
+/// progress before its end, or a cancellation in its place. With
+/// --each-repetition, an activity also has a repetition (with its start and
+/// stop) each time one more is over. Ctrl-C ends the session.
 #[derive(clap::Args)]
 #[command(
     verbatim_doc_comment,
-    after_help = "Exit codes: 0 ended by Ctrl-C, --for or the end of every source; 1 something cannot be opened, or \
-    json:FILE lacks events; 2 wrong command line.\n\n\
-    Without a tracker, in two terminals:\n  \
-    morec live demo.index --listen vmc://127.0.0.1:39539\n  \
-    morec send new/person_06.bvh --to vmc://127.0.0.1:39539"
+    after_help = "\
+Sources (--listen):
+  vmc://127.0.0.1:39539      VMC senders on this UDP port, several performers
+  axis://127.0.0.1:7001      BVH broadcast of Axis Neuron, Axis Studio
+                             (axis+udp:// listens)
+  json:-                     poses as lines of JSON on standard input
+  json+tcp://127.0.0.1:9000  the same over TCP connections
+  webcam                     this machine's camera, by a page in the browser
+                             (webcam://127.0.0.1:8000 does not open it)
+  clip://FILE                a clip; ?speed=4 (0: as fast as possible),
+                             ?loop, ?loss=0.05, ?jitter=20
+
+Sinks (--emit):
+  terminal:-                 a line for each motion (the default)
+  json:- or json:FILE        a JSON object for each event
+  osc://HOST:PORT            /morec/event and /VMC/Thru/morec/event
+  ws://HOST:PORT             every WebSocket that connects
+
+Exit codes: 0 ended by Ctrl-C, --for or the end of every source; 1 something
+cannot be opened, or json:FILE lacks events; 2 wrong command line.
+
+Without a tracker, in two terminals:
+  morec live demo.index --listen vmc://127.0.0.1:39539
+  morec send new/person_06.bvh --to vmc://127.0.0.1:39539"
 )]
 pub struct Args {
-    /// The index, as `morec train` writes it
+    /// Index file of `morec train`
     index: PathBuf,
     #[command(flatten)]
     stream: StreamSettings,
-    /// Source of poses
+    /// Source of poses; can be repeated
     #[arg(long, required = true, value_name = "SOURCE")]
     listen: Vec<Address>,
-    /// Sink of events [default: terminal:-]
+    /// Sink of events; can be repeated [default: terminal:-]
     #[arg(long, value_name = "SINK")]
     emit: Vec<Address>,
-    /// Run a command when a motion of a class has happened: a program and its arguments, given to no shell, with
-    /// MOREC_CLASS, MOREC_PHASE, MOREC_SCORE, MOREC_START and MOREC_STOP (seconds) in its environment; several if you like
+    /// Run a program when a motion of a class ends; can be repeated
+    ///
+    /// A program with its arguments, without a shell. MOREC_CLASS, MOREC_PHASE, MOREC_SCORE, MOREC_START and MOREC_STOP
+    /// (seconds) are in its environment.
     #[arg(long, value_name = "CLASS=COMMAND")]
     on: Vec<OnClass>,
     #[command(flatten)]
     tracker: TrackerArgs,
-    /// Distribution of recognition over threads; detections are the same, and a thread for each stage takes more of the
-    /// processor than one for all
-    #[arg(long, value_enum, default_value = "inline")]
+    /// Threads of recognition; detections are the same
+    #[arg(hide_short_help = true, long, value_enum, default_value = "inline")]
     layout: LayoutArg,
     /// End after N seconds
     #[arg(long = "for", value_name = "SECS", value_parser = secs)]

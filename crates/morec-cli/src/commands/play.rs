@@ -22,8 +22,8 @@ use crate::show::{self, ShownClip};
 
 /// Play clips in the terminal, or write a page that plays them
 ///
-/// The body is shown from the front, with labels and detections on lines below it. With --output, one HTML file is written that
-/// needs nothing else: the body can be turned and zoomed, time can be scrubbed, and a list leads to every label and detection.
+/// The body is shown from the front, with labels and detections below. With --output, one HTML file is written: the
+/// body can be turned and zoomed, time scrubbed, and a list leads to every label and detection.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -31,23 +31,23 @@ Examples:
   morec play new/signals_3.bvh --index signs.index --speed 2
   morec play clips/ --labels labels.tsv -o clips.html")]
 pub struct Args {
-    /// Clips in any format that is read, or folders of clips
+    /// Clips, or folders of clips
     #[arg(required = true, value_name = "CLIP")]
     clips: Vec<PathBuf>,
-    /// Labels, in a form that `morec db label` reads, to be shown
+    /// Labels to show: a table, or a form that `morec db label` reads
     #[arg(long, value_name = "FILE|DIR")]
     labels: Option<PathBuf>,
-    /// Show what this index recognises, too
+    /// Also show what this index recognises
     #[arg(long, value_name = "INDEX")]
     index: Option<PathBuf>,
-    /// Speed in the terminal, 1 as performed
+    /// Speed in the terminal; 1: as performed
     #[arg(long, value_name = "TIMES", default_value_t = 1.0, value_parser = speed)]
     speed: f64,
-    /// The file to write: a page of HTML that plays the clips, instead
+    /// File to write instead: a page of HTML
     #[arg(short, long, value_name = "HTML")]
     output: Option<PathBuf>,
-    /// Roles that override those found: a file of `role<TAB>joint` lines
-    #[arg(long, value_name = "FILE")]
+    /// Roles of joints, where inference fails: lines of `role<TAB>joint`
+    #[arg(hide_short_help = true, long, value_name = "FILE")]
     roles: Option<PathBuf>,
     #[command(flatten)]
     reading: LabelArgs,

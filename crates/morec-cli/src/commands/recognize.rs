@@ -41,37 +41,40 @@ use morec_live::PlayableClip;
     cat take.bvh | morec recognize signs.index -"
 )]
 pub struct Args {
-    /// The index, as `morec train` writes it
+    /// Index file of `morec train`
     index: PathBuf,
-    /// Clips, or folders of clips; - reads one clip from standard input
+    /// Clips, or folders of clips; - is standard input
     #[arg(required = true, value_name = "CLIP")]
     clips: Vec<PathBuf>,
     /// Format of detections
     #[arg(long, alias = "format", value_enum, default_value = "tsv")]
     form: OutputFormat,
-    /// Say of each motion how it was performed: its mean angle off the nearest sample, its pace, and the bone that is farthest off. Of
-    /// activities and held poses, and with the method of 2009, nothing is said
+    /// Add how each gesture differs from its nearest sample
+    ///
+    /// The mean angle, the pace, and the bone that differs most. Not for activities, held signs and the method of 2009.
     #[arg(long)]
     deviation: bool,
-    /// File to write them to [default: standard output]
+    /// File to write to [default: standard output]
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Say on standard error how many frames a second one core recognises, as a whole and by stage
+    /// Print the speed of one core on standard error, by stage
     #[arg(long)]
     stats: bool,
     #[command(flatten)]
     settings: RecognizeSettings,
-    /// Roles of joints, where inference fails: lines of `role<TAB>joint name`
-    #[arg(long, value_name = "FILE")]
+    /// Roles of joints, where inference fails: lines of `role<TAB>joint`
+    #[arg(hide_short_help = true, long, value_name = "FILE")]
     roles: Option<PathBuf>,
-    /// Distribution of recognition over threads; detections are the same
-    #[arg(long, value_enum, default_value = "inline")]
+    /// Threads of recognition; detections are the same
+    #[arg(hide_short_help = true, long, value_enum, default_value = "inline")]
     layout: LayoutArg,
-    /// Recognise clips as if they had come over VMC at N frames a second, with the accidents below
+    /// Recognise clips as if sent over VMC at N frames a second
+    ///
+    /// With the faults of --bundle, --loss, --reorder and --jitter.
     #[arg(long, value_name = "HZ", value_parser = rate)]
     over_vmc: Option<f64>,
-    /// Bundling of messages into datagrams, for --over-vmc: whole, single or a number of bytes
-    #[arg(long, value_name = "whole|single|BYTES", default_value = "1500", value_parser = bundling)]
+    /// Bundling of VMC messages: whole, single or a number of bytes
+    #[arg(hide_short_help = true, long, value_name = "whole|single|BYTES", default_value = "1500", value_parser = bundling)]
     bundle: Bundling,
     #[command(flatten)]
     conditions: NetworkArgs,

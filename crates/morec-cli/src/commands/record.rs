@@ -13,10 +13,10 @@ use crate::live::open::TrackerArgs;
 use crate::live::takes::{Ended, TakeArgs, TakeRecorder, secs};
 use morec_live::Address;
 
-/// Record takes from a tracker, for `morec train --clips` and everything else that reads clips.
+/// Record takes from a tracker as clips.
 ///
-/// Each take begins after a countdown and a bell, and ends with a bell: after --secs of stream, with Enter, when the
-/// performer goes or the source ends, or with Ctrl-C. What was recorded until then is kept.
+/// Each take begins after a countdown and a bell. It ends with a bell: after --secs of stream, with Enter, when the
+/// performer leaves or the source ends, or with Ctrl-C. What was recorded until then is kept.
 ///
 /// Sources (--listen) are those of `morec live`.
 #[derive(clap::Args)]
@@ -30,24 +30,26 @@ use morec_live::Address;
     morec record --listen json:- -o take.jsonl --count-down 0 < poses.jsonl"
 )]
 pub struct Args {
-    /// Source of poses
+    /// Source of poses, as in `morec live`
     #[arg(long, value_name = "SOURCE")]
     listen: Address,
-    /// Output of takes, by the ending: .bvh, .jsonl (lines of JSON as `morec live` reads them), or .mdb, a database (the
-    /// takes are kept beside it, too). Several takes are numbered
+    /// Output: .bvh, .jsonl (lines of JSON) or .mdb (a database)
+    ///
+    /// Takes of a database are also kept beside it. Several takes are numbered.
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
-    /// Attach a tag to the takes in a database; may be given several times. `background`: `morec train --db` learns from them
-    /// what is none of the classes
+    /// Tag of the takes in a database; can be repeated
+    ///
+    /// `background`: `morec train --db` uses them as background.
     #[arg(long = "tag", value_name = "WORD")]
     tags: Vec<String>,
-    /// Record N takes, one after the other
+    /// Number of takes
     #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u32).range(1..=9999))]
     takes: u32,
-    /// End a take after N seconds of stream
+    /// Length of a take, seconds of stream
     #[arg(long, value_name = "SECS", value_parser = secs)]
     secs: Option<f64>,
-    /// Write over files that are there
+    /// Overwrite existing files
     #[arg(long)]
     overwrite: bool,
     #[command(flatten)]
@@ -61,7 +63,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let store = TakeStore::of(&args.output)?;
     if !args.tags.is_empty() && !matches!(store, TakeStore::Database(_)) {
         bail!(
-            "--tag: tags are kept in a database only, and {} is none",
+            "--tag: tags need a database, and {} is not one",
             args.output.display()
         );
     }

@@ -19,8 +19,8 @@ use crate::table::TextTable;
 
 /// Show how many dimensions the poses of clips have
 ///
-/// Principal components of every pose of every clip, read one after the other: any number of clips takes the memory
-/// of the longest. The table says how much of the variance each number of dimensions keeps.
+/// Principal components of all poses of all clips. The table has the share of the variance that each number of
+/// dimensions keeps. Memory is that of the longest clip.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -45,7 +45,7 @@ pub struct Args {
     /// Print one JSON object: the table, and the components with their mean
     #[arg(long)]
     json: bool,
-    /// Draw how much each number of dimensions keeps
+    /// Draw the share that each number of dimensions keeps
     #[arg(long, value_name = "SVG")]
     plot: Option<PathBuf>,
     #[command(flatten)]

@@ -11,11 +11,12 @@ use crate::output;
 use crate::progress::StageBar;
 use crate::table::TextTable;
 
-/// Run the evaluation of the thesis of 2009 on labelled clips and write a page of its tables beside ours.
+/// Run the evaluation of the thesis of 2009 on labelled clips.
 ///
 /// Cuts the clips (§5.1), groups the samples (§5.2), classifies cut-out samples (§5.3) and whole streams (§5.4) with
-/// trees that half of each class trained: once with the thesis's own figures (faithful), once tuned. --param sets
-/// figures of the one that --svrdm names; --method, --everyday, --mirror and --bones are for other methods.
+/// trees that half of each class trained: with the thesis's values (faithful), and tuned. Writes a page with its tables
+/// beside yours. --param sets parameters of the setting that --svrdm names; --method, --everyday, --mirror and --bones
+/// are for the other method.
 #[derive(clap::Args)]
 #[command(
     after_help = "Exit codes: 0 done; 1 something cannot be read or trained; 2 wrong command line.\n\n\
@@ -23,14 +24,13 @@ use crate::table::TextTable;
     \x20          --unknown exercises/clips -o reproduction/"
 )]
 pub struct Args {
-    /// Clips or folders that hold none of the classes, also by file stem: what is recognised in them is a false
-    /// alarm
+    /// Test clips without any class: every detection is a false alarm
     #[arg(long, value_name = "DIR|CLIP", num_args = 1..)]
     unknown: Vec<PathBuf>,
     /// Seeds of the half splits, separated by commas
     #[arg(long, value_delimiter = ',', value_name = "N", default_values_t = [1, 2])]
     seed: Vec<u64>,
-    /// Folder for reproduction.html, reproduction.json, the pictures as SVG files and the confidence maps as TSV
+    /// Folder for the page, its JSON, pictures (SVG) and confidence maps (TSV)
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
     #[command(flatten)]

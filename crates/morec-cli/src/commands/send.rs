@@ -21,12 +21,12 @@ use morec_live::Network;
 use morec_live::PAUSE_SECS;
 use morec_live::load;
 
-/// Play clips as a VMC sender, so that anything that listens to VMC can be tried without a tracker; or as Axis
-/// Neuron would broadcast them.
+/// Play clips as a VMC sender or an Axis broadcast, to try receivers without a tracker.
 ///
-/// Each joint that plays a role, and each of a finger, is sent as the humanoid bone of that part, in Unity's left-handed axes, as it is in the
-/// clip. As a broadcast (--to axis://HOST:PORT) frames go to whoever connects there over TCP, each bone with its position,
-/// or without (?positions=0); it begins when the first has come. Between clips there is a pause of a second. The accidents of a bad network can be had on request.
+/// Each joint with a role, and each finger joint, is sent as the humanoid bone of that part, in Unity's left-handed
+/// axes. As a broadcast (--to axis://HOST:PORT) frames go to every program that connects over TCP, with positions or
+/// without (?positions=0), beginning with the first connection. Between clips there is a pause of a second. A bad
+/// network can be simulated.
 #[derive(clap::Args)]
 #[command(
     after_help = "Exit codes: 0 everything was sent, or Ctrl-C; 1 something cannot be read or sent; 2 wrong command line.\n\n\
@@ -37,7 +37,7 @@ pub struct Args {
     /// Clips, or folders of clips
     #[arg(required = true, value_name = "CLIP")]
     clips: Vec<PathBuf>,
-    /// Receiver to send them to
+    /// Receiver
     #[arg(
         long,
         value_name = "vmc|axis://HOST:PORT",
@@ -47,21 +47,22 @@ pub struct Args {
     /// Frames a second
     #[arg(long, value_name = "HZ", default_value = "60", value_parser = rate)]
     rate: f64,
-    /// Play N times as fast as it was performed
+    /// Play N times as fast
     #[arg(long, value_name = "TIMES", default_value = "1", value_parser = rate)]
     speed: f64,
-    /// Begin again at the end, until Ctrl-C
+    /// Repeat until Ctrl-C
     #[arg(long = "loop")]
     looped: bool,
-    /// Bundling of messages into datagrams: whole (a bundle for each frame), single (each by itself), or the most
-    /// bytes of a bundle
+    /// Bundling of messages: whole, single or a number of bytes
+    ///
+    /// whole: one bundle for each frame; single: each message alone; else the most bytes of a bundle.
     #[arg(long, value_name = "whole|single|BYTES", default_value = "1500", value_parser = bundling)]
     pub bundle: Bundling,
-    /// Send the bones that a clip does not have, too, unmoved: fingers, toes, face
+    /// Also send bones that the clip lacks, unmoved
     #[arg(long)]
     every_bone: bool,
-    /// Roles of joints, where inference fails: lines of `role<TAB>joint name`
-    #[arg(long, value_name = "FILE")]
+    /// Roles of joints, where inference fails: lines of `role<TAB>joint`
+    #[arg(hide_short_help = true, long, value_name = "FILE")]
     roles: Option<PathBuf>,
     #[command(flatten)]
     conditions: NetworkArgs,
@@ -224,7 +225,7 @@ impl ToAxis {
         let positions = args.to.number("positions", 1.0)?.unwrap_or(1.0) > 0.0;
         let mut to = Broadcast::open(&args.to)?;
         if let Some(at) = to.address() {
-            eprintln!("morec: waiting for whoever listens to axis://{at}");
+            eprintln!("morec: waiting for a program to connect to axis://{at}");
         }
         while to.accept() == 0 && !stop.load(Ordering::Relaxed) {
             std::thread::sleep(Duration::from_millis(20));

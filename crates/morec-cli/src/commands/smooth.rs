@@ -23,14 +23,12 @@ use report::{CompressionReport, CompressionResult};
 
 /// Smooth clips into keyframes and Bézier curves
 ///
-/// Each channel (the rotation of a joint, the position of one that moves in its parent's frame) becomes a run of
-/// cubic Bézier curves, fitted by least squares and split where they are furthest from the frames, until they are
-/// within the thresholds everywhere. What is finer than that, noise and jitter, is smoothed away, and the curves
-/// can be sampled at any rate.
+/// Each channel (the rotation of a joint, or the position of one that moves in its parent's frame) becomes cubic Bézier
+/// curves, fitted by least squares and split until they are within the thresholds everywhere. Noise finer than that
+/// disappears, and the curves can be sampled at any rate.
 ///
-/// Writes them sampled as BVH, or as they are as .mclip, the stored form, a small fraction of the size, which every
-/// command reads like any clip. Prints how much smaller and how far off they are: values are the numbers in control
-/// points against those in frames, bytes the stored form against the file.
+/// Writes sampled BVH, or .mclip, the stored form, which every command reads. Prints sizes and errors: values are the
+/// numbers in control points against those in frames, bytes the stored form against the file.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -46,34 +44,38 @@ pub struct Args {
     /// Clips (BVH, AMC, MCLIP) or folders of clips; - is standard input
     #[arg(required = true, value_name = "CLIP")]
     clips: Vec<PathBuf>,
-    /// Output: a .bvh or .mclip file for one clip, a folder for several. Without it, nothing is written
+    /// Output: a .bvh or .mclip file, or a folder [default: write nothing]
     #[arg(short, long, value_name = "OUT")]
     output: Option<PathBuf>,
-    /// Form of the files in a folder: bvh if not given. A file's ending says it for a file
+    /// Form of the files in a folder [default: bvh]
     #[arg(long, value_enum, requires = "output")]
     form: Option<MotionForm>,
-    /// Largest angle between a joint's rotation in its parent's frame and its curve, at any frame, in degrees
+    /// Largest error of a joint's rotation, degrees
     #[arg(long, value_name = "DEGREES", default_value = "0.5", value_parser = figure)]
     max_angle: f64,
-    /// Set --max-angle and --max-position for each clip from its sensor noise, at 3.5 standard deviations
+    /// Set both thresholds from the clip's sensor noise
+    ///
+    /// 3.5 standard deviations, at least 0.1 degrees and 0.5 mm, in place of --max-angle and --max-position.
     #[arg(long, conflicts_with_all = ["max_angle", "max_position"])]
     auto: bool,
-    /// Largest distance between a moving joint's position in its parent's frame and its curve, in millimetres
+    /// Largest error of a moving joint in its parent's frame, millimetres
     #[arg(long, value_name = "MM", default_value = "5", value_parser = figure)]
     max_position: f64,
-    /// Largest distance between where any joint is in the world and where the curves put it, in millimetres. Not
-    /// bounded if not given: errors along a chain of joints then add up
+    /// Largest error of any joint in the world, millimetres [default: no bound]
+    ///
+    /// Without a bound, errors along a chain of joints add up.
     #[arg(long, value_name = "MM", value_parser = figure)]
     max_joint: Option<f64>,
-    /// Frames a second of the BVH written; those of the clip if not given
+    /// Frame rate of the BVH [default: the clip's]
     #[arg(long, value_name = "HZ", value_parser = files::rate)]
     rate: Option<f64>,
-    /// Metres in the files' unit of length, 0.01 for centimetres; inferred if not given
+    /// Metres in the files' unit of length, 0.01 for cm [default: inferred]
     #[arg(long, value_name = "METRES", value_parser = figure)]
     unit: Option<f64>,
-    /// Draw a channel of the clip with its curves and keyframes as SVG: a joint's name for its rotation, with .x .y
-    /// .z or .w for one component and its control points, .position for its position, .px .py or .pz for one of it.
-    /// Can be given several times
+    /// Draw a channel with its curves as SVG; can be repeated
+    ///
+    /// A joint's name for its rotation, with .x .y .z or .w for one component and its control points, .position for its
+    /// position, .px .py or .pz for one of it.
     #[arg(long, num_args = 2, value_names = ["JOINT[.CHANNEL]", "SVG"])]
     plot: Vec<String>,
     /// Print one JSON array, with an object for each file

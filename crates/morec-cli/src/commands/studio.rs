@@ -10,17 +10,16 @@ use anyhow::{Context, Result, bail};
 /// The program of the window.
 const PROGRAM: &str = "morec-studio";
 
-/// See motions, cut, sort and label them, train and watch live, in a window
+/// Open the studio: view, label, train and recognise in a window
 ///
-/// The window is a program of its own, `morec-studio`, so that the command does not depend on a window system. It is
-/// started from beside this program, or from where commands are found.
+/// The window is the program `morec-studio`, started from the folder of this command or from the search path.
 #[derive(clap::Args)]
 #[command(
     after_help = "Exit codes: those of morec-studio; 1 if it is not installed.\n\n\
     Examples:\n  morec studio\n  morec studio moves.mdb\n  morec studio takes/ walk.bvh"
 )]
 pub struct Args {
-    /// A motion database, or clips; and options of morec-studio (morec-studio --help)
+    /// A database or clips, and options of morec-studio
     #[arg(
         value_name = "FILE.mdb|CLIPS",
         trailing_var_arg = true,

@@ -18,15 +18,15 @@ use lesson::Lessons;
 use morec_live::Address;
 use morec_live::NamedEvent;
 
-/// Teach gestures by performing them: name one, perform it three times, and it is recognised from then on.
+/// Teach gestures live: name one, perform it three times, see it recognised.
 ///
-/// Type a name and press Enter; each repetition begins after a countdown and a bell and lasts --secs seconds, or until
-/// Enter. Then the index is trained anew with everything that was taught before, and whatever is recognised is shown
-/// until the next name. An empty name ends it, as Ctrl-C does.
+/// Type a name and press Enter. Each repetition begins after a countdown and a bell and lasts --secs seconds, or until
+/// Enter. Then the index is retrained with everything taught before, and detections are shown until the next name. An
+/// empty name or Ctrl-C ends.
 ///
-/// The takes are kept as BVH files in a folder beside the index (gestures.index: gestures.takes/), with their labels in
-/// labels.tsv there: take bad ones out, or train with them yourself (morec train --clips gestures.takes --labels
-/// gestures.takes/labels.tsv). Sources (--listen) are those of `morec live`.
+/// The takes are BVH files in a folder beside the index (gestures.index: gestures.takes/), with labels.tsv: remove bad
+/// ones, or train from them (morec train --clips gestures.takes --labels gestures.takes/labels.tsv). Sources (--listen)
+/// are those of `morec live`.
 #[derive(clap::Args)]
 #[command(
     after_help = "Exit codes: 0 ended by an empty name, Ctrl-C, --for or the end of the source; 1 something cannot be \
@@ -34,18 +34,18 @@ use morec_live::NamedEvent;
     Example: morec teach gestures.index --listen vmc://127.0.0.1:39539"
 )]
 pub struct Args {
-    /// The index to teach; a new one if it is not there
+    /// Index to teach; created if it does not exist
     index: PathBuf,
-    /// Source of poses
+    /// Source of poses, as in `morec live`
     #[arg(long, value_name = "SOURCE")]
     listen: Address,
-    /// Teach gestures of these names in turn and ask for none
+    /// Teach gestures of these names, without asking
     #[arg(long = "name", value_name = "NAME", value_parser = gesture_name)]
     names: Vec<String>,
-    /// Perform each N times
+    /// Repetitions of each gesture
     #[arg(long, value_name = "N", default_value = "3", value_parser = clap::value_parser!(u32).range(1..=99))]
     repetitions: u32,
-    /// A repetition lasts at most N seconds
+    /// Longest repetition, seconds
     #[arg(long, value_name = "SECS", default_value = "3", value_parser = secs)]
     secs: f64,
     /// Sink of events, as in `morec live` [default: terminal:-]

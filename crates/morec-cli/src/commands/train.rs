@@ -18,8 +18,8 @@ use crate::table::TextTable;
 
 /// Train an index from labelled clips.
 ///
-/// Prints what was learned, from what, and what background motion decided how near is near enough: the unlabelled
-/// parts of the labelled clips, the clips named with --background, and made everyday motion.
+/// Prints classes, background, thresholds, and problems of the data. Background is the unlabelled parts of labelled
+/// clips, the clips named with --background, and built-in everyday motion.
 #[derive(clap::Args)]
 #[command(
     after_help = "Exit codes: 0 trained; 1 something cannot be read or trained; 2 wrong command line.\n\n\
@@ -29,7 +29,7 @@ pub struct Args {
     /// File to write the index to
     #[arg(short, long, value_name = "INDEX")]
     output: PathBuf,
-    /// Print one JSON object: the report of training
+    /// Print one JSON object: the training report
     #[arg(long)]
     json: bool,
     #[command(flatten)]

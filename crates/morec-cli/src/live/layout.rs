@@ -6,12 +6,12 @@ use morec_live::pin_thread;
 /// `--layout`.
 #[derive(clap::ValueEnum, Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum LayoutArg {
-    /// All of recognition on one thread
+    /// One thread
     #[default]
     Inline,
-    /// A thread for each stage of the method of 2009, as its thesis has it (indexes of svrdm only)
+    /// A thread for each stage (method of 2009 only)
     Stages,
-    /// The same, every thread tied to a core as long as there are any, then round again
+    /// The same, each thread tied to a core
     Pinned,
 }
 

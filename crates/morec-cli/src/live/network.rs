@@ -7,16 +7,16 @@ use morec_live::Accidents;
 #[command(next_help_heading = "Network")]
 pub struct NetworkArgs {
     /// Lose this share of the packets, 0 to 1
-    #[arg(long, value_name = "SHARE", default_value = "0", value_parser = share)]
+    #[arg(hide_short_help = true, long, value_name = "SHARE", default_value = "0", value_parser = share)]
     pub loss: f64,
     /// Let this share of the packets be overtaken by the next, 0 to 1
-    #[arg(long, value_name = "SHARE", default_value = "0", value_parser = share)]
+    #[arg(hide_short_help = true, long, value_name = "SHARE", default_value = "0", value_parser = share)]
     pub reorder: f64,
-    /// Delay packets by up to this, milliseconds, each by another time
-    #[arg(long, value_name = "MS", default_value = "0", value_parser = millis)]
+    /// Delay each packet by a random time up to this, milliseconds
+    #[arg(hide_short_help = true, long, value_name = "MS", default_value = "0", value_parser = millis)]
     pub jitter: f64,
-    /// Seed of these accidents
-    #[arg(long, value_name = "N", default_value = "1")]
+    /// Seed of these faults
+    #[arg(hide_short_help = true, long, value_name = "N", default_value = "1")]
     pub seed: u64,
 }
 

@@ -14,24 +14,29 @@ use crate::output;
 /// Options of trackers.
 #[derive(clap::Args, Debug)]
 pub struct TrackerArgs {
-    /// Exchange left and right, for VMC senders that show their performer as a mirror would
+    /// Exchange left and right (senders that mirror their performer)
     #[arg(long)]
     pub mirror: bool,
-    /// Performers that one VMC port, or one broadcast, follows at once
+    /// Performers followed at once on one VMC port or broadcast
     #[arg(long, value_name = "N", default_value = "4", value_parser = clap::value_parser!(u16).range(1..=MAX_PERFORMERS as i64))]
     pub actors: u16,
-    /// A BVH file of the program at axis://, for how bones hang together and how long they are [default: a person of
-    /// 1.7 m]
-    #[arg(long, value_name = "BVH")]
+    /// BVH file with the skeleton of an axis:// broadcast
+    ///
+    /// [default: a person of 1.7 m]
+    #[arg(hide_short_help = true, long, value_name = "BVH")]
     pub skeleton: Option<PathBuf>,
-    /// The folder of MediaPipe's files, for --listen webcam: an unpacked `npm pack @mediapipe/pose`, or hands
+    /// Folder of MediaPipe's files for --listen webcam
+    ///
+    /// An unpacked `npm pack @mediapipe/pose`, or hands.
     #[arg(long, value_name = "DIR")]
     pub mediapipe: Option<PathBuf>,
-    /// Take T-poses that are too exact to be a person's, too: else they are a sender's that lost its tracker
-    #[arg(long)]
+    /// Keep exact T-poses
+    ///
+    /// By default they are dropped as those of a sender without tracking.
+    #[arg(hide_short_help = true, long)]
     pub keep_t_pose: bool,
-    /// Roles of joints of clips, where inference fails: lines of `role<TAB>joint name`
-    #[arg(long, value_name = "FILE")]
+    /// Roles of joints of clips, where inference fails: lines of `role<TAB>joint`
+    #[arg(hide_short_help = true, long, value_name = "FILE")]
     pub roles: Option<PathBuf>,
 }
 

@@ -17,13 +17,13 @@ pub const SHORTEST_SECS: f64 = 0.3;
 /// Options of takes.
 #[derive(clap::Args, Debug)]
 pub struct TakeArgs {
-    /// Countdown before each take, in seconds
+    /// Countdown before each take, seconds
     #[arg(long, value_name = "SECS", default_value = "3", value_parser = secs)]
     pub count_down: f64,
-    /// Number of the performer of the source, from 0
-    #[arg(long, value_name = "N", default_value = "0", value_parser = clap::value_parser!(u16).range(..MAX_PERFORMERS as i64))]
+    /// Number of the performer, from 0
+    #[arg(hide_short_help = true, long, value_name = "N", default_value = "0", value_parser = clap::value_parser!(u16).range(..MAX_PERFORMERS as i64))]
     pub actor: u16,
-    /// No bell at the beginning and the end of a take
+    /// No bell at the start and end of a take
     #[arg(long)]
     pub no_bell: bool,
 }

@@ -392,10 +392,10 @@ pub(super) mod tests {
         assert!(!shown(at - 0.01, LOOK).contains("(said"));
         let after = shown(at + 0.01, LOOK);
         assert!(
-            after.contains("raise_hands  0.80  (said 0.20 s after)"),
+            after.contains("raise_hands  0.80  (reported 0.20 s after)"),
             "{after}"
         );
-        assert!(shown(99.0, LOOK).contains("wave  0.80  (said 0.20 s after its end)"));
+        assert!(shown(99.0, LOOK).contains("wave  0.80  (reported 0.20 s after its end)"));
         assert_eq!(shown(99.0, LOOK).matches("(said").count(), 2);
     }
 

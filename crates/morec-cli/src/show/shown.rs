@@ -22,7 +22,7 @@ pub fn event_line(said: &Detection<String>) -> String {
     let delay = said.reported_secs - said.span.stop_secs;
     let (size, side) = (delay.abs(), if delay < 0.0 { "before" } else { "after" });
     format!(
-        "{:6.2} s  {}  {:.2}  (said {size:.2} s {side} its end)",
+        "{:6.2} s  {}  {:.2}  (reported {size:.2} s {side} its end)",
         said.reported_secs,
         printable(&said.class),
         said.score

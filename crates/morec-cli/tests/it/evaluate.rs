@@ -108,7 +108,7 @@ fn tables_report_and_what_was_left_out() {
         assert!(printed.contains(line), "{line} not in\n{printed}");
     }
     assert!(
-        said.contains("1 labels are of clips that are not there: elsewhere"),
+        said.contains("1 labels are of unknown clips: elsewhere"),
         "{said}"
     );
     assert!(

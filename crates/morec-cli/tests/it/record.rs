@@ -386,7 +386,7 @@ fn live_says_what_is_wrong_with_a_stream_and_with_its_lines() {
     assert!(said.contains(" 2 malformed packets"), "{said}");
     let said = live("empty.jsonl", "");
     assert!(said.contains("nothing has arrived"), "{said}");
-    let help = folder.morec(&["live", "--help"]).ok();
+    let help = folder.morec(&["live", "--help-all"]).ok();
     for part in [
         "hips, torso, neck, head",
         "thigh, shin, foot, shoulder, arm",

@@ -7,14 +7,12 @@ use morec::tables::Content;
 use super::form::ClipForm;
 use crate::files::{self, ReadArgs};
 
-/// Write clips as BVH, C3D, TRC, GLB, VRMA, lines of JSON, NumPy archives or CSV
+/// Convert clips to BVH, C3D, TRC, GLB, VRMA, lines of JSON, NumPy or CSV
 ///
-/// The ending of the output chooses: .bvh; .c3d, .trc and .jsonl with where joints and points are, without rotations; .glb
-/// and .vrma for other programs and avatars; .npz with positions, rotations and feature rows by name; .csv with one of
-/// these. In BVH and the formats of points lengths and axes stay as the clip has them (but lengths without a named unit in
-/// C3D and TRC become millimetres); the others hold metres with Y up, as `morec inspect` understands the clip. Folders and
-/// several clips are written into a folder, in the form that --form names. What was repaired in reading is said on
-/// standard error.
+/// The output's extension chooses: .bvh; .c3d, .trc and .jsonl with positions only; .glb and .vrma for other programs
+/// and avatars; .npz with positions, rotations and feature rows; .csv with one of these. BVH, C3D and TRC keep the
+/// clip's lengths and axes (lengths without a named unit become millimetres in C3D and TRC); the others have metres, Y
+/// up. Several clips are written into a folder in the form of --form. Repairs are reported on standard error.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -27,30 +25,31 @@ Examples:
   morec convert clips/ -o arrays/ --form npz
   morec convert 13_29.amc --skeleton 13.asf -o - | head")]
 pub struct Args {
-    /// Clips in any format that is read, or folders of clips; - is standard input
+    /// Clips, or folders of clips; - is standard input
     #[arg(required = true, value_name = "CLIP")]
     pub(super) clips: Vec<PathBuf>,
-    /// The file to write, or the folder for several clips; - is BVH on standard output
+    /// File to write, or folder for several clips; - is BVH on standard output
     #[arg(short, long, value_name = "FILE|FOLDER")]
     pub(super) output: PathBuf,
-    /// Write into a folder, in this form [default: bvh]
+    /// Write into a folder in this form [default: bvh]
     #[arg(long, value_enum)]
     pub(super) form: Option<ClipForm>,
     /// Content of a CSV
     #[arg(long, value_enum, default_value_t = CsvContent::Positions)]
     pub(super) table: CsvContent,
-    /// Resample to this rate; without it, every frame is kept as it is
+    /// Resample to this rate [default: keep all frames]
     #[arg(long, value_name = "HZ", value_parser = files::rate)]
     pub(super) rate: Option<f64>,
-    /// Lay a skeleton of fixed bone lengths into clips of points, so that joints have rotations; how far it is from the
-    /// points is said on standard error
+    /// Fit a skeleton to clips of points, so that joints have rotations
+    ///
+    /// Bone lengths are constant; the remaining distance from the points is printed on standard error.
     #[arg(long)]
     pub(super) fit: bool,
-    /// Number of the character to write, from 1, of a file that holds several
+    /// Character to write from a file with several, from 1
     #[arg(long, value_name = "N")]
     pub(super) character: Option<usize>,
-    /// Roles that override those found: a file of `role<TAB>joint` lines
-    #[arg(long, value_name = "FILE")]
+    /// Roles of joints, where inference fails: lines of `role<TAB>joint`
+    #[arg(hide_short_help = true, long, value_name = "FILE")]
     pub(super) roles: Option<PathBuf>,
     #[command(flatten)]
     pub(super) read: ReadArgs,

@@ -22,7 +22,7 @@ pub(super) fn convert(args: &Args, wanted: &Wanted) -> Result<ExitCode> {
     }
     if output == Path::new("-") || output.is_file() {
         bail!(
-            "{}: several clips are written into a folder, and this is none",
+            "{} is not a folder; several clips need a folder",
             output.display()
         );
     }

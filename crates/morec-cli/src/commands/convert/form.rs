@@ -14,13 +14,13 @@ use crate::output;
 /// A form of clips.
 #[derive(clap::ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ClipForm {
-    /// Skeleton and rotations; the clip's own units and axes
+    /// Skeleton and rotations; the clip's units and axes
     Bvh,
     /// Points, binary
     C3d,
     /// Points, tab-separated
     Trc,
-    /// Points by the parts of the body, a line of JSON for each frame, as `morec live` reads them; metres, Y up
+    /// Positions by body part, one line of JSON a frame; metres, Y up
     Jsonl,
     /// Binary glTF: skeleton and rotations, metres
     Glb,

@@ -12,17 +12,19 @@ use crate::database;
 use crate::print;
 use crate::progress::StageBar;
 
-/// Read everything in a database and say what is wrong
+/// Check everything in a database
 #[derive(clap::Args)]
 #[command(after_help = "Exit code 1 if anything is wrong.")]
 pub struct Args {
     /// The database
     #[arg(value_name = "DB")]
     db: PathBuf,
-    /// Look for clips that are nearly others, mirror images among them
+    /// Also find near-duplicates, mirrored ones too
     #[arg(long)]
     copies: bool,
-    /// Make again what can be made again (feature rows), take the tables as they are for right, and check after that
+    /// Rebuild feature rows and checksums, then check
+    ///
+    /// The tables are accepted as they are.
     #[arg(long)]
     repair: bool,
     /// Print one JSON object

@@ -13,9 +13,9 @@ use crate::database;
 use crate::print;
 use crate::table::TextTable;
 
-/// List the classes, or rename, merge, split and forget them
+/// List, rename, merge, split or remove classes
 ///
-/// Every change can be taken back: morec db undo DB.
+/// Every change can be undone: morec db undo DB.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -28,19 +28,19 @@ pub struct Args {
     /// The database
     #[arg(value_name = "DB")]
     db: PathBuf,
-    /// Give a class another name
+    /// Rename a class
     #[arg(long, num_args = 2, value_names = ["OLD", "NEW"])]
     rename: Vec<String>,
-    /// Make one class of several, separated by commas
+    /// Merge classes, separated by commas, into --into
     #[arg(long, value_delimiter = ',', value_name = "CLASSES", requires = "into")]
     merge: Vec<String>,
-    /// Move samples to another class, by number
+    /// Move samples (numbers, separated by commas) to --into
     #[arg(long, value_delimiter = ',', value_name = "NUMBERS", requires = "into")]
     split: Vec<i64>,
-    /// Class to which --merge and --split move samples, new or existing
+    /// Target class of --merge and --split, new or existing
     #[arg(long, value_name = "CLASS")]
     into: Option<String>,
-    /// Forget a class and its samples, or all whose names match (`*` any text, `?` one character)
+    /// Remove a class and its samples; `*` any text, `?` one character
     #[arg(long, value_name = "CLASS|PATTERN")]
     forget: Option<String>,
     /// List the samples of this class with their numbers
@@ -131,7 +131,7 @@ fn changed(args: &Args) -> Result<MotionDb> {
         let moved = db.split_class(&ids, into)?;
         if moved < ids.len() {
             eprintln!(
-                "morec: {moved} of {} samples moved; the others are not there, or were there already",
+                "morec: {moved} of {} samples moved; the others do not exist, or were in the class already",
                 ids.len()
             );
         }

@@ -11,7 +11,7 @@ use crate::database;
 use crate::print;
 use crate::table::TextTable;
 
-/// List the clips of a database, or change what is known about them
+/// List clips of a database, or change their descriptions
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -25,7 +25,7 @@ pub struct Args {
     /// The database
     #[arg(value_name = "DB")]
     db: PathBuf,
-    /// Clips of this name; `*` stands for any text, `?` for one character
+    /// Clips of this name; `*` any text, `?` one character
     #[arg(long, alias = "name", value_name = "CLIP")]
     clip: Option<String>,
     /// Clips in which this person is seen
@@ -37,28 +37,30 @@ pub struct Args {
     /// Clips that hold a sample of this class
     #[arg(long, value_name = "CLASS")]
     class: Option<String>,
-    /// Say who is seen in the clips listed; empty forgets it
+    /// Set the person in the listed clips; empty removes it
     #[arg(long, value_name = "NAME")]
     set_subject: Option<String>,
-    /// Say where they are from
+    /// Set the origin
     #[arg(long, value_name = "TEXT")]
     set_source: Option<String>,
-    /// Say under which terms they may be used
+    /// Set the licence
     #[arg(long, value_name = "TEXT")]
     set_licence: Option<String>,
-    /// Give a clip another name; labels, cuts and tags stay with it
+    /// Rename a clip; labels, cuts and tags stay
     #[arg(long, num_args = 2, value_names = ["OLD", "NEW"])]
     rename: Vec<String>,
-    /// Remove the clips that --clip, --subject, --tag and --class choose, with their cuts and labels
+    /// Remove the chosen clips with their cuts and labels
+    ///
+    /// Chosen by --clip, --subject, --tag and --class.
     #[arg(long, conflicts_with = "rename")]
     remove: bool,
-    /// Say which joint plays a part of the body, in place of what import found: left_hand=LeftWrist; `left_hand=` for none
+    /// Set the joint of a role: left_hand=LeftWrist; `left_hand=` for none
     #[arg(long, value_name = "ROLE=JOINT", value_parser = role_and_joint)]
     set_role: Vec<(Role, String)>,
-    /// Attach a tag
+    /// Add a tag
     #[arg(long, value_name = "WORD")]
     add_tag: Vec<String>,
-    /// Take a tag off
+    /// Remove a tag
     #[arg(long, value_name = "WORD")]
     remove_tag: Vec<String>,
     /// List at most N

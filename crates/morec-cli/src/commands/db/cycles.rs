@@ -19,23 +19,23 @@ use crate::table::TextTable;
 
 /// Count repetitions within cuts, clips or labelled stretches
 ///
-/// With --of labels, stretches of one class that follow each other without a gap are taken together: their number is what
-/// should be found. --split divides labelled stretches evenly into their repetitions (undo: morec db label DB --undo).
+/// With --of labels, stretches of a class without a gap between them are joined; their number is the expected count.
+/// --split divides labelled stretches evenly into repetitions (undo: morec db label DB --undo).
 #[derive(clap::Args)]
 pub struct Args {
     /// The database
     #[arg(value_name = "DB")]
     db: PathBuf,
-    /// Stretches to look at
+    /// Stretches to examine
     #[arg(long, value_enum, default_value = "cuts")]
     of: CycledSpans,
     /// Labelled stretches of this class only
     #[arg(long, value_name = "CLASS")]
     class: Option<String>,
-    /// Clips of this name; `*` stands for any text, `?` for one character
+    /// Clips of this name; `*` any text, `?` one character
     #[arg(long, alias = "name", value_name = "CLIP")]
     clip: Option<String>,
-    /// Replace each labelled stretch that repeats by its repetitions
+    /// Replace each repeating labelled stretch by its repetitions
     #[arg(long)]
     split: bool,
     /// Print one JSON array

@@ -49,8 +49,9 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let shown = args.output.to_string_lossy();
     let form = match args.form {
         Some(form) => form.of_labels()?,
-        None => LabelFormat::of_file(&shown, b"{\"labels\":[]}")
-            .with_context(|| format!("{shown}: its ending says no form of labels; give --form"))?,
+        None => LabelFormat::of_file(&shown, b"{\"labels\":[]}").with_context(|| {
+            format!("{shown}: cannot infer the label format from the extension; pass --form")
+        })?,
     };
     if annotations.iter().any(|a| !form.keeps(a.state)) {
         let (form, state) = (form.name(), args.state.name());

@@ -11,10 +11,10 @@ use crate::dates;
 use crate::print;
 use crate::table::TextTable;
 
-/// List the changes of a database, the last one first
+/// List the changes of a database, the last first
 ///
-/// Every command that changes a database is one step, whatever it changes: imports, labels, classes, cuts, descriptions,
-/// removals and indexes. Steps that were taken back are listed until something else is changed.
+/// Every command that changes a database is one step: imports, labels, classes, cuts, descriptions, removals, indexes.
+/// Undone steps are listed until the next change.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -40,10 +40,10 @@ pub struct TurnArgs {
     /// The database
     #[arg(value_name = "DB")]
     db: PathBuf,
-    /// The number of the step, as morec db history lists it
+    /// Number of the step, from morec db history [default: the last]
     #[arg(value_name = "STEP")]
     step: Option<i64>,
-    /// Only say what would change
+    /// Only print what would change
     #[arg(long)]
     dry_run: bool,
     /// Print one JSON object

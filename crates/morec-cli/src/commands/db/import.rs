@@ -18,9 +18,8 @@ use crate::progress::StageBar;
 
 /// Import clips, or folders of clips
 ///
-/// The same content is imported once, whatever it is called; importing again after an interruption goes on where it
-/// stopped. A file that cannot be read is named with the reason, and the others are imported. New clips that are nearly
-/// others (resampled, cut a little, mirrored) are named.
+/// The same content is imported once, whatever its name; importing again continues after an interruption. Files that
+/// cannot be read are named with the reason. Near-duplicates among new clips (resampled, trimmed, mirrored) are named.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -32,14 +31,15 @@ Ctrl-C finishes what is being written and says what was imported; the same comma
 
 Exit code 1 if a file was refused or a folder holds motion in a format that is not read, 130 if it was stopped.")]
 pub struct Args {
-    /// The database; it is made if there is none
+    /// The database; created if it does not exist
     #[arg(value_name = "DB")]
     db: PathBuf,
-    /// Clips in any format that is read, or folders of clips; FILE#2 and FILE#name are one clip of a file
+    /// Clips or folders; FILE#2 and FILE#name are one clip of a file
     #[arg(required = true, value_name = "DIR|CLIP")]
     clips: Vec<PathBuf>,
-    /// Put the one file given in the place of this clip's: its name, tags and labels stay; labels behind the new end are
-    /// removed and listed, and so are cuts
+    /// Replace this clip by the one file given
+    ///
+    /// Name, tags and labels stay; labels and cuts behind the new end are removed and listed.
     #[arg(
         long,
         value_name = "CLIP",
@@ -48,10 +48,10 @@ pub struct Args {
     in_place_of: Option<String>,
     #[command(flatten)]
     settings: ImportSettings,
-    /// Roles of joints, where inference fails: lines of `role<TAB>joint name`
+    /// Roles of joints, where inference fails: lines of `role<TAB>joint`
     #[arg(long, value_name = "FILE")]
     roles: Option<PathBuf>,
-    /// Print one JSON object: what became of every file
+    /// Print one JSON object: the outcome of every file
     #[arg(long)]
     json: bool,
     #[command(flatten)]

@@ -11,7 +11,7 @@ use crate::output;
 use crate::print;
 use crate::table::TextTable;
 
-/// List the indexes that training kept, write one to a file, or remove one
+/// List kept indexes, write one to a file, or remove one
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -23,7 +23,7 @@ pub struct Args {
     /// The database
     #[arg(value_name = "DB")]
     db: PathBuf,
-    /// Write this index to the file --output
+    /// Write this index to the file of --output
     #[arg(long, value_name = "NAME", requires = "output")]
     write: Option<String>,
     /// File to write it to

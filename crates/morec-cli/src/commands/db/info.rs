@@ -9,13 +9,13 @@ use morec_db::DbSummary;
 use crate::database;
 use crate::print::{self, megabytes};
 
-/// Say how much is in a database
+/// Print the contents of a database in numbers
 #[derive(clap::Args)]
 pub struct Args {
     /// The database
     #[arg(value_name = "DB")]
     db: PathBuf,
-    /// Forget the files that could not be read
+    /// Remove the entries of files that could not be read
     #[arg(long)]
     forget_refused: bool,
     /// Print one JSON object

@@ -7,10 +7,10 @@ use crate::print;
 use anyhow::Result;
 use morec_db::{MotionDb, SCHEMA};
 
-/// Make a new, empty database
+/// Create an empty database
 #[derive(clap::Args)]
 pub struct Args {
-    /// The file to make; it must not exist
+    /// File to create; it must not exist
     #[arg(value_name = "DB")]
     db: PathBuf,
     /// Print one JSON object

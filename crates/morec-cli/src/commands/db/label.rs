@@ -21,10 +21,9 @@ use crate::named::by_name;
 use crate::print;
 use crate::table::TextTable;
 
-/// Read labels from a file, set one by hand, or accept and reject what is there
+/// Read labels from files, set one, or accept and reject samples
 ///
-/// Clips are named by file stem; times may be seconds or frames. What a file says twice, or the database knows already,
-/// is kept once.
+/// Clips are named by file stem; times are seconds or frames. Labels that exist already are kept once.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -41,14 +40,16 @@ pub struct Args {
     /// The database
     #[arg(value_name = "DB")]
     db: PathBuf,
-    /// Files of labels, or folders of them: TSV, CSV, JSON (morec's, BABEL's, Label Studio's), ELAN (.eaf), Audacity (.txt), BORIS
-    /// (TSV, CSV), Praat (.TextGrid), subtitles (.srt, .vtt), events of C3D
+    /// Label files, or folders of them
+    ///
+    /// TSV, CSV, JSON (morec's, BABEL's, Label Studio's), ELAN (.eaf), Audacity (.txt), BORIS (TSV, CSV), Praat
+    /// (.TextGrid), subtitles (.srt, .vtt), events of C3D.
     #[arg(value_name = "FILE|DIR")]
     labels: Vec<PathBuf>,
-    /// Form of the files [default: by their endings and content]
+    /// Form of the files [default: by extension and content]
     #[arg(long, value_parser = by_name(&LabelFormat::ALL, LabelFormat::name))]
     form: Option<LabelFormat>,
-    /// The clip that a file of one clip, or --class, refers to
+    /// The clip that --class, or a file of one clip, refers to
     #[arg(long, value_name = "CLIP")]
     clip: Option<String>,
     /// Set one sample of this class
@@ -65,20 +66,26 @@ pub struct Args {
     /// Stop, seconds [default: the clip's end]
     #[arg(long, value_name = "SECS", requires = "class")]
     stop: Option<f64>,
-    /// State of the samples [default: what the file says, else accepted]
+    /// State of the samples [default: as in the file, else accepted]
     #[arg(long, value_parser = by_name(&SampleState::ALL, SampleState::name))]
     state: Option<SampleState>,
     /// Author of the change
-    #[arg(long, value_name = "NAME", default_value = "user")]
+    #[arg(
+        hide_short_help = true,
+        long,
+        value_name = "NAME",
+        default_value = "user"
+    )]
     by: String,
-    /// The files are all there is to say about the clips they name: accepted samples that they do not say are moved or
-    /// renamed if one of theirs stands for them, and removed otherwise
+    /// Replace all accepted labels of the named clips with those in the files
+    ///
+    /// Samples that the files lack are renamed, moved or removed.
     #[arg(long, conflicts_with_all = ["class", "undo"])]
     replace: bool,
-    /// Only say what would change, sample by sample
+    /// Only print what would change, sample by sample
     #[arg(long, conflicts_with = "undo")]
     dry_run: bool,
-    /// Take the last change of labels or classes back
+    /// Undo the last change of labels or classes
     #[arg(long, conflicts_with_all = ["labels", "class"])]
     undo: bool,
     /// Print one JSON object
@@ -175,7 +182,7 @@ fn say_absent(db: &MotionDb, absent: &Absent) {
         return;
     }
     eprintln!(
-        "morec: {} labels of {} clips that are not there were left out: {}",
+        "morec: {} labels of {} unknown clips were left out: {}",
         absent.values().sum::<usize>(),
         absent.len(),
         some_of(absent.keys())
@@ -288,7 +295,7 @@ fn undo(db: &mut MotionDb, json: bool) -> Result<ExitCode> {
     } else {
         print::print(match &undone {
             Some(turned) => history::text(turned, "taken back"),
-            None => "there is nothing to take back\n".to_owned(),
+            None => "nothing to undo\n".to_owned(),
         })?;
     }
     Ok(ExitCode::SUCCESS)
@@ -330,7 +337,7 @@ fn read(
         let form = match args.form {
             Some(form) => form,
             None => LabelFormat::of_file(&shown, &bytes).with_context(|| {
-                format!("{shown}: its ending says no form of labels; give --form")
+                format!("{shown}: cannot infer the label format from the extension; pass --form")
             })?,
         };
         // A label track does not name its clip; its file does, if morec wrote it.

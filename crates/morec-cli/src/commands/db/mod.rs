@@ -29,7 +29,7 @@ use crate::interrupt::STOPPED;
 
 /// Keep clips, cuts, classes and labels in one file, and search them
 ///
-/// One program writes to a database at a time, any number read beside it. A crash loses nothing that was said to be done.
+/// One program writes at a time, any number read. A crash loses nothing that was reported as done.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -60,9 +60,9 @@ enum DbCommand {
     Propose(propose::Args),
     Indexes(indexes::Args),
     History(history::Args),
-    /// Take a change back: the last one, or a named step
+    /// Undo the last change, or a numbered step
     Undo(history::TurnArgs),
-    /// Do again what was taken back
+    /// Redo what was undone
     Redo(history::TurnArgs),
     Export(export::Args),
     Report(report::Args),

@@ -16,13 +16,12 @@ use crate::print;
 use crate::progress::StageBar;
 use crate::table::TextTable;
 
-/// Propose the other samples of the classes that are labelled
+/// Propose more samples of the labelled classes
 ///
-/// Searches all clips for more motions like the accepted samples; what is found is kept as proposed, with how likely it is right
-/// as far as your answers tell. Look at the sure ones in bulk and at the doubtful ones singly; what you accept teaches
-/// the next round, what you reject speaks against its like and is not asked about again. Every class goes on being asked
-/// about, however unlikely its best candidates are. Proposals of an earlier round that nobody judged are replaced;
-/// those of others (`morec group --name-as`, a file) stay.
+/// Searches all clips for motions like the accepted samples and keeps the hits as proposals with their probability.
+/// Accept the sure ones in bulk, check the doubtful ones singly: accepted ones train the next round, rejected ones
+/// count against similar motions and are not proposed again. Proposals that nobody judged are replaced; those of `morec
+/// group --name-as` and of files stay.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -37,16 +36,18 @@ pub struct Args {
     db: PathBuf,
     #[command(flatten)]
     settings: ProposeSettings,
-    /// Accept the proposals that are there with at least this score, 0 to 1 (those of groups have 0)
+    /// Accept existing proposals with at least this score, 0 to 1
     #[arg(long, value_name = "SCORE", value_parser = share)]
     accept: Option<f64>,
-    /// Reject the proposals that are there with less than this score
+    /// Reject existing proposals with less than this score
     #[arg(long, value_name = "SCORE", value_parser = share)]
     reject: Option<f64>,
-    /// Only list the proposals that are there
+    /// Only list existing proposals
     #[arg(long)]
     list: bool,
-    /// List those whose answers tell most first: the least certain, classes in turn. Without --list after a new round
+    /// List the most informative proposals first
+    ///
+    /// The least certain, classes in turn. Without --list, after a new round.
     #[arg(long)]
     doubtful: bool,
     /// List at most N

@@ -12,22 +12,22 @@ use super::page::{self, Page};
 use crate::database;
 use crate::print::{self, megabytes};
 
-/// Write a page of HTML with a strip of poses for clips, cuts and samples
+/// Write a page of HTML with strips of poses of clips, cuts and samples
 ///
-/// One file, nothing loaded from elsewhere; a strip that is chosen moves. What --limit leaves out is listed by name. Groups and search hits have pages of their own: `morec group --report`,
-/// `morec db search --report`.
+/// The page is one file; a chosen strip plays. What --limit leaves out is listed by name. Groups and search hits have
+/// pages of their own: `morec group --report`, `morec db search --report`.
 #[derive(clap::Args)]
 pub struct Args {
     /// The database
     #[arg(value_name = "DB")]
     db: PathBuf,
-    /// The file to write
+    /// File to write
     #[arg(short, long, value_name = "HTML")]
     output: PathBuf,
-    /// Clips of this name; `*` stands for any text, `?` for one character
+    /// Clips of this name; `*` any text, `?` one character
     #[arg(long, alias = "name", value_name = "CLIP")]
     clip: Option<String>,
-    /// At most N clips, and N samples of a class, as strips
+    /// At most N clips, and N samples of a class
     #[arg(long, value_name = "N", default_value_t = 40)]
     limit: usize,
     /// Print one JSON object: what was drawn

@@ -12,7 +12,7 @@ use crate::named::by_name;
 use crate::print;
 use crate::table::TextTable;
 
-/// List samples with their numbers, or remove and move them by number
+/// List samples by number, remove or move them
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -33,10 +33,10 @@ pub struct Args {
     /// Samples in this state
     #[arg(long, value_parser = by_name(&SampleState::ALL, SampleState::name))]
     state: Option<SampleState>,
-    /// Remove the samples of these numbers, separated by commas
+    /// Remove these samples (numbers, separated by commas)
     #[arg(long, value_delimiter = ',', value_name = "NUMBERS")]
     remove: Vec<i64>,
-    /// Give the sample of this number another start and stop
+    /// Move this sample to --start and --stop
     #[arg(
         long = "move",
         value_name = "NUMBER",

@@ -20,11 +20,10 @@ use crate::print;
 use crate::progress::StageBar;
 use crate::table::TextTable;
 
-/// Find stretches that are like an example
+/// Find stretches like an example
 ///
-/// The example is a stretch of a clip in the database, or a clip file from elsewhere, on any skeleton, at any rate. With
-/// --learned, accepted samples say which differences matter: what varies within their classes then counts less. A whole
-/// clip with --one-a-clip asks for clips: what they hold beyond the example counts against them, too.
+/// The example is a stretch of a clip in the database, or a file, on any skeleton, at any rate. With --learned,
+/// variation within labelled classes counts less. A whole clip with --one-a-clip finds similar whole clips.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:

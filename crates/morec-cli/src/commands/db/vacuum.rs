@@ -8,16 +8,16 @@ use anyhow::Result;
 use crate::database;
 use crate::print::{self, megabytes};
 
-/// Give room that is no longer used back to the disk
+/// Return unused space to the disk
 #[derive(clap::Args)]
 pub struct Args {
     /// The database
     #[arg(value_name = "DB")]
     db: PathBuf,
-    /// Drop feature rows too; they are made again when they are needed
+    /// Also drop feature rows; they are rebuilt when needed
     #[arg(long)]
     caches: bool,
-    /// Forget the history too: what was done so far can then not be taken back
+    /// Also drop the history: earlier changes cannot be undone then
     #[arg(long)]
     history: bool,
     /// Print one JSON object

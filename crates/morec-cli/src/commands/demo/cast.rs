@@ -83,7 +83,7 @@ pub fn real() -> Cast {
         clip: "new/signals_2.mclip".to_owned(),
         whose: "a referee in a new recording".to_owned(),
         background: true,
-        caveat: "One clip of a person who also teaches is a demonstration, not a measurement; docs/figures.md has those.",
+        caveat: "One clip of a person who also trained is a demonstration, not a measurement; for measurements see docs/figures.md.",
     }
 }
 

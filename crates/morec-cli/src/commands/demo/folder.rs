@@ -32,7 +32,7 @@ impl DemoFolder {
                 .is_some()
         {
             bail!(
-                "{}: holds files that are no demo's, nothing was written; give another --folder",
+                "{}: contains other files; nothing was written; give another --folder",
                 shown()
             );
         }
@@ -129,8 +129,8 @@ impl DemoFolder {
         format!(
             "{}\n\
              The report, with timelines: {}\n\
-             With clips of your own, in any folder, and a table of labels like {}, the same three commands do it:\n  \
-             morec train, morec recognize, morec evaluate (--help tells the rest).",
+             With clips of your own, in any folder, and a table of labels like {}, use the same three commands:\n  \
+             morec train, morec recognize, morec evaluate (see --help).",
             cast.caveat,
             self.path("report/report.html").display(),
             self.path("labels.tsv").display()

@@ -8,10 +8,10 @@ use crate::poses::PoseArgs;
 
 /// Find motions that repeat, without labels
 ///
-/// Repetitions of one motion become a set, in whichever clips and by whichever people; sets that explain most of what moves
-/// come first. Naming twenty sets takes minutes and gives the samples of a first index: --name-as proposes them in a database.
-/// What is done once is in no set. Where a cycle begins (which foot, up or down) is chosen by chance, and the labels that
-/// you would set may be longer or shorter: the window moves the bounds of a whole set at once. The same clips give the same sets.
+/// Repetitions of one motion, in any clips and by any people, become a set; sets that cover the most motion come first.
+/// --name-as proposes the instances as samples. Motions that occur once are in no set. Where a cycle begins (which
+/// foot, up or down) is a convention: the studio moves the ends of a whole set at once. The same clips give the same
+/// sets.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -23,12 +23,12 @@ pub struct Args {
     /// Clips, folders of clips, or one database
     #[arg(required = true, value_name = "CLIP|DB")]
     pub(super) inputs: Vec<PathBuf>,
-    /// Clips of a database of this name; `*` stands for any text, `?` for one character
+    /// Clips of a database with this name; `*` any text, `?` one character
     #[arg(long, value_name = "CLIP")]
     pub(super) clip: Option<String>,
     #[command(flatten)]
     pub(super) settings: DiscoverSettings,
-    /// Propose each repetition as a sample of the class NAME_1, NAME_2, … (databases)
+    /// Propose repetitions as samples of NAME_1, NAME_2, … (databases)
     #[arg(long, value_name = "NAME")]
     pub(super) name_as: Option<String>,
     /// Write a page that plays the sets, too

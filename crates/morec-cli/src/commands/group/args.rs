@@ -9,12 +9,12 @@ use serde::Serialize;
 use crate::labels::LabelArgs;
 use crate::poses::PoseArgs;
 
-/// Group samples or segments that are alike, of clips or of a database
+/// Group samples or segments that are alike, of clips or a database
 ///
-/// With labels their samples are grouped, and the groups held against the classes; without, clips are cut first (as
-/// `morec cut` does) and the segments grouped. Affinity propagation finds the number of groups itself; --method hierarchy
-/// is cut at --groups or --height; kwas is the thesis's. With --name-as the groups of a database become classes of
-/// proposed samples: rename, merge and accept what is right.
+/// With labels, samples are grouped and the groups compared with the classes; without, clips are cut first (as by
+/// `morec cut`) and segments grouped. Affinity propagation finds the number of groups; --method hierarchy is cut at
+/// --groups or --height; kwas is the thesis's. With --name-as, groups of a database become classes of proposed samples
+/// to rename, merge and accept.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -29,25 +29,36 @@ pub struct Args {
     /// The spelling of old for clips
     #[arg(long, value_name = "DIR|CLIP", num_args = 1.., hide = true)]
     pub(super) clips: Vec<PathBuf>,
-    /// Labels of clips in files, in a form that `morec db label` reads; of tables columns clip (file stem), class, and
-    /// start, stop (frames, stop exclusive) or start_secs, stop_secs, or neither: then the whole clip is one sample
+    /// Labels of clips in files: a table, or a form that `morec db label` reads
+    ///
+    /// Without times the whole clip is one sample.
     #[arg(long, value_name = "FILE|DIR")]
     pub(super) labels: Option<PathBuf>,
     #[command(flatten)]
     pub(super) settings: GroupSettings,
-    /// Point on which samples are centred before they are compared (kwas, clips in files)
-    #[arg(long, value_enum, default_value = "database")]
+    /// Centre of samples before comparison (kwas, files)
+    #[arg(hide_short_help = true, long, value_enum, default_value = "database")]
     pub(super) centre: Centre,
-    /// Share of the variance of all poses that is kept before samples are compared (kwas, clips in files)
-    #[arg(long, value_name = "SHARE", default_value_t = 0.99)]
+    /// Share of the variance to keep (kwas, files)
+    #[arg(
+        hide_short_help = true,
+        long,
+        value_name = "SHARE",
+        default_value_t = 0.99
+    )]
     pub(super) quality: f64,
-    /// Keep N dimensions instead (kwas, clips in files)
-    #[arg(long, value_name = "N", conflicts_with = "quality")]
+    /// Keep N dimensions instead (kwas, files)
+    #[arg(
+        hide_short_help = true,
+        long,
+        value_name = "N",
+        conflicts_with = "quality"
+    )]
     pub(super) dims: Option<usize>,
-    /// Propose each member of a group as a sample of the class NAME_1, NAME_2, … (databases)
+    /// Propose members as samples of NAME_1, NAME_2, … (databases)
     #[arg(long, value_name = "NAME")]
     pub(super) name_as: Option<String>,
-    /// Write a page with a strip of poses for each member of each group, too (databases)
+    /// Write a page with strips of poses of the groups (databases)
     #[arg(long, value_name = "HTML")]
     pub(super) report: Option<PathBuf>,
     /// Print one JSON object

@@ -44,7 +44,7 @@ pub fn run(paths: &[PathBuf], args: &Args) -> Result<ExitCode> {
     let samples = samples(paths, &clips, args, &params)?;
     let items = items(samples, &clips, &params);
     if items.is_empty() {
-        bail!("nothing to group: no sample holds a tick of motion");
+        bail!("nothing to group: no sample contains motion");
     }
     GroupList::of(&items, &args.settings, args.labels.is_some())?.print(args)?;
     Ok(ExitCode::SUCCESS)

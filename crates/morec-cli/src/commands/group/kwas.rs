@@ -145,7 +145,7 @@ fn spectra(
         let of_sample = sample.span.frames_among(rows.len(), rate_hz);
         if of_sample.is_empty() {
             eprintln!(
-                "morec: {}: a sample at {:.2} s holds no pose",
+                "morec: {}: the sample at {:.2} s contains no pose",
                 sample.clip, sample.span.start_secs
             );
             continue;

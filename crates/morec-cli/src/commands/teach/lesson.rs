@@ -120,7 +120,7 @@ impl Lessons {
     /// Summary of the files at the end.
     pub fn summary(&self) -> String {
         match self.kept {
-            0 => "nothing was taught".to_owned(),
+            0 => "no gesture was taught".to_owned(),
             kept => format!(
                 "{kept} takes were kept in {}, the index is {}",
                 self.folder.display(),

@@ -119,7 +119,7 @@ fn anchors_are_those_of_headings() {
 
 /// The help of a command and of all its subcommands.
 fn help(folder: &Folder, words: &[&str], text: &mut String) {
-    let shown = folder.morec(&[words, &["--help"]].concat()).ok();
+    let shown = folder.morec(&[words, &["--help-all"]].concat()).ok();
     let commands: Vec<String> = shown
         .lines()
         .skip_while(|line| *line != "Commands:")

@@ -13,8 +13,9 @@ use crate::named::by_name;
 
 /// Write labels for other programs, or the motion of clips
 ///
-/// The output's ending chooses the form: .tsv, .csv, .json, .eaf or .txt of labels; with --motion .bvh, .c3d, .trc, .jsonl,
-/// .glb, .vrma, .npz with positions, rotations and feature rows, or .csv with one of these. Motion is in metres with Y up.
+/// The output's extension chooses the form: .tsv, .csv, .json, .eaf or .txt of labels; with --motion .bvh, .c3d, .trc,
+/// .jsonl, .glb, .vrma, .npz (positions, rotations and feature rows), or .csv with one of these. Motion is in metres, Y
+/// up.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -28,10 +29,10 @@ pub struct Args {
     /// The database
     #[arg(value_name = "DB")]
     pub(super) db: PathBuf,
-    /// The file to write, `-` for standard output; a folder for forms of one clip, and for the motion of several
+    /// File to write, - for standard output; a folder for several files
     #[arg(value_name = "FILE|DIR")]
     pub(super) output: PathBuf,
-    /// Form to write [default: by the file's ending]
+    /// Form to write [default: by the extension]
     #[arg(long, value_parser = ExportForm::parser())]
     pub(super) form: Option<ExportForm>,
     /// Labels of this clip only
@@ -43,8 +44,9 @@ pub struct Args {
     /// State of the samples to write
     #[arg(long, default_value = "accepted", value_parser = by_name(&SampleState::ALL, SampleState::name))]
     pub(super) state: SampleState,
-    /// Write the motion of this clip instead of labels, or of all clips whose name matches (`*` any text, `?` one
-    /// character)
+    /// Write the motion of these clips instead of labels
+    ///
+    /// `*` stands for any text, `?` for one character.
     #[arg(long, value_name = "CLIP", conflicts_with_all = ["clip", "class", "state"])]
     pub(super) motion: Option<String>,
     /// Content of a CSV of motion

@@ -51,7 +51,7 @@ fn one(args: &Args, db: &MotionDb, clip: &ClipInfo, form: Option<ClipForm>) -> R
         None => ClipForm::of(output).with_context(shown)?,
     };
     if args.table != CsvContent::Positions && form != ClipForm::Csv {
-        bail!("--table says what a .csv holds, and the output is none");
+        bail!("--table is for .csv output");
     }
     let take = db.clip(clip.id)?.into_take()?;
     if to_stdout {
@@ -76,14 +76,14 @@ fn folder(
     let folder = &args.output;
     if folder == Path::new("-") || folder.is_file() {
         bail!(
-            "{}: {} clips are written into a folder, and this is none",
+            "{} is not a folder; {} clips need a folder",
             folder.display(),
             clips.len()
         );
     }
     let form = form.unwrap_or(ClipForm::Bvh);
     if args.table != CsvContent::Positions && form != ClipForm::Csv {
-        bail!("--table says what a .csv holds; add --form csv");
+        bail!("--table is for .csv output; add --form csv");
     }
     std::fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
     let names = exchange::file_names(clips.iter().map(|clip| clip.name.as_str()));
