@@ -69,7 +69,7 @@ enum MorecStatus
      */
     MOREC_STATUS_BAD_HANDLE = 2,
     /**
-     * A value that cannot be; nothing was changed.
+     * Invalid value; no change.
      */
     MOREC_STATUS_INVALID_VALUE = 3,
     /**
@@ -166,7 +166,7 @@ enum MorecHandedness
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
     /**
-     * Not said: refused.
+     * Unset; the call fails.
      */
     MOREC_HANDEDNESS_UNKNOWN = 0,
     /**
@@ -220,7 +220,7 @@ enum MorecSpace
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
     /**
-     * Not said: refused.
+     * Unset; the call fails.
      */
     MOREC_SPACE_UNKNOWN = 0,
     /**
@@ -654,7 +654,7 @@ typedef struct MorecStats {
      */
     uint64_t refused_frames;
     /**
-     * Events said, polled or waiting.
+     * Events produced so far, polled or queued.
      */
     uint64_t events;
     /**

@@ -10,7 +10,7 @@ use crate::status::CallError;
 #[repr(i32)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MorecHandedness {
-    /// Not said: refused.
+    /// Unset; the call fails.
     Unknown = 0,
     /// As in OpenGL, glTF, Maya, Blender, Godot, OpenXR, BVH files.
     Right = 1,

@@ -12,7 +12,7 @@ use crate::status::CallError;
 #[repr(i32)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MorecSpace {
-    /// Not said: refused.
+    /// Unset; the call fails.
     Unknown = 0,
     /// The world: `positions` are needed; `rotations` turn joints' axes into the world's.
     World = 1,

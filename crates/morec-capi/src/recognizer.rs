@@ -69,7 +69,7 @@ pub struct MorecStats {
     pub frames: u64,
     /// Frames refused because events waited to be polled (`MOREC_STATUS_QUEUE_FULL`).
     pub refused_frames: u64,
-    /// Events said, polled or waiting.
+    /// Events produced so far, polled or queued.
     pub events: u64,
     /// Events for which there was no room in the queue. Frames are refused before that happens: 0.
     pub lost_events: u64,
@@ -117,7 +117,7 @@ pub unsafe extern "C" fn morec_recognizer_create(
             unsafe { skeleton::read(c.skeleton, &convention, &index) }?
         } else {
             return Err(CallError::invalid(
-                "roles is for streams of roles; a skeleton says its own",
+                "roles is for streams without a skeleton; a skeleton has its own",
             ));
         };
         let stream = Stream::new(&index, declared, convention, &options, c.event_capacity)?;
@@ -174,8 +174,8 @@ pub unsafe extern "C" fn morec_recognizer_joint_of_role(
 ) -> MorecStatus {
     guard(|| {
         let stream = handles::find(recognizer)?;
-        let role =
-            words::role(role).ok_or_else(|| CallError::invalid(format!("role {role} is none")))?;
+        let role = words::role(role)
+            .ok_or_else(|| CallError::invalid(format!("role {role} does not exist")))?;
         let number = stream
             .declared()
             .rig

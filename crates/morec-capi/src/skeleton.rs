@@ -215,7 +215,7 @@ fn given_roles(roles: &[i32]) -> Result<RoleMap, CallError> {
         }
         let role = words::role(number).ok_or_else(|| {
             CallError::invalid(format!(
-                "the role of joint {joint} is {number}, which is none"
+                "joint {joint} has role {number}, which does not exist"
             ))
         })?;
         if let Some(other) = map.joint(role) {

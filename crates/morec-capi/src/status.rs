@@ -15,7 +15,7 @@ pub enum MorecStatus {
     NullPointer = 1,
     /// A handle that is none: never was one, of another kind, or destroyed.
     BadHandle = 2,
-    /// A value that cannot be; nothing was changed.
+    /// Invalid value; no change.
     InvalidValue = 3,
     /// There is not enough room for the answer; what it takes is said where the function says so.
     BufferTooSmall = 4,
@@ -95,7 +95,7 @@ impl CallError {
         }
     }
 
-    /// A value that cannot be.
+    /// Invalid value.
     pub(crate) fn invalid(text: impl Into<String>) -> Self {
         Self::new(MorecStatus::InvalidValue, text)
     }

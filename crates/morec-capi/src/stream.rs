@@ -99,7 +99,7 @@ impl Stream {
         })
     }
 
-    /// Its class.
+    /// What the caller declared of the stream.
     pub(crate) fn declared(&self) -> &Declared {
         &self.declared
     }

@@ -92,7 +92,7 @@ pub(crate) fn record(
     Ok(StepRecorder { step, after })
 }
 
-/// Ends a step's transaction. A step that touched nothing is forgotten: there is nothing to take back.
+/// Ends a step's transaction. A step that touched nothing is forgotten: nothing to undo.
 pub(crate) fn recorded(
     conn: &Connection,
     what: &str,

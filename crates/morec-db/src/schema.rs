@@ -72,7 +72,7 @@ fn difference(expected: &SchemaParts, found: &SchemaParts) -> Option<String> {
     let other = found
         .iter()
         .find_map(|(part @ (kind, name), text)| match expected.get(part) {
-            None => Some(format!("the {kind} {name:?}, which is none of its own")),
+            None => Some(format!("unexpected {kind} {name:?}: not created by morec")),
             Some(own) if own != text => Some(format!("another {kind} {name:?}")),
             Some(_) => None,
         });

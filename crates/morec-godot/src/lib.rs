@@ -89,7 +89,7 @@ impl RecognizerNode {
     #[signal]
     fn motion_ended(name: GString, score: f64, start_secs: f64, stop_secs: f64, repetitions: i64);
 
-    /// What seemed to be under way is none.
+    /// A tentative motion was cancelled.
     #[signal]
     fn motion_cancelled(name: GString);
 

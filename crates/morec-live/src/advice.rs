@@ -12,7 +12,7 @@ const SILENCE: Duration = Duration::from_secs(2);
 const EVERY: Duration = Duration::from_millis(200);
 
 /// Said once of a performer for whom the wider gate opened.
-const OPENED: &str = "performs unlike the teacher: a wider gate from now on (--performer teacher keeps the narrow one)";
+const OPENED: &str = "performs unlike the training subject: matching is relaxed from now on (--performer teacher keeps it strict)";
 
 /// Findings about one source.
 struct AdvisedSource {
@@ -134,9 +134,9 @@ fn silence(status: &Status) -> String {
     if counts.packets == 0 {
         "nothing has arrived yet: is the tracker sending, and to this address and port? (a firewall may be in the way)".to_owned()
     } else if counts.not_motion > 0 {
-        "only a rest pose arrives: the tracker has started but does not see anybody (--keep-t-pose if somebody stands like that)".to_owned()
+        "only a rest pose arrives: the tracker sees nobody (--keep-t-pose if the performer really stands in a T-pose)".to_owned()
     } else if counts.malformed * 2 > counts.packets {
-        "what arrives cannot be understood: is this the right protocol for this sender?".to_owned()
+        "packets arrive but cannot be read: is this the sender's protocol?".to_owned()
     } else {
         "something arrives, but no pose: switch on the sending of bones in the tracker".to_owned()
     }

@@ -133,7 +133,7 @@ impl PoseLine {
             (Some((Some(of), _)), Some(hand)) if of != hand => {
                 let (name, hand) = (shown(name), hand.name());
                 Err(format!(
-                    "positions.{name}: expected a point of the {hand} hand, as `hand` says, found one of the other"
+                    "positions.{name}: expected a point of the {hand} hand, as in `hand`, found one of the other hand"
                 ))
             }
             (Some((of, role)), hand) => {

@@ -68,7 +68,7 @@ impl UnnamedPoints {
             }
             let set = self.set.as_ref().ok_or_else(|| {
                 format!(
-                    "points: expected those of a hand or the landmarks of a body in a known order, found {} that look like neither",
+                    "points: expected points of a hand or landmarks of a body in a known order, found {} others",
                     points.len()
                 )
             })?;

@@ -71,7 +71,7 @@ impl SearchPart {
     /// A stretch of one of the clips as an example, which is then no hit itself.
     fn example(&self, clip: i64, start: f64, stop: f64) -> PyResult<SearchExample> {
         let example = self.index.example(ClipId(clip), start..stop);
-        let short = || value_error("the example must hold at least 0.1 s of motion");
+        let short = || value_error("the example must contain at least 0.1 s of motion");
         Ok(SearchExample {
             example: example.ok_or_else(short)?,
         })

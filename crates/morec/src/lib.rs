@@ -104,8 +104,8 @@
 //!
 //! | sign | is |
 //! |---|---|
-//! | `b` | bones that a skeleton and an index have in common, at most 11 |
-//! | `d` | values in a feature row: `6 b + 4`, 70 with all bones |
+//! | `b` | bones that a skeleton and an index have in common: at most 11 of a body, 52 with hands and points |
+//! | `d` | values in a feature row of a body: `6 b + 4`, 70 with its 11 bones |
 //! | `t` | a tick: one feature row, 1/30 s unless an index says otherwise |
 //! | `x`, `v` | bone directions in the heading frame, and their velocities (`3 b` values each) |
 //! | `z` | a feature row `[x ; β v ; γ root]`, then mapped by the metric: `A z` |

@@ -51,19 +51,17 @@ pub enum FileErrorKind {
     },
     /// There is no skeleton near an AMC motion.
     #[error(
-        "an AMC motion needs its ASF skeleton, and none lies beside it or a folder above; give --skeleton"
+        "an AMC motion needs its ASF skeleton, and there is none in its folder or a folder above; give --skeleton"
     )]
     NoSkeleton,
     /// There is no model near an OpenSim motion.
     #[error(
-        "OpenSim's joint angles (MOT, STO) mean something only with the model they were made for, and no .osim lies beside them or a \
+        "OpenSim's joint angles (MOT, STO) need their model, and there is no .osim beside them or a \
          folder above; give --skeleton MODEL.osim, or the TRC they came from"
     )]
     NoModel,
     /// An OpenSim model, which holds no motion.
-    #[error(
-        "an OpenSim model, which holds no motion; give the MOT or STO of joint angles that lies beside it"
-    )]
+    #[error("an OpenSim model without motion; give the MOT or STO of joint angles")]
     OnlyModel,
     /// A file in a folder that holds motion in a format that is not read: its format and what to do.
     #[error("{0}")]

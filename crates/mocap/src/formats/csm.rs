@@ -170,7 +170,7 @@ impl<'a> CsmHeading<'a> {
     fn check_count(&self, frames: usize, warnings: &mut Vec<Warning>) {
         let stated = self.first.zip(self.last).map(|(a, b)| b - a + 1.0);
         if let Some(stated) = stated.filter(|&stated| stated != frames as f64) {
-            let text = format!("{frames} frames are there, the header says {stated}");
+            let text = format!("found {frames} frames, the header states {stated}");
             warnings.push(Warning::new(Place::File, text));
         }
     }

@@ -204,7 +204,7 @@ fn rate(durations: &[f64], stated: Option<f64>, warnings: &mut Vec<Warning>) -> 
     let usual = known.get(known.len() / 2).copied();
     let Some(secs) = usual.or(stated.filter(|secs| *secs > 1e-6)) else {
         let text = format!(
-            "no frame lasts any time; {ASSUMED_HZ} Hz is assumed (--file-rate says another)"
+            "frames have no duration; {ASSUMED_HZ} Hz is assumed (--file-rate sets another)"
         );
         warnings.push(Warning::new(Place::File, text));
         return ASSUMED_HZ;

@@ -269,7 +269,7 @@ impl PointArray {
         if names.is_none() && WITH_HANDS_AND_FACE.contains(&points) {
             kept = BODY_OF_THESE;
             let text = format!(
-                "{points} points; the first {kept} are read as the body's, those of hands and face left out"
+                "{points} points; the first {kept} are read as the body, hands and face are left out"
             );
             warnings.push(Warning::new(Place::File, text));
         }

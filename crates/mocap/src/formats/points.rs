@@ -244,7 +244,7 @@ impl PointTable {
             return;
         }
         let text = format!(
-            "{} points; {count} are read as the body's, those of hands and face left out",
+            "{} points; {count} are read as the body, hands and face are left out",
             numbered.len()
         );
         warnings.push(Warning::new(Place::File, text));

@@ -44,7 +44,7 @@ pub fn read(bytes: &[u8], name: &str, limits: &Limits) -> Result<Loaded, ParseEr
     check_size(frames.len(), nodes.len(), 0, bytes.len(), limits)?;
     let mut warnings = Vec::new();
     let text = format!(
-        "the format has no frame rate; {ASSUMED_HZ} Hz is assumed (--file-rate says another)"
+        "the format has no frame rate; {ASSUMED_HZ} Hz is assumed (--file-rate sets another)"
     );
     warnings.push(Warning::new(Place::File, text));
     let joints = nodes.iter().enumerate().map(|(j, node)| Joint {

@@ -63,7 +63,7 @@ fn infer_up(clip: &Clip, body: &BodyMeasures, notes: &mut Vec<String>) -> Signed
     match (floors.next(), floors.next()) {
         (Some(floor), None) => {
             notes.push(format!(
-                "the body is longest along {up}, but stays on the floor along {floor}, which is taken to be up (--up AXIS says otherwise)"
+                "the body is longest along {up}, but stays on the floor along {floor}, which is taken to be up (--up AXIS overrides it)"
             ));
             floor
         }
@@ -120,7 +120,7 @@ fn lying(body: &BodyMeasures, notes: &mut Vec<String>) -> SignedAxis {
     let (best, up) = scores[0];
     if best - scores[1].0 < UNSURE {
         notes.push(format!(
-            "the body hardly stands; {up} is assumed to be up (--up AXIS says otherwise)"
+            "the body hardly stands; {up} is assumed to be up (--up AXIS overrides it)"
         ));
     }
     up

@@ -109,8 +109,7 @@ impl SideCues {
             *side = side.other();
         }
         notes.push(
-            "the names have left and right the other way round than toes and knees point; the body is believed, as a \
-             mirrored recording or exchanged names would want it (--roles says otherwise)"
+            "the names have left and right the other way round than toes and knees point; the body is believed (--roles overrides it)"
                 .to_owned(),
         );
     }

@@ -49,9 +49,8 @@ pub fn read(bytes: &[u8]) -> Result<ReadLabels, ParseError> {
         }
     }
     if summed_up > 0 {
-        let text = format!(
-            "labels of {summed_up} whole sequences sum up those of their stretches; left out"
-        );
+        let text =
+            format!("{summed_up} labels of whole sequences repeat those of their parts; left out");
         read.warnings.push(Warning::new(Place::File, text));
     }
     Ok(read)

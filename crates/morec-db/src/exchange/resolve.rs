@@ -57,7 +57,7 @@ impl ResolvedLabels {
     }
 
     fn differ(&mut self, clip: &str, kept: &str, person: &str) {
-        let note = format!("{clip} is by {kept}; that a label says {person} changes nothing");
+        let note = format!("{clip} is by {kept}; the label's person {person} is ignored");
         if !self.notes.contains(&note) {
             self.notes.push(note);
         }

@@ -26,7 +26,7 @@ use morec::math::{Quat, Vec3};
 
 /// A bone that has been missing for so long is stale.
 const STALE_SECS: f64 = 0.25;
-/// So long a sender is watched before its skeleton is believed, and a new bone before it becomes part of it.
+/// Observation time before a sender's skeleton, or a new bone, is accepted.
 const LEARN_SECS: f64 = 0.25;
 /// A bone that has been missing for so long is no longer part of the skeleton.
 const FORGET_SECS: f64 = 2.0;

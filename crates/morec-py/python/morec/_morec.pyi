@@ -432,7 +432,7 @@ class Database:
         classes: Sequence[str] = (),
         warp_share: float = 0.0,
     ) -> Table:
-        """Stretches that are like an example, the likest first; what ``morec db search`` finds.
+        """Segments similar to an example, most similar first; what ``morec db search`` finds.
 
         Parameters
         ----------

@@ -29,7 +29,7 @@ pub enum PcaError {
     TooFewRows { found: u64 },
     #[error("all {rows} rows are alike: there is no direction in which they differ")]
     NoVariance { rows: u64 },
-    #[error("a row holds a value that is not finite")]
+    #[error("a row contains a value that is not finite")]
     NotFinite,
     #[error("{0}")]
     Keep(String),

@@ -249,7 +249,7 @@ impl SvrdmModel {
             || self.profiles.values.iter().any(|v| !v.is_finite())
         {
             return Err(value(
-                "a sign vector or profile holds a value that is not finite".to_owned(),
+                "a sign vector or profile contains a value that is not finite".to_owned(),
             ));
         }
         if !(self.epsilon.is_finite() && self.epsilon >= 0.0) {

@@ -64,7 +64,7 @@ pub struct BranchReport {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum GrowError {
     /// There is nothing to tell apart.
-    #[error("a tree tells at least 2 classes apart; the samples show {found}")]
+    #[error("a tree needs at least 2 classes; the samples show {found}")]
     TooFewClasses {
         /// Classes there are.
         found: usize,

@@ -351,7 +351,7 @@ fn tested_clips<'a>(
         name: clip.name.clone(),
     });
     let trained_on: BTreeSet<&str> = training.iter().map(|c| c.name.as_str()).collect();
-    // An unknown clip of a person is a test of that person's fold; of nobody known, of every fold.
+    // Test clips with a known person run in that person's fold, others in every fold.
     let of_fold = |c: &&TrainClip| {
         let of_person = c.person.is_none() || fold.left_out.contains(&c.name);
         !trained_on.contains(c.name.as_str()) && (!several || of_person)

@@ -185,7 +185,7 @@ impl Finding {
                 "the body lies for most of the clip; if it stands, say which way is up with --up AXIS"
             }
             Finding::UpsideDown { .. } => {
-                "the head is below the feet for most of the clip; if nobody stands on the hands, say which way is up with --up AXIS"
+                "the head is below the feet for most of the clip; unless the performer stands on the hands, set the up axis with --up AXIS"
             }
             finding => return (finding.severity(), finding.to_string()),
         };

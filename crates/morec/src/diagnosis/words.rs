@@ -93,7 +93,7 @@ impl fmt::Display for Finding {
                 "the feet move together and never stand, so the whole body glides: fix the tracker's floor or its base stations; motions on the spot are still recognised, walking may not be",
             ),
             HipsFixed => f.write_str(
-                "the hips never move: gestures of the arms are recognised, motions of the whole body (walking, squats, jumps) may not be; if somebody stands there, send positions in the room and not from the hips",
+                "the hips never move: gestures of the arms are recognised, motions of the whole body (walking, squats, jumps) may not be; if the performer is standing, send positions in the room, not relative to the hips",
             ),
             HandLost { per_minute } => write!(
                 f,
@@ -135,8 +135,7 @@ fn time_unit(f: &mut fmt::Formatter<'_>, interval_secs: f64) -> fmt::Result {
 }
 
 fn joints_missing(f: &mut fmt::Formatter<'_>, roles: RoleSet) -> fmt::Result {
-    const ADVICE: &str =
-        "what an index knows of them is left out, so send them if the tracker has them";
+    const ADVICE: &str = "the index cannot use them: send them if the tracker has them";
     let is_lower = |role: Role| role == Role::Hips || LEGS.as_flattened().contains(&role);
     let mut lower = Role::BODY.into_iter().filter(|role| is_lower(*role));
     let heading = !roles.contains(Role::LeftArm) && !roles.contains(Role::RightArm);
@@ -170,6 +169,6 @@ fn up_is_not_y(
     };
     write!(
         f,
-        "the body lies along {sign}{name}, so {sign}{name} is up (unless somebody lies there): send {send}, Y must be up"
+        "the body lies along {sign}{name}, so {sign}{name} is up (unless the performer lies down): send {send}, Y must be up"
     )
 }

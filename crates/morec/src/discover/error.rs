@@ -4,7 +4,7 @@
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs)] // The messages say it all.
 pub enum DiscoverError {
-    #[error("rows of {found} values beside rows of {expected}: all clips must show the same bones")]
+    #[error("rows of {found} and of {expected} values: all clips must show the same bones")]
     Width { expected: usize, found: usize },
     #[error("rows of {0} values are no feature rows: their number is 6 for each bone and 4")]
     Layout(usize),
@@ -12,7 +12,7 @@ pub enum DiscoverError {
     NoBones,
     #[error("the rate must be above 0 and at most 1000 rows a second, found {0}")]
     Rate(f64),
-    #[error("row {row} of clip {clip} holds a value that is not finite")]
+    #[error("row {row} of clip {clip} contains a value that is not finite")]
     NotFinite { clip: usize, row: usize },
     #[error("cancelled")]
     Cancelled,

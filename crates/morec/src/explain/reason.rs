@@ -150,9 +150,9 @@ impl fmt::Display for Reason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NoSuchClass => f.write_str("the index does not know the class"),
-            Self::Unseen => f.write_str("the clip shows none of the bones that the index uses"),
+            Self::Unseen => f.write_str("the clip shows no bone that the index uses"),
             Self::NoMatch => f.write_str(
-                "less than half as fast as every sample, or more than twice: samples at that speed teach it",
+                "less than half as fast as every sample, or more than twice: add samples at that speed",
             ),
             Self::Far {
                 distance,
@@ -168,10 +168,9 @@ impl fmt::Display for Reason {
                 }
                 Ok(())
             }
-            Self::Still { .. } => f.write_str("too little movement to be told from standing still"),
+            Self::Still { .. } => f.write_str("too little movement to distinguish from standing still"),
             Self::Unlike { .. } => f.write_str(
-                "performed unlike the samples: it counts once four recognised motions show a performer unlike the teacher, or with \
-                 --performer anyone",
+                "performed unlike the samples: accepted after four motions by a performer unlike the training subject, or with --performer anyone",
             ),
             Self::Whole { score, bound, other } => {
                 if let Some(other) = other {

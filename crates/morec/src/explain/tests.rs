@@ -394,7 +394,7 @@ fn reasons_are_in_the_words_of_whoever_labels() {
     assert_eq!(
         said,
         [
-            "too little movement to be told from standing still",
+            "too little movement to distinguish from standing still",
             "more similar to background motion than to the samples",
             "more similar to clap than to its own samples",
             "goes on more like walk than like its own samples",

@@ -16,7 +16,7 @@ pub enum IndexError {
     #[error("trained by the method {0:?}, which this morec does not have: use a newer morec")]
     Method(String),
     /// The bytes are not those that were written.
-    #[error("damaged: the checksum is {found:08x}, the file says {expected:08x}")]
+    #[error("damaged: the checksum is {found:08x}, the file states {expected:08x}")]
     Checksum {
         /// The checksum that the file states.
         expected: u32,

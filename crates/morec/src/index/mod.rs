@@ -96,8 +96,7 @@ impl MotionIndex {
         };
         if model.features.heading == HeadingLine::Headset && !shown.contains(Role::Face) {
             return Some(
-                "the index takes the heading from where the headset looks, which is not sent (`face`): whoever turns away from where \
-                 the teacher faced is missed",
+                "the index takes the heading from where the headset looks, which is not sent (`face`): a performer who faces another direction than in the samples is missed",
             );
         }
         const HIPS: [Role; 2] = [Role::LeftThigh, Role::RightThigh];

@@ -148,8 +148,7 @@ impl From<SvrdmModel> for Model {
 /// Anyone was expected, and the model cannot be set to that.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "this index has one gate for all performers: three people or more taught it, or an older version trained it; leave the choice out, \
-     or train it again"
+    "this index has one gate for all performers: three people or more taught it, or an older version trained it; leave the option out, or train again"
 )]
 pub struct PerformerError;
 

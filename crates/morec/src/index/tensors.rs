@@ -147,7 +147,7 @@ impl Tables {
             return Ok(values);
         }
         Err(IndexError::Content(format!(
-            "tensor {name:?} holds a value that is not finite"
+            "tensor {name:?} contains a value that is not finite"
         )))
     }
 
@@ -203,7 +203,7 @@ impl Tables {
         };
         // A finite step times a whole number need not be finite.
         if !values.iter().all(|v| v.is_finite()) {
-            let message = format!("tensor {name:?} holds a value that is not finite");
+            let message = format!("tensor {name:?} contains a value that is not finite");
             return Err(IndexError::Content(message));
         }
         let rows: u64 = lengths.iter().map(|l| u64::from(*l)).sum();

@@ -53,7 +53,7 @@ pub fn said_absent(absent: &BTreeMap<String, usize>, known: &[String]) -> String
         false => format!("; {}", near.join(" ")),
     };
     let names = some_of(absent.keys());
-    format!("{rows} labels are of clips that are not there: {names}{asked}")
+    format!("{rows} labels are of unknown clips: {names}{asked}")
 }
 
 /// Questions about classes of few labels whose names are nearly those of classes of many, given the number of labels of each.
@@ -136,7 +136,7 @@ mod tests {
         let said = said_absent(&[("takee_1".to_owned(), 3)].into(), &known);
         assert_eq!(
             said,
-            "3 labels are of clips that are not there: takee_1; for `takee_1` did you mean `take_1`?"
+            "3 labels are of unknown clips: takee_1; for `takee_1` did you mean `take_1`?"
         );
         assert!(!said_absent(&[("elsewhere".to_owned(), 1)].into(), &known).contains('?'));
     }

@@ -190,7 +190,7 @@ impl FoundTable {
         let warnings = absent.into_iter().map(|(clip, (line, rows))| {
             Warning::new(
                 Place::Line(line),
-                format!("{rows} detections name the clip {clip}, which is not there; left out"),
+                format!("{rows} detections are of the unknown clip {clip}; left out"),
             )
         });
         (found, warnings.collect())

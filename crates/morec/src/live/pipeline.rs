@@ -27,8 +27,8 @@ pub(super) trait Pipeline: fmt::Debug + Send + Sync {
     /// Ends the stretch and adds what its last moments hold.
     fn end_stretch(&mut self, found: &mut DetectionBuffer);
 
-    /// From now on detections may come some poses later than they are settled, which is faster; or, without `wait`, adds those that still
-    /// do. While they may, only what [`push`](Self::push) and [`end_stretch`](Self::end_stretch) add is of use.
+    /// With `wait`, rows are batched for speed from now on, and detections are delayed until a batch is full: read them only from
+    /// [`push`](Self::push) and [`end_stretch`](Self::end_stretch). Without, batching ends and delayed detections are added.
     fn let_rows_wait(&mut self, _wait: bool, _found: &mut DetectionBuffer) {}
 
     /// The motion that seems to be under way, of methods that can tell.

@@ -129,8 +129,8 @@ impl Recognizer {
         self.pipeline.early_detection()
     }
 
-    /// True while what the teacher did not do alike is accepted, too: the performer's recognised motions show somebody unlike the teacher, or
-    /// anyone is expected ([`Model::with_performer`]). Templates that one or two people taught only.
+    /// True while the relaxed gate for unseen performers is open: the performer's recognised motions are unlike the training subject's,
+    /// or anyone is expected ([`Model::with_performer`]). Only for templates of one or two training subjects.
     pub fn admits_strangers(&self) -> bool {
         self.pipeline.admits_strangers()
     }

@@ -43,9 +43,9 @@ impl ShownBones {
         }
     }
 
-    /// Takes a pose of a stream that is recognised by the bones `used`. The bones to use from now on, if others: after the first second
-    /// those that at least half of its poses show, after each later one those that have come. Bones of which the model has none, where
-    /// nothing else is shown: a recogniser for them says why there is none. Next to nothing once all are used.
+    /// Takes a pose of a stream that is recognised by the bones `used`, and returns a new set of bones when it changes: after one
+    /// second the bones seen in at least half of its poses, after each later second those that appeared. If the model shares none of
+    /// them, returns them anyway, so that the caller can report the error. Costs almost nothing once all bones are used.
     pub fn take(&mut self, used: BoneSet, time_secs: f64, pose: &KeyPose) -> Option<BoneSet> {
         if self.possible.is_empty() || (!self.is_first && used == self.possible) {
             return None;

@@ -78,7 +78,7 @@ pub fn learning_notes(evaluation: &Evaluation, training: &[TrainedClass]) -> Vec
 
 fn nothing_wrong(evaluation: &Evaluation) -> &'static str {
     match (evaluation.totals.samples, evaluation.unknown.clips) {
-        (0, 0) => "There is nothing labelled here, so there is nothing to learn from it.",
+        (0, 0) => "There are no labels.",
         (0, _) => "Nothing was found in the unknown motion.",
         _ => "Every sample was recognised, and nothing else was found.",
     }

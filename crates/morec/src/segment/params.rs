@@ -63,7 +63,7 @@ pub enum SegmentError {
     Params(String),
     #[error("the rate must be above 0 and at most 100000 rows a second, found {0}")]
     Rate(f64),
-    #[error("row {row} holds a value that is not finite")]
+    #[error("row {row} contains a value that is not finite")]
     NotFinite { row: usize },
 }
 

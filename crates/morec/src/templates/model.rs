@@ -78,7 +78,7 @@ pub enum TemplateModelError {
     #[error("{0}")]
     Value(String),
     /// The bones in common with a stream are too few to tell anything by.
-    #[error("the stream offers none of the bones this index uses")]
+    #[error("the stream shows no bone that the index uses")]
     NoBones,
 }
 

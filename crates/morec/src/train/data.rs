@@ -47,7 +47,7 @@ pub enum DataError {
     #[error("two clips are called {0}: labels cannot tell them apart")]
     SameName(String),
     /// A class was asked for that the labels do not show.
-    #[error("the class {class} is asked for, but no clip holds a sample of it{hint}")]
+    #[error("the class {class} is asked for, but no clip has a sample of it{hint}")]
     NoSampleOf {
         /// Its name.
         class: String,
@@ -131,7 +131,7 @@ impl TrainingMaterial<'_> {
         let unused: Vec<String> = unused.collect();
         if !unused.is_empty() {
             notes.push(format!(
-                "{} clips hold no sample of the classes and are not used (if they hold none, name them as background): {}",
+                "{} clips have no sample of the classes and are not used (if they show none of the classes, name them as background): {}",
                 unused.len(),
                 some_of(&unused)
             ));
@@ -363,7 +363,7 @@ mod tests {
         assert!(matches!(data, Err(DataError::NoSampleOf { .. })));
         let labelled = [("both", "wave"), ("elsewhere", "bow"), ("taught", "bow")];
         let data = sorted_out(&labelled, &["bow"]).unwrap();
-        let said = "1 labels are of clips that are not there: elsewhere";
+        let said = "1 labels are of unknown clips: elsewhere";
         assert_eq!(data.notes, [said], "labels of other classes are not missed");
         let mut labels = Labels::default();
         labels.add("taught", "bow", TimeSpan::new(0.0, 1.0));

@@ -6,7 +6,7 @@ use crate::templates::TemplateModelError;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum TrainError {
     /// There is no sample to learn from.
-    #[error("no sample to learn from: none of the labels lies inside its clip")]
+    #[error("no samples: no label lies inside its clip")]
     NoSamples,
     /// Labelled clips of which none shows a body.
     #[error(
@@ -18,7 +18,7 @@ pub enum TrainError {
     #[error("no bone to learn from: the labelled clips show none in common")]
     NoCommonBone,
     /// More classes than an index numbers.
-    #[error("{0} classes; an index holds at most 65535")]
+    #[error("{0} classes; an index can have at most 65535")]
     TooManyClasses(usize),
     /// A class that an index must know well enough to show is not shown.
     #[error(

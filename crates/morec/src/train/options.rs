@@ -5,17 +5,16 @@ use crate::features::BoneSet;
 use super::mirror::Mirror;
 use super::params::TrainParams;
 
-/// When made everyday motion is background too.
+/// When built-in everyday motion is background too.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Everyday {
-    /// If clips named as background hold less than [`ENOUGH_BACKGROUND_SECS`]: real motion says more about what
-    /// will be met than made motion does, and on referee clips the two together were worse than the real alone.
+    /// If clips named as background hold less than [`ENOUGH_BACKGROUND_SECS`].
     Auto,
-    /// In any case.
+    /// Always.
     #[default]
     Always,
-    /// Not at all.
+    /// Never.
     Never,
 }
 

@@ -78,7 +78,7 @@ fn long_gesture_note(
         .collect();
     (!names.is_empty()).then(|| {
         format!(
-            "recognised as a gesture: {}; one that goes on or is repeated is better named an activity",
+            "recognised as a gesture: {}; name it with --activities if it goes on or is repeated",
             names.join(", ")
         )
     })
@@ -102,7 +102,7 @@ fn outlier_note(
     let outliers: Vec<String> = outliers.collect();
     (!outliers.is_empty()).then(|| {
         format!(
-            "a label is more than three times as long as most of its class: {}; does it hold several samples?",
+            "a label is more than three times as long as most of its class: {}; does it contain several samples?",
             outliers.join(", ")
         )
     })
@@ -191,7 +191,7 @@ impl TrainingReport {
         let mut notes = class_notes(&classes);
         let copies = streams.iter().filter(|s| s.is_copy).count();
         if copies > 0 {
-            notes.push(format!("mirrored copies of {copies} samples teach too"));
+            notes.push(format!("mirrored copies of {copies} samples are used too"));
         }
         let profile = Profile::of(prepared.bones);
         if profile != Profile::Body {
@@ -202,8 +202,7 @@ impl TrainingReport {
             ));
         } else if prepared.hipless > 0 {
             notes.push(format!(
-                "{} of {} clips that teach show no hips: the shoulders tell which way the body faces, for this index in every \
-                 stream; it looks at {}",
+                "{} of {} training clips show no hips: the shoulders give the heading, in every stream; the index uses {}",
                 prepared.hipless,
                 prepared.teaching,
                 Vec::<String>::from(prepared.bones).join(", ")
@@ -237,8 +236,7 @@ impl TrainingReport {
         notes.extend(trained.alike.iter().map(|pair| alike_note(pair, &classes)));
         if streams.iter().all(|s| s.source == StreamKind::Labelled) {
             notes.push(
-                "no background clips and no everyday motion: the threshold is a general value; name clips that \
-                 hold none of the classes as background"
+                "no background clips and no everyday motion: the threshold is a general value; name background clips"
                     .to_owned(),
             );
         }
@@ -272,7 +270,7 @@ impl TrainingReport {
 /// Note about a sample that hardly moves.
 fn quiet_note(sample: &TrainSample, prepared: &Prepared, tick_hz: f64) -> String {
     format!(
-        "{}: the sample in {} from {:.2} to {:.2} s hardly moves and does not teach; check its label",
+        "{}: the sample in {} from {:.2} to {:.2} s hardly moves and is not used; check its label",
         prepared.set.classes[sample.class.index()],
         prepared.set.streams[sample.stream].name,
         sample.ticks.start as f64 / tick_hz,
@@ -323,9 +321,9 @@ fn one_teacher_note(classes: &[ClassInfo]) -> Option<String> {
     match alone.len() {
         0 => None,
         n if n == classes.len() => Some(
-            "one person taught all classes: other people are recognised less often than by samples of several people".to_owned(),
+            "all samples are by one person: other people are recognised less often than with samples by several people".to_owned(),
         ),
-        _ => Some(format!("taught by one person alone: {}", alone.join(", "))),
+        _ => Some(format!("samples by one person only: {}", alone.join(", "))),
     }
 }
 
@@ -336,8 +334,7 @@ fn alike_note(pair: &AlikeClasses, classes: &[ClassInfo]) -> String {
         &classes[pair.other.index()].name,
     );
     format!(
-        "{class} and {other} are taught with much the same motion: {} of {} samples of {class} are as near to {other}; where both \
-         are about as near neither is reported. Check the labels, or make one class of the two",
+        "{class} and {other} have similar samples: {} of {} samples of {class} are as near to {other}; a motion near to both is not reported. Check the labels, or make one class of the two",
         pair.samples, pair.of
     )
 }

@@ -77,9 +77,10 @@ fn of_profile(
 /// Trains templates for `set`, whose rows hold `bones`.
 ///
 /// 1. metric from how samples of one class by different people differ;
-/// 2. every sample is a template;
-/// 3. threshold from the nearest that background motion comes to any of them;
-/// 4. hard negatives from unlabelled stretches that come near.
+/// 2. classes of held signs and of activities get models of their own;
+/// 3. other samples that move, and faster copies, are templates, up to a limit for each class;
+/// 4. negatives from background that comes near, thresholds from a rate of false alarms on background;
+/// 5. a verifier or the second look, where the data allow.
 ///
 /// # Errors
 /// No sample, more classes than an index numbers, a model whose parts do not fit together, or `progress` cancels.

@@ -122,7 +122,7 @@ impl<'a> AsfReader<'a> {
                     self.length_unit = length;
                 } else {
                     // Lengths may be scaled by anything; nothing would remain of a skeleton scaled by 0.
-                    let note = format!("a unit of length of {length} says nothing; 1 is used");
+                    let note = format!("a unit of length of {length} is invalid; 1 is used");
                     self.warnings.push(Warning::new(Place::Line(line), note));
                 }
             }

@@ -112,7 +112,7 @@ fn metres_per_unit(parameters: &Parameters, warnings: &mut Vec<Warning>) -> Opti
     if metres_per_unit.is_none() {
         let text = match unit.first().filter(|unit| !unit.is_empty()) {
             Some(unit) => format!("POINT:UNITS is `{unit}`, no known unit of length"),
-            None => "no POINT:UNITS; the body's height tells the unit".to_owned(),
+            None => "no POINT:UNITS; the unit is inferred from the body's height".to_owned(),
         };
         warnings.push(Warning::new(Place::File, text));
     }

@@ -74,7 +74,7 @@ pub(super) fn all(
             }
         }
         if let Some(error) = why {
-            // Without its keys a body is none; a single channel may be of anything.
+            // A body needs keys; one channel may belong to any object.
             if document.cut || animation.channels.is_empty() {
                 return Err(error);
             }

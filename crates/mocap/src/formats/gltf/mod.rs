@@ -94,7 +94,7 @@ fn read_at(
         .all(|animation| animation.channels.is_empty())
         && stage.is_character()
     {
-        let note = "the animation has no keys; one frame of the rest pose stands for it";
+        let note = "the animation has no keys; one frame of the rest pose is read";
         warnings.push(Warning::new(Place::File, note));
         animations.truncate(1);
     } else {

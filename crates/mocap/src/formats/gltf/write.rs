@@ -44,7 +44,7 @@ pub fn write_vrma(clip: &Clip, roles: &RoleMap, out: &mut dyn Write) -> io::Resu
         .find(|bone| bone.required && roles.joint(bone.role).is_none());
     if let Some(bone) = missing {
         return Err(refused(format!(
-            "a VRM animation needs {}, which no joint plays (--roles FILE says which does)",
+            "a VRM animation needs {}, which no joint plays (--roles FILE names it)",
             bone.role
         )));
     }

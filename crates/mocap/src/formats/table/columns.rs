@@ -75,7 +75,7 @@ pub(super) fn layout(rows: &[TableLine], planar: bool) -> Option<ColumnLayout> {
     for (name, columns) in open {
         match columns {
             [Some(x), Some(y), Some(z)] if is_quaternion(&labels, &name, [x, y, z], rows) => {
-                let text = format!("`{name}` has w beside x, y and z, a rotation; left out");
+                let text = format!("`{name}` has x, y, z and w, a rotation; left out");
                 found.notes.push(text);
             }
             [Some(x), Some(y), Some(z)] => found.points.push((name, [x, y, z])),

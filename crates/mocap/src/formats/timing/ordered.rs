@@ -228,7 +228,7 @@ fn agreed(stated: Option<f64>, step_secs: f64, warn: &mut dyn FnMut(String)) -> 
     match stated {
         Some(stated) if (stated / mean - 1.0).abs() > SAME_RATE => {
             warn(format!(
-                "{stated} Hz is said, but the times of the frames make {mean:.4} Hz, which is taken"
+                "{stated} Hz is stated, but the frames' times give {mean:.4} Hz, which is used"
             ));
             mean
         }

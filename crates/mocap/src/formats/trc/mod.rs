@@ -79,7 +79,7 @@ pub fn read(
     }
     if let Some(stated) = heading.points.filter(|&n| n != columns.len() as f64) {
         let text = format!(
-            "{} points are named, the header says {stated}",
+            "{} points are named, the header states {stated}",
             columns.len()
         );
         warnings.push(Warning::new(Place::Line(rows[at].0), text));
@@ -96,7 +96,7 @@ pub fn read(
         .filter(|&n| n != table.stamps.secs.len() as f64)
     {
         let text = format!(
-            "{} frames are there, the header says {stated}",
+            "found {} frames, the header states {stated}",
             table.stamps.secs.len()
         );
         warnings.push(Warning::new(Place::File, text));
@@ -108,7 +108,7 @@ pub fn read(
     };
     let unit = heading.unit.as_deref().and_then(metres_of);
     if unit.is_none() {
-        let text = "no known unit of length in the header; the body's height tells it";
+        let text = "no known unit of length in the header; it is inferred from the body's height";
         warnings.push(Warning::new(Place::File, text));
     }
     let timed = TimedPoints {

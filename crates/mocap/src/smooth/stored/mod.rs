@@ -144,7 +144,7 @@ impl CompressedClip {
         let fault = |fault: Fault| {
             let found = match fault {
                 Fault::Cut => "the end of the file",
-                Fault::TooMany => "more curves than so few bytes can hold",
+                Fault::TooMany => "more curves than its bytes can hold",
                 Fault::Number => "a number beyond its range",
             };
             ParseError::new(Place::Byte(at as u64), "the curves of all channels", found)
