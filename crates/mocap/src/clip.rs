@@ -34,7 +34,7 @@ pub struct Skeleton {
 pub struct OrderError {
     /// The offending joint.
     pub joint: usize,
-    /// Its name.
+    /// Name of the clip.
     pub name: String,
     /// The parent that it gave.
     pub parent: usize,

@@ -44,7 +44,7 @@ impl TimeSpan {
         frames.start.min(count)..frames.end.min(count)
     }
 
-    /// Its length.
+    /// Length, seconds.
     pub fn duration_secs(self) -> f64 {
         self.stop_secs - self.start_secs
     }

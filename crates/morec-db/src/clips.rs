@@ -14,7 +14,7 @@ pub struct ClipId(pub i64);
 /// A clip without its motion.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct ClipInfo {
-    /// Its number.
+    /// Number of the clip.
     pub id: ClipId,
     /// Its name, one of a kind in the database.
     #[serde(rename = "clip")]

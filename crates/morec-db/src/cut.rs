@@ -37,7 +37,7 @@ pub enum Cutter {
 pub struct ClipCuts {
     /// The clip's name.
     pub clip: String,
-    /// Its length.
+    /// Length, seconds.
     pub secs: f64,
     /// The cuts, in seconds from its beginning.
     pub cuts_secs: Vec<f64>,

@@ -12,11 +12,11 @@ use crate::{ClipInfo, DbError, MotionDb, background, names};
 /// An index without its bytes.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct IndexInfo {
-    /// Its name.
+    /// Name of the index.
     pub name: String,
     /// Time of training, seconds since 1970.
     pub trained_secs: i64,
-    /// Its size.
+    /// Size in bytes.
     pub bytes: usize,
     /// Number of samples it was trained on.
     pub samples: usize,

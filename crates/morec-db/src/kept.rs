@@ -17,7 +17,7 @@ use crate::{ClipId, DbError, StoredClip};
 /// A clip of a file, kept.
 #[derive(Debug, Clone, PartialEq)]
 pub struct KeptClip {
-    /// Its name.
+    /// Name of the clip.
     pub name: String,
     /// Its file.
     pub file: KeptFile,
@@ -25,7 +25,7 @@ pub struct KeptClip {
     pub character: usize,
     /// Person in it.
     pub subject: Option<String>,
-    /// Its origin.
+    /// Origin of the material, as given at import.
     pub source: Option<String>,
     /// Under which terms.
     pub licence: Option<String>,
@@ -66,11 +66,11 @@ pub struct KeptClip {
 pub struct KeptFile {
     /// Hash of its content (and of which of its clips was chosen).
     pub hash: [u8; 32],
-    /// Its path.
+    /// Path of the file.
     pub path: String,
-    /// Its format.
+    /// Format of the file.
     pub format: String,
-    /// Its size.
+    /// Size in bytes.
     pub bytes: u64,
     /// The skeleton file that an AMC motion was read with.
     pub skeleton: Option<String>,

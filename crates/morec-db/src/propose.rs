@@ -42,12 +42,12 @@ use views::{chosen, views};
 /// A stretch that may show a class.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Proposal {
-    /// Its clip.
+    /// Number of the clip.
     #[serde(rename = "clip_id")]
     pub clip: ClipId,
     /// Its proposed class.
     pub class: String,
-    /// Its time.
+    /// Start and stop, seconds.
     #[serde(flatten)]
     pub span: TimeSpan,
     /// True if the clip as a whole is meant: so where all samples of the class are whole clips.

@@ -13,7 +13,7 @@ use crate::{ClipId, ClipUpdate, DbError, MotionDb, clips, rows};
 /// Result of replacing the file of a clip.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Replaced {
-    /// Its name.
+    /// Name of the clip.
     pub clip: String,
     /// Length before, seconds.
     pub before_secs: f64,

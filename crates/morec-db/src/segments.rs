@@ -32,12 +32,12 @@ impl SegmentKind {
 /// A stretch of a clip between two cuts.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Segment {
-    /// Its clip.
+    /// Number of the clip.
     #[serde(rename = "clip_id")]
     pub clip: ClipId,
-    /// Its kind.
+    /// Motion, stillness or a pose of rest.
     pub kind: SegmentKind,
-    /// Its time.
+    /// Start and stop, seconds.
     #[serde(flatten)]
     pub span: TimeSpan,
 }

@@ -295,7 +295,7 @@ mod tests {
         status.source.packets = 9;
         assert!(advice_of_status(&status, &index)[0].contains("no pose"));
         status.source.malformed = 8;
-        assert!(advice_of_status(&status, &index)[0].contains("cannot be understood"));
+        assert!(advice_of_status(&status, &index)[0].contains("cannot be read"));
         status.source.not_motion = 3;
         assert!(advice_of_status(&status, &index)[0].contains("rest pose"));
     }

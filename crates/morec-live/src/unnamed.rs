@@ -184,7 +184,7 @@ mod tests {
         let line = serde_json::json!({ "points": spread }).to_string();
         let error = named(&mut unnamed, &line).unwrap_err();
         assert!(
-            error.starts_with("points: expected those of a hand"),
+            error.starts_with("points: expected points of a hand"),
             "{error}"
         );
         for (line, said) in [

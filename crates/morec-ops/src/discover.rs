@@ -31,7 +31,7 @@ pub struct DiscoverSettings {
 /// A clip in which sets are looked for.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DiscoverClip {
-    /// Its name.
+    /// Name of the clip.
     pub name: String,
     /// Its number, if it is in a database.
     pub id: Option<ClipId>,
@@ -76,7 +76,7 @@ pub struct DiscoveredSet {
 /// An instance of a set.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DiscoveredStretch {
-    /// Its clip.
+    /// Name of the clip.
     pub clip: String,
     /// The clip's number, if it is in a database.
     #[serde(skip)]
@@ -91,7 +91,7 @@ pub struct DiscoveredStretch {
 /// A stretch that is in no set.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct AloneStretch {
-    /// Its clip.
+    /// Name of the clip.
     pub clip: String,
     /// The clip's number, if it is in a database.
     #[serde(skip)]

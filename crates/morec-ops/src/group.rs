@@ -99,7 +99,7 @@ impl Default for GroupSettings {
 /// A stretch of a clip of a database, to be grouped.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GroupedStretch {
-    /// Its clip.
+    /// Number of the clip.
     pub clip: ClipId,
     /// Where it lies.
     pub span: TimeSpan,

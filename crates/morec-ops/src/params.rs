@@ -14,7 +14,7 @@ use serde_json::Value;
 pub struct Param {
     /// Path of the parameter: names of fields with dots between them.
     pub name: String,
-    /// Its value.
+    /// The value, as JSON.
     pub value: Value,
 }
 

@@ -13,16 +13,21 @@ use crate::words::choices;
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 #[serde(default, deny_unknown_fields)]
 pub struct RecognizeSettings {
-    /// False alarms a minute that background motion may raise, as in training: 0.1 is strict, 1 is generous [default:
-    /// as trained, usually 0.3]
+    /// False alarms a minute to accept: 0.1 is strict, 1 generous
+    ///
+    /// [default: as trained, usually 0.3]
     #[cfg_attr(feature = "clap", arg(long, value_name = "ALARMS"))]
     pub sensitivity: Option<f64>,
-    /// Who performs: auto raises the bound of the score to half of the performer's recent scores, from the fourth report
-    /// on; teacher raises it from the first frame by the scores of the teacher's samples, anyone never raises it [default: auto]
+    /// Expected performer, for indexes of one or two training subjects
+    ///
+    /// auto: the score threshold rises to half of the performer's recent scores, from the fourth report on; teacher: it is
+    /// raised from the first frame, by the scores of the training samples; anyone: it is never raised. For hands, tracked
+    /// points and older indexes, auto relaxes matching after four motions by a performer unlike the training subject,
+    /// anyone from the start, teacher never [default: auto].
     #[cfg_attr(feature = "clap", arg(long, value_parser = choices::<PerformerKind>([
-        ("auto", "Whoever it is"),
-        ("teacher", "The person who taught"),
-        ("anyone", "Somebody else"),
+        ("auto", "Judged by the motions so far"),
+        ("teacher", "The training subject"),
+        ("anyone", "Other people"),
     ])))]
     pub performer: Option<PerformerKind>,
 }

@@ -76,7 +76,7 @@ pub fn training_data(material: &Bound<'_, PyDict>, classes: &[String]) -> PyResu
     let clips = |name: &str| -> PyResult<Vec<Bound<'_, PyClip>>> {
         get(name)?.map_or_else(|| Ok(Vec::new()), |clips| clips.extract())
     };
-    let given = get("labels")?.ok_or_else(|| value_error("labels: which?"))?;
+    let given = get("labels")?.ok_or_else(|| value_error("labels is required"))?;
     let labels = labels(&given)?;
     warn(py, labels.warnings.iter().map(|w| format!("labels: {w}")))?;
     let people = get("people")?.map(|given| people(&given)).transpose()?;

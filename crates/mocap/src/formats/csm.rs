@@ -238,7 +238,7 @@ mod tests {
         );
         assert!(
             said.iter()
-                .any(|w| w.contains("4 frames are there, the header says 3")),
+                .any(|w| w.contains("found 4 frames, the header states 3")),
             "{said:?}"
         );
         for (text, expected) in [

@@ -91,7 +91,7 @@ pub enum SmoothError {
     Value {
         /// The joint.
         joint: usize,
-        /// Its name.
+        /// Name of the clip.
         name: String,
         /// The frame.
         frame: usize,

@@ -112,7 +112,7 @@ fn tables_report_and_what_was_left_out() {
         "{said}"
     );
     assert!(
-        said.contains("line 3: 1 detections name the clip rest"),
+        said.contains("line 3: 1 detections are of the unknown clip rest"),
         "{said}"
     );
     let report = fs::read_to_string(folder.path().join("out/deep/report.html")).unwrap();
@@ -164,7 +164,7 @@ fn labels_of_whole_clips_are_measured_as_they_teach() {
     fs::write(folder.path().join("found.tsv"), found).unwrap();
     let output = evaluate(folder.path(), &["--json"]);
     assert!(output.status.success(), "{}", text(&output.stderr));
-    assert!(text(&output.stderr).contains("without the still ends"));
+    assert!(text(&output.stderr).contains("without their still ends"));
     let json: Value = serde_json::from_slice(&output.stdout).unwrap();
     let overlaps = json["overlap"].as_array().unwrap();
     let half = overlaps.iter().find(|o| o["min_iou"] == 0.5).unwrap();

@@ -275,7 +275,7 @@ fn the_column_person_of_a_table_says_who_is_in_the_clips() {
     std::fs::write(folder.path().join("other.tsv"), other).unwrap();
     let error = folder.morec(&["db", "label", "m.mdb", "other.tsv"]).err;
     assert!(
-        error.contains("that a label says zoe changes nothing"),
+        error.contains("the label's person zoe is ignored"),
         "{error}"
     );
     // One step takes back labels and people.
@@ -431,7 +431,7 @@ fn crossval_says_by_what_it_divides_and_refuses_one_person() {
     let said = run("nobody.tsv", "person").ok();
     assert!(
         said.starts_with(&format!(
-            "Left out: each clip in turn, {} clips, as nobody is named",
+            "Left out: each clip in turn, {} clips, as no person is named",
             takes.len()
         )),
         "{said}"

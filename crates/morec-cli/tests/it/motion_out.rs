@@ -41,7 +41,7 @@ fn motion_is_exported_in_every_form() {
     for (args, says) in [
         (&["a.fbx", "--motion", &clip][..], ".fbx"),
         (&["all", "--motion", "none*"][..], "none*"),
-        (&["a.csv", "--motion", "*"][..], "into a folder"),
+        (&["a.csv", "--motion", "*"][..], "clips need a folder"),
         (
             &["a.tsv", "--motion", &clip, "--form", "tsv"][..],
             "form of labels",

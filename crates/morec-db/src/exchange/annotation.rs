@@ -12,7 +12,7 @@ use crate::labels::{DbSample, SampleState};
 pub struct Annotation {
     /// The clip's name.
     pub clip: String,
-    /// Its class.
+    /// Name of the class.
     pub class: String,
     /// Start and stop in seconds; `None` for the whole clip.
     pub extent: Option<(f64, f64)>,
@@ -20,7 +20,7 @@ pub struct Annotation {
     pub person: Option<String>,
     /// Confidence of the program that proposed it.
     pub score: Option<f64>,
-    /// Its state.
+    /// Accepted, proposed or rejected.
     pub state: SampleState,
 }
 

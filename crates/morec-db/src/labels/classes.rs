@@ -8,7 +8,7 @@ use crate::{DbError, MotionDb, names};
 /// A class and how many samples it has.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct ClassCount {
-    /// Its name.
+    /// Name of the class.
     pub name: String,
     /// Samples that show it.
     pub accepted: usize,

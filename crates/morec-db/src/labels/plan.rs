@@ -45,10 +45,10 @@ pub enum LabelChange {
 pub struct ChangedLabel {
     /// Kind of change.
     pub change: LabelChange,
-    /// Its clip.
+    /// Number of the clip.
     #[serde(rename = "clip_id")]
     pub clip: crate::ClipId,
-    /// Its class.
+    /// Name of the class.
     pub class: String,
     /// Its start, seconds.
     pub start_secs: f64,

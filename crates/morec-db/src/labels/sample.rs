@@ -21,9 +21,9 @@ pub struct JudgedCounts {
 /// A sample as it is kept.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct DbSample {
-    /// Its number.
+    /// Number of the sample.
     pub id: SampleId,
-    /// Its clip.
+    /// Number of the clip.
     #[serde(rename = "clip_id")]
     pub clip: ClipId,
     /// Its clip's name.
@@ -31,7 +31,7 @@ pub struct DbSample {
     pub clip_name: String,
     /// Person in the clip.
     pub subject: Option<String>,
-    /// Its class.
+    /// Name of the class.
     pub class: String,
     /// Start, seconds from the beginning of the clip.
     pub start_secs: f64,
@@ -39,7 +39,7 @@ pub struct DbSample {
     pub stop_secs: f64,
     /// True if the clip as a whole was labelled, still ends and all.
     pub whole_clip: bool,
-    /// Its state.
+    /// Accepted, proposed or rejected.
     pub state: SampleState,
     /// Confidence of the program that proposed it.
     pub score: Option<f64>,
@@ -66,9 +66,9 @@ impl DbSample {
 /// A sample to add.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NewSample {
-    /// Its clip.
+    /// Number of the clip.
     pub clip: ClipId,
-    /// Its class.
+    /// Name of the class.
     pub class: String,
     /// Start, seconds.
     pub start_secs: f64,
@@ -76,7 +76,7 @@ pub struct NewSample {
     pub stop_secs: f64,
     /// True if the clip as a whole is meant.
     pub whole_clip: bool,
-    /// Its state.
+    /// Accepted, proposed or rejected.
     pub state: SampleState,
     /// Confidence of the program that proposes it.
     pub score: Option<f64>,

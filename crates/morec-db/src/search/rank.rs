@@ -44,7 +44,7 @@ impl Default for SearchOptions {
 /// A stretch that is like the example.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Hit {
-    /// Its clip.
+    /// Number of the clip.
     #[serde(rename = "clip_id")]
     pub clip: ClipId,
     /// From where to where in the clip.

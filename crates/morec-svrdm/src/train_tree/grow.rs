@@ -18,7 +18,7 @@ use super::partition::{function_products, partition};
 /// A sample of a class as the tree sees it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FeatureSample {
-    /// Its class.
+    /// Number of the class.
     pub class: ClassId,
     /// The group that shows it: what is left out together.
     pub group: usize,

@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector};
 pub(crate) struct Sphere {
     /// Its centre is `Σ αᵢ ψ(xᵢ)`; `αᵢ ≥ 0`, and their sum is 1.
     pub alpha: DVector<f64>,
-    /// Its radius.
+    /// Radius of the sphere.
     pub radius: f64,
     /// By how much a sample may still lie outside, in squared distance.
     pub gap: f64,

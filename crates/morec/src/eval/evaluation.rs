@@ -48,7 +48,7 @@ pub struct Evaluation {
 pub struct Totals {
     /// Streams that are not unknown motion.
     pub known_clips: usize,
-    /// Their length.
+    /// Length, seconds.
     pub known_secs: f64,
     /// Labelled samples.
     pub samples: usize,
@@ -59,7 +59,7 @@ pub struct Totals {
 /// The measures of one class.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ClassFigures {
-    /// Its name.
+    /// Name of the class.
     pub class: String,
     /// Its labelled samples.
     pub samples: usize,

@@ -115,9 +115,9 @@ pub struct ClipDetection {
 /// A stream that was searched.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct StreamInfo {
-    /// Its name.
+    /// Name of the clip.
     pub clip: String,
-    /// Its length.
+    /// Length, seconds.
     pub duration_secs: f64,
     /// True if it is known to hold none of the classes.
     pub unknown: bool,
@@ -145,7 +145,7 @@ pub enum EvalError {
     NoStream {
         /// `"a sample"` or `"a detection"`.
         what: &'static str,
-        /// Its class.
+        /// Name of the class.
         class: String,
         /// The stream it names.
         clip: String,
@@ -158,9 +158,9 @@ pub enum EvalError {
     NoStretch {
         /// `"a sample"` or `"a detection"`.
         what: &'static str,
-        /// Its class.
+        /// Name of the class.
         class: String,
-        /// Its stream.
+        /// Name of the clip.
         clip: String,
         /// Its start and stop.
         span: TimeSpan,

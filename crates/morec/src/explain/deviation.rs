@@ -56,7 +56,7 @@ pub struct Performance {
 /// A bone of a performance.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct BoneDeviation {
-    /// Its name.
+    /// Name of the bone.
     pub bone: &'static str,
     /// Mean angle between the two along the warping path, degrees.
     pub off_degrees: f64,

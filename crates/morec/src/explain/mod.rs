@@ -38,7 +38,7 @@ pub use reason::{BoneOff, Reason};
 pub struct Miss {
     /// The clip's name.
     pub clip: String,
-    /// Its class.
+    /// Name of the class.
     pub class: String,
     /// The sample's time.
     #[serde(flatten)]

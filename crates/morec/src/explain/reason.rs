@@ -94,7 +94,7 @@ pub enum Reason {
         same: bool,
         /// Class of the detection.
         class: String,
-        /// Its time.
+        /// Start and stop, seconds.
         #[serde(flatten)]
         span: TimeSpan,
     },
@@ -105,7 +105,7 @@ pub enum Reason {
 /// A bone that points elsewhere than that of the nearest template.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct BoneOff {
-    /// Its name.
+    /// Name of the bone.
     pub bone: &'static str,
     /// Mean angle between the two along the warping path, in degrees.
     pub degrees: f64,

@@ -237,7 +237,7 @@ mod tests {
         );
         assert_eq!(
             warnings[0].to_string(),
-            "line 3: 2 detections name the clip b, which is not there; left out"
+            "line 3: 2 detections are of the unknown clip b; left out"
         );
     }
 

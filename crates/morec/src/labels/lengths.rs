@@ -9,7 +9,7 @@ use super::Sample;
 /// How long a class's samples are.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ClassLengths {
-    /// Its name.
+    /// Name of the class.
     pub class: String,
     /// Its samples.
     pub samples: usize,

@@ -13,7 +13,7 @@ const NOTABLE_BIAS_SECS: f64 = 0.2;
 /// Training data of a class, for the notes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TrainedClass {
-    /// Its name.
+    /// Name of the class.
     pub class: String,
     /// Number of samples that trained it.
     pub samples: usize,

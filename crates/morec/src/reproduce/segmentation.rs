@@ -14,9 +14,9 @@ use super::study::{Picture, ReproduceError, Study, rows_of};
 /// A clip and where it was cut.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Segmented {
-    /// Its name.
+    /// Name of the clip.
     pub clip: String,
-    /// Its length.
+    /// Length, seconds.
     pub secs: f64,
     /// Labelled samples in it.
     pub samples: usize,

@@ -12,7 +12,7 @@ use crate::pca::{Eigen, Moments};
 pub struct Cut {
     /// First row of the new segment.
     pub row: usize,
-    /// Its time.
+    /// Time, seconds.
     pub secs: f64,
     /// True if the pass from start to end found it.
     pub forward: bool,

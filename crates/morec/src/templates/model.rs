@@ -14,7 +14,7 @@ use super::{
 /// One labelled sample's rows, before the metric.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TemplateSample {
-    /// Its class.
+    /// Number of the class.
     pub class: ClassId,
     /// One row for each tick.
     pub rows: Rows,

@@ -49,7 +49,7 @@ pub enum DataError {
     /// A class was asked for that the labels do not show.
     #[error("the class {class} is asked for, but no clip has a sample of it{hint}")]
     NoSampleOf {
-        /// Its name.
+        /// Name of the class.
         class: String,
         /// Classes of the labels that may have been meant.
         hint: String,

@@ -24,7 +24,7 @@ pub struct VerifierExample {
     pub class: usize,
     /// Its stream's place in the set.
     pub stream: usize,
-    /// Its ticks.
+    /// Ticks from start to stop, the stop not included.
     pub ticks: Range<usize>,
     /// Its distances.
     pub evidence: Evidence,

@@ -24,7 +24,7 @@ pub struct Offer<'a> {
 }
 
 impl Offer<'_> {
-    /// Its ticks.
+    /// Ticks from start to stop, the stop not included.
     pub fn ticks(&self) -> Range<usize> {
         self.tick - self.age.min(self.tick)..self.tick + 1
     }
@@ -201,7 +201,7 @@ pub struct NearMiss {
     pub distance: f32,
     /// Its stream's place in the set.
     pub stream: usize,
-    /// Its ticks.
+    /// Ticks from start to stop, the stop not included.
     pub ticks: Range<usize>,
 }
 

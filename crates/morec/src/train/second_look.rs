@@ -65,7 +65,7 @@ pub fn are_apart(
 /// A taught sample judged among the others.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OwnSample {
-    /// Its class.
+    /// Number of the class.
     pub class: ClassId,
     /// The class that it would be named.
     pub named: ClassId,

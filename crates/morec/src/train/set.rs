@@ -19,7 +19,7 @@ pub enum StreamKind {
 /// A stretch of a stream, in ticks.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LabelledSpan {
-    /// Its ticks.
+    /// Ticks from start to stop, the stop not included.
     pub ticks: Range<usize>,
     /// The class it shows; `None` for a stretch that must be used for nothing (a sample held back for testing,
     /// a label outside the chosen classes).
@@ -75,7 +75,7 @@ impl TrainStream {
 /// A labelled sample cut out of its stream.
 #[derive(Debug, Clone)]
 pub struct TrainSample {
-    /// Its class.
+    /// Number of the class.
     pub class: ClassId,
     /// The person who shows it: see [`TrainStream::group`].
     pub group: String,

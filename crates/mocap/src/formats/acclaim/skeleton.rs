@@ -49,7 +49,7 @@ pub struct Root {
 /// One entry of `:bonedata`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AsfBone {
-    /// Its name.
+    /// Name of the bone.
     pub name: String,
     /// From the near end to the far end, in the file's length unit.
     pub vector: Vec3,

@@ -21,7 +21,7 @@ pub fn probe(bytes: &[u8], name: &str) -> Result<Format, ParseError> {
         return Err(ParseError::new(
             Place::File,
             "a motion format that is read",
-            format!("content that looks like {name}, which is not read: {advice}"),
+            format!("what looks like {name}, which is not read: {advice}"),
         ));
     }
     // What is wrong with a broken C3D file is reported by its reader.
@@ -32,7 +32,7 @@ pub fn probe(bytes: &[u8], name: &str) -> Result<Format, ParseError> {
     let (_, ending) = name.rsplit_once('.').unwrap_or_default();
     if let Some(unread) = unread::of_ending(ending).filter(|_| !bytes.is_empty()) {
         let (name, advice) = (unread.name, unread.advice);
-        let found = format!("a file named as {name}, which is not read: {advice}");
+        let found = format!("what by its name is {name}, which is not read: {advice}");
         return Err(ParseError::new(
             Place::File,
             "a motion format that is read",

@@ -294,7 +294,7 @@ fn a_face_behind_the_body() {
         let told = loaded
             .warnings
             .iter()
-            .any(|w| w.text.contains("hands and face left out"));
+            .any(|w| w.text.contains("hands and face are left out"));
         assert!(told, "{:?}", loaded.warnings);
     }
 }
@@ -424,7 +424,7 @@ fn readings_of_sensors_are_no_positions() {
         loaded
             .warnings
             .iter()
-            .any(|w| w.text.contains("`foot` has w")),
+            .any(|w| w.text.contains("`foot` has x, y, z and w")),
         "{:?}",
         loaded.warnings
     );

@@ -68,8 +68,8 @@ fn disagreements_are_said() {
     let (clip, said) = load(&TEXT.replace("60.00\t3\t2\tmm", "60.00\t7\t5\tfurlong"));
     assert_eq!(clip.frames, 3);
     for part in [
-        "2 points are named, the header says 5",
-        "3 frames are there, the header says 7",
+        "2 points are named, the header states 5",
+        "found 3 frames, the header states 7",
         "no known unit",
     ] {
         assert!(said.contains(part), "{said}");

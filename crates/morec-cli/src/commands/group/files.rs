@@ -69,7 +69,7 @@ fn samples(
     let mut samples = Vec::new();
     for (name, clip) in clips {
         let cuts = match args.settings.of {
-            Some(Grouping::Labels) => bail!("--of labels: which? Give --labels"),
+            Some(Grouping::Labels) => bail!("--of labels needs --labels"),
             Some(Grouping::Clips) => Vec::new(),
             None | Some(Grouping::Cuts) => {
                 kernel_cuts(&clip.rows, params, &KernelParams::default()).context(name.clone())?

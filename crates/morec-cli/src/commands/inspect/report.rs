@@ -22,7 +22,7 @@ pub enum FileReport {
     Read(Box<InspectReport>),
     /// It was not.
     Failed {
-        /// Its path.
+        /// Path of the file.
         path: PathBuf,
         /// The reason.
         error: String,

@@ -7,7 +7,7 @@ use crate::svrdm::{Directions, Gram, SvrdmParams};
 /// A sample cut out of its clip.
 #[derive(Debug, Clone)]
 pub struct ThesisSample {
-    /// Its class.
+    /// Number of the class.
     pub class: ClassId,
     /// Number of the person who shows it: the clip where nobody is named.
     pub group: usize,
