@@ -179,6 +179,24 @@ fn help_fits_eighty_columns() {
     check(&mut command, "morec");
 }
 
+/// An option's help is one line; what else there is to say is in its long form, which `--help-all` prints.
+#[test]
+fn help_is_short() {
+    for (long, uses) in options() {
+        for one in uses {
+            let length = one.help.chars().count();
+            assert!(length <= 80, "{} --{long}: {}", one.command, one.help);
+        }
+    }
+    let mut command = super::Cli::command().term_width(80);
+    command.build();
+    for (name, most) in [("train", 90), ("live", 80)] {
+        let command = command.find_subcommand_mut(name).unwrap();
+        let lines = command.render_help().to_string().lines().count();
+        assert!(lines <= most, "{name}: {lines} lines");
+    }
+}
+
 /// What must be given stands in the first group of a help that has several; what only says how to read files, in the last.
 #[test]
 fn what_is_required_comes_first_and_groups_hold_together() {
