@@ -36,23 +36,26 @@ Examples:
 
 Exit codes: 0 compared; 1 a file cannot be read or no clip is named by both; 2 wrong command line.")]
 pub struct Args {
-    /// Labels of the first annotator, in a form that `morec db label` reads
+    /// Labels of the first annotator, in any form that is read
     #[arg(value_name = "A")]
     a: PathBuf,
     /// Labels of the second annotator
     #[arg(value_name = "B")]
     b: PathBuf,
-    /// The labelled clips, or folders of clips: their rates and lengths. Without them, labels must be in seconds, and a clip ends with
-    /// its last label
+    /// The labelled clips, for their frame rates and lengths
+    ///
+    /// Without them, labels must be in seconds, and a clip ends with its last label.
     #[arg(long, value_name = "DIR|CLIP", num_args = 1..)]
     clips: Vec<PathBuf>,
-    /// Length of the unit of time for kappa, in seconds
+    /// Length of the unit of time for kappa, seconds
     #[arg(long, value_name = "SECS", default_value_t = 0.1, value_parser = unit)]
     time_unit: f64,
     /// Print one JSON object instead of tables
     #[arg(long)]
     json: bool,
-    /// Write a page of HTML too, with the labels of both on timelines (the second annotator's in the place of detections)
+    /// Write a page of HTML too
+    ///
+    /// Timelines show the labels of both, those of the second annotator in the place of detections.
     #[arg(long, value_name = "HTML")]
     report: Option<PathBuf>,
     #[command(flatten)]

@@ -53,7 +53,9 @@ pub struct Args {
     /// Clips, folders, or file stems.
     #[arg(long, value_name = "DIR|CLIP", num_args = 1..)]
     unknown: Vec<PathBuf>,
-    /// Print what 1, 2, 4 … samples of each class and 1, 2, 4 … people are worth instead, three draws each: takes many times as long
+    /// Print a learning curve instead: what more samples are worth
+    ///
+    /// Cross-validations with 1, 2, 4 … samples of each class and with 1, 2, 4 … people, three draws each, and with all of them.
     #[arg(long, conflicts_with_all = ["report", "perturb", "sensitivities", "samples"], help_heading = "Output")]
     curve: bool,
     /// Draw the curve as SVG

@@ -39,7 +39,7 @@ pub struct Args {
     /// Keep N dimensions instead
     #[arg(long, value_name = "N", conflicts_with = "quality")]
     dims: Option<usize>,
-    /// Folder for the clips as the kept dimensions have them, in BVH
+    /// Folder for the clips rebuilt from the kept dimensions (BVH)
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
     /// Print one JSON object: the table, and the components with their mean
