@@ -58,7 +58,9 @@ pub struct StreamSettings {
     /// Readiness to report motions.
     #[command(flatten)]
     pub recognition: RecognizeSettings,
-    /// Also report what seems to be under way: events of the phases start, update and cancel
+    /// Report motions that are under way too, tentatively
+    ///
+    /// Adds events of the phases start, update and cancel.
     #[arg(long)]
     pub tentative: bool,
     /// Make each repetition of an activity an event of its own
