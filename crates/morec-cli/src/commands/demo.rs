@@ -61,7 +61,12 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let folder = DemoFolder::claim(&args.folder)?;
     let cast = match args.synthetic {
         true => cast::synthetic()?,
+        #[cfg(feature = "demo-clips")]
         false => cast::real(),
+        #[cfg(not(feature = "demo-clips"))]
+        false => bail!(
+            "this morec was built without the clips of real people (feature demo-clips); `morec demo --synthetic` needs none"
+        ),
     };
     println!("{}", cast.title);
     folder.write(&cast)?;

@@ -31,6 +31,7 @@ pub struct Cast {
 }
 
 /// Two referees teach, a third clip is recognised. Terms of these files: `demo/CREDITS.md`.
+#[cfg(feature = "demo-clips")]
 pub fn real() -> Cast {
     macro_rules! files {
         ($($folder:literal $name:literal),* $(,)?) => {
