@@ -105,10 +105,10 @@ mod tests {
         };
         assert_eq!(
             event_line(&said),
-            " 12.40 s  wave  0.93  (said 0.12 s after its end)"
+            " 12.40 s  wave  0.93  (0.12 s after its end)"
         );
         said.span.stop_secs = 12.5;
-        assert!(event_line(&said).ends_with("(said 0.10 s before its end)"));
+        assert!(event_line(&said).ends_with("(0.10 s before its end)"));
         said.class = "a\x1b[2Jb\n".to_owned();
         assert!(event_line(&said).contains("  a?[2Jb?  "));
     }

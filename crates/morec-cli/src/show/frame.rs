@@ -389,14 +389,14 @@ pub(super) mod tests {
     #[test]
     fn events_appear_when_they_are_said_and_not_before() {
         let at = said(&take())[0].reported_secs;
-        assert!(!shown(at - 0.01, LOOK).contains("(said"));
+        assert!(!shown(at - 0.01, LOOK).contains("s after"));
         let after = shown(at + 0.01, LOOK);
         assert!(
-            after.contains("raise_hands  0.80  (reported 0.20 s after)"),
+            after.contains("raise_hands  0.80  (0.20 s after)"),
             "{after}"
         );
-        assert!(shown(99.0, LOOK).contains("wave  0.80  (reported 0.20 s after its end)"));
-        assert_eq!(shown(99.0, LOOK).matches("(said").count(), 2);
+        assert!(shown(99.0, LOOK).contains("wave  0.80  (0.20 s after its end)"));
+        assert_eq!(shown(99.0, LOOK).matches("s after").count(), 2);
     }
 
     #[test]

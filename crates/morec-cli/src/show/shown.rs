@@ -17,12 +17,12 @@ pub struct ShownClip<'a> {
     pub said: &'a [Detection<String>],
 }
 
-/// The line of one event: `12.40 s  wave  0.93  (said 0.12 s after its end)`.
+/// The line of one event: `12.40 s  wave  0.93  (0.12 s after its end)`.
 pub fn event_line(said: &Detection<String>) -> String {
     let delay = said.reported_secs - said.span.stop_secs;
     let (size, side) = (delay.abs(), if delay < 0.0 { "before" } else { "after" });
     format!(
-        "{:6.2} s  {}  {:.2}  (reported {size:.2} s {side} its end)",
+        "{:6.2} s  {}  {:.2}  ({size:.2} s {side} its end)",
         said.reported_secs,
         printable(&said.class),
         said.score
