@@ -3,7 +3,7 @@
 use rusqlite::{Connection, OptionalExtension, params};
 
 use super::sample::SampleId;
-use crate::{DbError, MotionDb, names};
+use crate::{BACKGROUND, DbError, MotionDb, names};
 
 /// A class and how many samples it has.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -164,6 +164,24 @@ impl MotionDb {
             let id = need(conn, name)?;
             conn.execute("DELETE FROM classes WHERE id = ?1", params![id])?;
             Ok(())
+        })
+    }
+
+    /// Says that what a class shows is none of the classes: its samples are forgotten, and clips that hold accepted samples of it alone are
+    /// tagged as [background](BACKGROUND). Gives how many clips were tagged.
+    ///
+    /// # Errors
+    /// There is no such class.
+    pub fn class_is_background(&mut self, name: &str) -> Result<usize, DbError> {
+        self.edit(&format!("{name} is background"), |conn| {
+            let id = need(conn, name)?;
+            let tagged = conn.execute(
+                "INSERT OR IGNORE INTO tags (clip, tag) SELECT clip, ?2 FROM samples WHERE state = 'accepted' \
+                 GROUP BY clip HAVING min(class = ?1) = 1",
+                params![id, BACKGROUND],
+            )?;
+            conn.execute("DELETE FROM classes WHERE id = ?1", params![id])?;
+            Ok(tagged)
         })
     }
 
