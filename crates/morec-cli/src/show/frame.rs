@@ -392,7 +392,7 @@ pub(super) mod tests {
         assert!(!shown(at - 0.01, LOOK).contains("s after"));
         let after = shown(at + 0.01, LOOK);
         assert!(
-            after.contains("raise_hands  0.80  (0.20 s after)"),
+            after.contains("raise_hands  0.80  (0.20 s after its end)"),
             "{after}"
         );
         assert!(shown(99.0, LOOK).contains("wave  0.80  (0.20 s after its end)"));
