@@ -5,10 +5,7 @@ use std::collections::BTreeSet;
 use rusqlite::Connection;
 
 use crate::labels::{SampleFilter, SampleState};
-use crate::{ClipFilter, ClipInfo, DbError, MotionDb, clips, labels};
-
-/// The tag of clips that are background: training learns from them what is none of the classes.
-pub const BACKGROUND: &str = "background";
+use crate::{BACKGROUND, ClipFilter, ClipInfo, DbError, MotionDb, clips, labels};
 
 /// The clips of a database that are marked as background.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -18,13 +15,6 @@ pub struct BackgroundClips {
     /// Clips with accepted samples of the classes, by name. They are labelled clips for training, whatever their mark, so that
     /// no sample is learned as what its class is not.
     pub labelled: Vec<ClipInfo>,
-}
-
-impl ClipInfo {
-    /// True if the clip has the tag [`BACKGROUND`].
-    pub fn is_background(&self) -> bool {
-        self.tags.iter().any(|tag| tag == BACKGROUND)
-    }
 }
 
 impl MotionDb {

@@ -5,6 +5,9 @@ use rusqlite::{Connection, OptionalExtension, Row, params};
 use crate::history::counted;
 use crate::{DbError, MotionDb, names};
 
+/// The tag of clips that are background: training learns from them what is none of the classes.
+pub const BACKGROUND: &str = "background";
+
 /// A clip's number in its database.
 #[derive(
     Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
@@ -50,6 +53,11 @@ pub struct ClipInfo {
 }
 
 impl ClipInfo {
+    /// True if the clip has the tag [`BACKGROUND`].
+    pub fn is_background(&self) -> bool {
+        self.tags.iter().any(|tag| tag == BACKGROUND)
+    }
+
     /// Length in seconds.
     pub fn duration_secs(&self) -> f64 {
         self.frames as f64 / self.rate_hz

@@ -78,8 +78,8 @@ mod testing;
 mod tests;
 mod time;
 
-pub use background::{BACKGROUND, BackgroundClips};
-pub use clips::{ClipFilter, ClipId, ClipInfo, ClipUpdate};
+pub use background::BackgroundClips;
+pub use clips::{BACKGROUND, ClipFilter, ClipId, ClipInfo, ClipUpdate};
 pub use cut::{BY_HAND, ClipCuts, CutReport, Cutter, Still};
 pub use db::{DbSummary, MotionDb};
 pub use error::DbError;

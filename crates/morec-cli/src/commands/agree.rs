@@ -7,7 +7,8 @@ use std::process::ExitCode;
 
 use anyhow::{Result, bail};
 use morec::eval::{
-    Agreement, ClassAgreement, ClipDetection, Evaluation, GroundTruth, Kappa, StreamInfo, timelines,
+    ClassAgreement, ClipDetection, Evaluation, GroundTruth, Kappa, LabelAgreement, StreamInfo,
+    timelines,
 };
 use morec::labels::{ClipLength, Extent, Labels, names_of_clip, some_of};
 use morec::report::Report;
@@ -25,7 +26,7 @@ use crate::table::TextTable;
 /// Compares two files of labels over the clips that both name: Cohen's kappa by units of time, event agreement beyond chance (events
 /// of the same class that overlap by half), and how far apart the starts and stops of matching events lie, class by class.
 ///
-/// Kappa depends on the length of the unit, which is therefore printed. Agreement of events by chance is the mean F1 with the second
+/// Kappa depends on the length of the unit, which is therefore printed. LabelAgreement of events by chance is the mean F1 with the second
 /// annotator's events moved by random times.
 #[derive(clap::Args)]
 #[command(after_help = "\
@@ -92,7 +93,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     };
     let (mut a, mut b) = (read(&args.a, &a), read(&args.b, &b));
     let streams = shared_streams(&mut a, &mut b, &lengths)?;
-    let agreement = Agreement::of(&streams, &a, &b, args.time_unit)?;
+    let agreement = LabelAgreement::of(&streams, &a, &b, args.time_unit)?;
     if let Some(path) = &args.report {
         let b: Vec<ClipDetection> = b.iter().map(ClipDetection::from).collect();
         let about = [("A", &args.a), ("B", &args.b)]
@@ -188,8 +189,8 @@ fn shared_streams(
     Ok(shared.into_iter().map(stream).collect())
 }
 
-fn write(out: &mut impl Write, agreement: &Agreement) -> io::Result<()> {
-    let Agreement {
+fn write(out: &mut impl Write, agreement: &LabelAgreement) -> io::Result<()> {
+    let LabelAgreement {
         clips,
         secs,
         unit_secs,
@@ -281,7 +282,7 @@ fn write(out: &mut impl Write, agreement: &Agreement) -> io::Result<()> {
 }
 
 /// The labels that differ most, in seconds of time.
-fn write_confusion(out: &mut impl Write, agreement: &Agreement) -> io::Result<()> {
+fn write_confusion(out: &mut impl Write, agreement: &LabelAgreement) -> io::Result<()> {
     const SHOWN: usize = 10;
     let of = &agreement.confusion;
     let name = |k: usize| of.classes.get(k).map_or("no label", String::as_str);

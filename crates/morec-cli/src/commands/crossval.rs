@@ -111,7 +111,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     }
     if args.curve {
         let curve = settings.learning_curve(&of, &args.material.settings, &StageBar::new())?;
-        curve::write(args, &curve, &mut out)?;
+        curve::write(&curve, args.plot.as_deref(), args.json, &mut out)?;
         return Ok(ExitCode::SUCCESS);
     }
     let measures = settings.crossval(&of, &args.material.settings, &StageBar::new())?;

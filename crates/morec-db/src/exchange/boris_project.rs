@@ -37,7 +37,7 @@ pub fn read(bytes: &[u8], context: &LabelContext) -> Result<ReadLabels, ParseErr
         let clip = clip_of(id, observation, context);
         let mut open: BTreeMap<[&str; 3], f64> = BTreeMap::new();
         for event in sorted_events(id, observation)? {
-            let Event {
+            let ProjectEvent {
                 secs,
                 subject,
                 code,
@@ -78,7 +78,7 @@ pub fn read(bytes: &[u8], context: &LabelContext) -> Result<ReadLabels, ParseErr
 }
 
 /// One event of an observation.
-struct Event<'p> {
+struct ProjectEvent<'p> {
     secs: f64,
     subject: &'p str,
     code: &'p str,
@@ -86,7 +86,10 @@ struct Event<'p> {
 }
 
 /// The events of an observation by time.
-fn sorted_events<'p>(id: &str, observation: &'p Value) -> Result<Vec<Event<'p>>, ParseError> {
+fn sorted_events<'p>(
+    id: &str,
+    observation: &'p Value,
+) -> Result<Vec<ProjectEvent<'p>>, ParseError> {
     let mut events = Vec::new();
     for (number, event) in observation["events"]
         .as_array()
@@ -99,7 +102,7 @@ fn sorted_events<'p>(id: &str, observation: &'p Value) -> Result<Vec<Event<'p>>,
             return Err(ParseError::new(Place::File, expected, event.to_string()));
         };
         let text = |place: usize| event[place].as_str().unwrap_or("");
-        events.push(Event {
+        events.push(ProjectEvent {
             secs,
             subject: text(1),
             code,

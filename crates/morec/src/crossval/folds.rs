@@ -2,7 +2,6 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::TaughtLimit;
 use crate::labels::Sample;
 use crate::rng::Rng;
 
@@ -75,6 +74,17 @@ fn own(samples: &[Sample], people: &BTreeMap<String, String>) -> Vec<Fold> {
         }
     };
     persons.into_iter().map(fold).collect()
+}
+
+/// What teaches in a fold at most; by default all of it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct TaughtLimit {
+    /// Samples of a class, from its people in turn.
+    pub samples_per_class: Option<usize>,
+    /// People (clips, of people who are not known).
+    pub people: Option<usize>,
+    /// Which samples and people: 0 the first, other numbers draw them.
+    pub draw: u64,
 }
 
 /// The taught samples that `limit` leaves, from the groups of `group_of` in turn.

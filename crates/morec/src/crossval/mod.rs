@@ -52,7 +52,7 @@ use crate::train::{
 };
 
 use folds::thin;
-pub use folds::{Fold, FoldBy, folds};
+pub use folds::{Fold, FoldBy, TaughtLimit, folds};
 pub use whole::{measure_as_taught, taught_span};
 
 /// Data of a cross-validation.
@@ -78,17 +78,6 @@ pub struct Tests<'a> {
     pub clips: &'a [TrainClip],
     /// Their samples.
     pub samples: &'a [Sample],
-}
-
-/// What teaches in a fold at most; by default all of it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct TaughtLimit {
-    /// Samples of a class, from its people in turn.
-    pub samples_per_class: Option<usize>,
-    /// People (clips, of people who are not known).
-    pub people: Option<usize>,
-    /// Which samples and people: 0 the first, other numbers draw them.
-    pub draw: u64,
 }
 
 /// Options of a cross-validation.

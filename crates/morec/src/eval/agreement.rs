@@ -16,18 +16,18 @@ use crate::rng::Rng;
 /// Draws by which agreement by chance is estimated.
 const CHANCE_DRAWS: usize = 200;
 
-/// Agreement of two annotators, A and B, over streams that both have labelled.
+/// LabelAgreement of two annotators, A and B, over streams that both have labelled.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Agreement {
+pub struct LabelAgreement {
     /// Streams that were compared.
     pub clips: usize,
     /// Their length, seconds.
     pub secs: f64,
     /// Length of a unit of time, seconds: kappa depends on it.
     pub unit_secs: f64,
-    /// Agreement by units of time, over all classes and "no label". Of labels that overlap, the one that started last counts.
+    /// LabelAgreement by units of time, over all classes and "no label". Of labels that overlap, the one that started last counts.
     pub time: Kappa,
-    /// Agreement by events, over all classes.
+    /// LabelAgreement by events, over all classes.
     pub events: EventAgreement,
     /// Each class of either annotator, by name.
     pub classes: Vec<ClassAgreement>,
@@ -71,7 +71,7 @@ pub struct EventAgreement {
     pub stop_p90_secs: Option<f64>,
 }
 
-/// Agreement about one class.
+/// LabelAgreement about one class.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ClassAgreement {
     /// Its name.
@@ -91,7 +91,7 @@ pub struct UnitConfusion {
     pub units: Vec<Vec<usize>>,
 }
 
-impl Agreement {
+impl LabelAgreement {
     /// Compares the labels `a` and `b` of `infos`, by units of `unit_secs`. Deterministic: the chance of events is drawn from a fixed
     /// seed. O(labels · log + units · classes), times 200 for the pairs by chance.
     ///

@@ -58,7 +58,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::TimeSpan;
 use crate::live::Detection;
 
-pub use agreement::{Agreement, ClassAgreement, EventAgreement, Kappa, UnitConfusion};
+pub use agreement::{ClassAgreement, EventAgreement, Kappa, LabelAgreement, UnitConfusion};
 pub use alarms::{FalseAlarms, UnknownFigures};
 pub use confusion::{Confusion, Mistake};
 pub use decisions::{Classification, ThesisAccuracy};

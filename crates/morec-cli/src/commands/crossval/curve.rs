@@ -1,29 +1,30 @@
 //! What more samples and more people are worth, as a table and as a picture.
 
 use std::io::Write;
+use std::path::Path;
 
 use anyhow::Context;
 use morec::plot::Chart;
 use morec_ops::{CurveFigures, CurvePoint, LearningCurve};
 
-use super::Args;
 use crate::json::write_json;
 use crate::output;
 use crate::table::TextTable;
 
 /// Draws the curve if a picture is asked for, and prints it.
 pub(super) fn write(
-    args: &Args,
     curve: &LearningCurve,
+    plot: Option<&Path>,
+    as_json: bool,
     out: &mut impl Write,
 ) -> anyhow::Result<()> {
-    if let Some(path) = &args.plot {
+    if let Some(path) = plot {
         output::check_picture(path)?;
         let svg = chart(curve).svg();
         output::write_whole(path, |out| out.write_all(svg.as_bytes()))
             .with_context(|| path.display().to_string())?;
     }
-    if args.json {
+    if as_json {
         write_json(out, curve)?;
     } else {
         let mut table = TextTable::new([

@@ -1,9 +1,9 @@
-//! Agreement of two annotators, against counts made by hand and against chance itself.
+//! LabelAgreement of two annotators, against counts made by hand and against chance itself.
 
 use super::*;
 
-fn of(a: &[GroundTruth], b: &[GroundTruth], secs: f64, unit_secs: f64) -> Agreement {
-    Agreement::of(&[stream("a", secs)], a, b, unit_secs).unwrap()
+fn of(a: &[GroundTruth], b: &[GroundTruth], secs: f64, unit_secs: f64) -> LabelAgreement {
+    LabelAgreement::of(&[stream("a", secs)], a, b, unit_secs).unwrap()
 }
 
 #[test]
