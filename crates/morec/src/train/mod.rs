@@ -20,6 +20,7 @@ mod operating;
 mod options;
 mod params;
 mod recipe;
+mod refused;
 mod report;
 mod ridge;
 mod scatter;

@@ -23,6 +23,7 @@ use super::held;
 use super::mining::{NearMiss, NearestByGate, TrainGates, hard_negatives, smallest};
 use super::operating::{AlarmCurve, CAP_EXPONENT};
 use super::params::TrainParams;
+use super::refused;
 use super::scatter::{covariance, ridged, within_class};
 use super::second_look::{self, HeldOutAlarms, OwnSample};
 use super::set::{StreamKind, TrainSample, TrainSet, TrainStream};
@@ -225,6 +226,7 @@ pub fn train(
         model
     };
     let held_out = second_look::set_bound(&mut model, set, params)?;
+    refused::refuse(&mut model, set, params)?;
     model.check()?;
     Ok(TrainedTemplates {
         model,

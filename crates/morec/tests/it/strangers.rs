@@ -81,6 +81,45 @@ fn others_are_recognised_and_their_other_motions_are_not() {
 }
 
 #[test]
+fn what_is_named_as_background_is_not_reported_again_where_few_classes_are_taught() {
+    let spec = DatabaseSpec {
+        classes: vec!["wave", "clap", "bow"],
+        ..spec(2)
+    };
+    let takes = database(7, &spec);
+    let taken = takes.iter().map(|take| {
+        let options = morec::ImportOptions::default();
+        morec::import::normalize(take.clip.clone(), &options).unwrap()
+    });
+    let taken: Vec<_> = taken.collect();
+    let (taught, other) = taken.split_at(1);
+    let mut labels = morec::Labels::default();
+    for label in &takes[0].labels {
+        labels.add(&takes[0].clip.name, label.class, label.span);
+    }
+    let trainer = morec::Trainer::new().labels(&labels);
+    let found = |index: &MotionIndex, of: usize| {
+        recognize_poses(&index.model, &made::poses(&takes[of]).1).unwrap()
+    };
+    // What the teacher taught and is found.
+    let right = |index: &MotionIndex| {
+        let found = found(index, 0);
+        let labels = takes[0].labels.iter().filter(|label| {
+            let mut named = found.iter().map(|d| d.clone().named(&index.model));
+            named.any(|d| d.class == label.class && d.span.overlap_secs(label.span) > 0.5)
+        });
+        labels.count()
+    };
+    let without = trainer.clone().train(taught).unwrap();
+    assert!(!found(&without, 1).is_empty());
+    let all = takes[0].labels.len();
+    assert_eq!(right(&without), all);
+    let with = trainer.background(other).train(taught).unwrap();
+    assert_eq!(found(&with, 1), []);
+    assert_eq!(right(&with), all);
+}
+
+#[test]
 fn for_anyone_no_fewer_motions_are_found_than_for_the_teacher() {
     let model = Model::from(taught_by_one());
     let count = |performer| found(&model, performer).iter().map(Vec::len).sum::<usize>();

@@ -18,7 +18,7 @@ const EXPONENT: f32 = 0.85;
 /// Least share of the typical spread that normalises: segments that hardly move must not be near everything.
 const LEAST_SPREAD: f32 = 0.05;
 /// Of the atlas, the distance that counts is that of its third nearest stretch.
-const NEAREST_OF_ATLAS: usize = 3;
+pub const NEAREST_OF_ATLAS: usize = 3;
 /// Distances below this are as good as none.
 const LEAST_DISTANCE: f32 = 1e-3;
 /// Values of a row, padded to whole lanes.
@@ -177,7 +177,7 @@ impl Comparison {
             }
         }
         let against = |of: f32| portable::ln(f64::from(of / nearest)) as f32;
-        let other = against(found[NEAREST_OF_ATLAS - 1]);
+        let other = against(found[NEAREST_OF_ATLAS - 1].max(LEAST_DISTANCE));
         match self.has_scale {
             true => (against(self.scale) + other) / 2.0,
             false => other,

@@ -15,6 +15,8 @@ mod segment;
 mod tests;
 
 pub use body::BodyTrack;
+#[cfg(feature = "train")]
+pub(crate) use comparison::NEAREST_OF_ATLAS;
 pub use comparison::{Comparison, Judged};
 pub use decoder::LookDecoder;
 pub use model::SecondLook;
