@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
+use crate::fonts::Fonts;
 use crate::panels;
 use crate::state::{Command, FileCommand, State};
 use crate::store::Wake;
@@ -13,6 +14,7 @@ use crate::{dialogs, keys, theme};
 pub struct Studio {
     pub state: State,
     pub dialogs: dialogs::Dialogs,
+    pub fonts: Fonts,
     themed: Option<bool>,
 }
 
@@ -32,6 +34,7 @@ impl Studio {
         Self {
             state,
             dialogs: dialogs::Dialogs::of(Arc::new(dialogs::SystemDialogs)),
+            fonts: Fonts::default(),
             themed: None,
         }
     }
@@ -63,6 +66,7 @@ impl Studio {
         let dt = ctx.input(|i| f64::from(i.unstable_dt));
         self.state.tick_keys(dt);
         self.state.tick(dt);
+        self.fonts.follow(ctx, &mut self.state);
         let mut commands: Vec<Command> = Vec::new();
         keys::read(ctx, &self.state, self.dialogs.is_open(), &mut commands);
         dialogs::dropped(ctx, &mut commands);

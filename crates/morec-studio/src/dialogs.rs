@@ -172,6 +172,16 @@ pub fn dialog(ask: &Ask) -> Dialog {
             )
         }
         Ask::ExportClip(name) => save("Export the clip", ("BVH", "bvh"), &format!("{name}.bvh")),
+        Ask::ExportStretch(name) => save(
+            "Export the stretch",
+            ("BVH", "bvh"),
+            &format!("{name}_part.bvh"),
+        ),
+        Ask::ExportClass(_) => open(
+            DialogKind::Folder,
+            "A folder for a clip of each label",
+            None,
+        ),
         Ask::ExportPage(name) => save(
             "A page of the clip",
             ("pages", "html"),
@@ -219,6 +229,8 @@ pub fn command(ask: &Ask, paths: Vec<PathBuf>) -> Option<FileCommand> {
         Ask::ExportIndex => FileCommand::ExportIndex(first),
         Ask::ExportLabels(form) => FileCommand::ExportLabels(*form, first),
         Ask::ExportClip(_) => FileCommand::ExportClip(first),
+        Ask::ExportStretch(_) => FileCommand::ExportStretch(first),
+        Ask::ExportClass(class) => FileCommand::ExportClass(class.clone(), first),
         Ask::ExportPage(_) => FileCommand::ExportPage(first),
     })
 }

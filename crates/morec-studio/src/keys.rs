@@ -65,7 +65,13 @@ pub fn read(ctx: &egui::Context, state: &State, asks_a_file: bool, out: &mut Vec
                 timeline(i, state, out);
             }
             Panel::Classes => labels(i, state, out),
-            Panel::Train => {}
+            Panel::Train => {
+                for (key, by) in [(Key::ArrowUp, -1), (Key::ArrowDown, 1)] {
+                    if i.consume_key(Modifiers::NONE, key) {
+                        out.push(Command::Train(TrainCommand::StepMoment(by)));
+                    }
+                }
+            }
         }
         playing(i, state, out);
         searching(i, state, out);
@@ -74,7 +80,9 @@ pub fn read(ctx: &egui::Context, state: &State, asks_a_file: bool, out: &mut Vec
         follow_typing(ctx);
     }
     if !in_text && !covered && ctx.input_mut(|i| i.consume_key(Modifiers::COMMAND, Key::F)) {
-        out.push(Command::Show(Panel::Library));
+        if state.panel != Panel::Label {
+            out.push(Command::Show(Panel::Library));
+        }
         // The field is there in the next frame.
         ctx.data_mut(|data| data.insert_temp(search_field(), true));
     }

@@ -10,6 +10,7 @@
 mod app;
 mod body;
 mod dialogs;
+mod fonts;
 mod format;
 mod jobs;
 mod keys;

@@ -3,15 +3,18 @@
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
+use morec::TimeSpan;
+use morec::clip::{Clip, Gap, JointTrack, Points, Span};
 use morec::formats::bvh;
 use morec::labels::Mark;
 use morec::player::{PlayedClip, page};
 use morec_db::exchange::{self, Annotation, LabelFormat};
-use morec_db::labels::{SampleFilter, SampleState};
+use morec_db::labels::{DbSample, SampleFilter, SampleState};
 use morec_db::{ClipFilter, ClipId, MotionDb};
 
 use super::progress::JobError;
 use crate::format;
+use crate::stretch::Stretch;
 
 /// A kind of export.
 #[derive(Debug, Clone)]
@@ -20,6 +23,10 @@ pub enum Export {
     Labels(LabelFormat),
     /// The motion of a clip, as BVH.
     Clip(ClipId),
+    /// A stretch of a clip, as BVH.
+    Stretch(Stretch),
+    /// The accepted samples of a class, as BVH into a folder, a file for each.
+    Class(String),
     /// A page that plays a clip with its labels and with what was recognised.
     Page(ClipId, Vec<Mark>),
 }
@@ -43,11 +50,16 @@ fn written(db: &Path, what: &Export, path: &Path) -> Result<String, String> {
         Export::Labels(form) => labels(&db, *form, path),
         Export::Clip(clip) => {
             let stored = db.clip(*clip).map_err(|e| e.to_string())?;
-            let mut bytes = Vec::new();
-            bvh::write(&stored.clip, &mut bytes).map_err(|e| e.to_string())?;
-            write_whole(path, &bytes)?;
+            write_whole(path, &bytes_of(&stored.clip)?)?;
             Ok(format::count(stored.clip.frames, "frame"))
         }
+        Export::Stretch(of) => {
+            let stored = db.clip(of.clip).map_err(|e| e.to_string())?;
+            let part = part(&stored.clip, of.span, &stored.clip.name)?;
+            write_whole(path, &bytes_of(&part)?)?;
+            Ok(format::count(part.frames, "frame"))
+        }
+        Export::Class(class) => samples(&db, class, path),
         Export::Page(clip, detections) => {
             let html = played(&db, *clip, detections.clone()).map_err(|e| e.to_string())?;
             write_whole(path, html.as_bytes())?;
@@ -82,6 +94,75 @@ fn labels(db: &MotionDb, form: LabelFormat, path: &Path) -> Result<String, Strin
         write_whole(&path.join(format!("{name}.{ending}")), text.as_bytes())?;
     }
     Ok(format!("{said} in {}", format::count(names.len(), "file")))
+}
+
+fn bytes_of(clip: &Clip) -> Result<Vec<u8>, String> {
+    let mut bytes = Vec::new();
+    bvh::write(clip, &mut bytes).map_err(|e| e.to_string())?;
+    Ok(bytes)
+}
+
+/// A file for each accepted sample of a class, by clip and time.
+fn samples(db: &MotionDb, class: &str, folder: &Path) -> Result<String, String> {
+    let filter = SampleFilter {
+        class: Some(class.to_owned()),
+        state: Some(SampleState::Accepted),
+        ..SampleFilter::default()
+    };
+    let samples = db.samples(&filter).map_err(|e| e.to_string())?;
+    std::fs::create_dir_all(folder).map_err(|e| e.to_string())?;
+    let of_clips: Vec<&[DbSample]> = samples.chunk_by(|a, b| a.clip == b.clip).collect();
+    let names = of_clips.iter().flat_map(|of_clip| {
+        let numbered = of_clip.iter().enumerate();
+        numbered.map(|(at, s)| format!("{}_{class}_{}", s.clip_name, at + 1))
+    });
+    let names: Vec<String> = names.collect();
+    let mut files = exchange::file_names(names.iter().map(String::as_str)).into_iter();
+    for of_clip in of_clips {
+        let stored = db.clip(of_clip[0].clip).map_err(|e| e.to_string())?;
+        for (sample, name) in of_clip.iter().zip(&mut files) {
+            let part = part(&stored.clip, sample.span(), &name)?;
+            write_whole(&folder.join(format!("{name}.bvh")), &bytes_of(&part)?)?;
+        }
+    }
+    Ok(format::count(samples.len(), "clip"))
+}
+
+/// The frames of a stretch as a clip of its own.
+fn part(clip: &Clip, span: TimeSpan, name: &str) -> Result<Clip, String> {
+    let frames = span.frames_among(clip.frames, clip.rate_hz);
+    if frames.is_empty() {
+        return Err(format!("no frame of {} lies in that stretch", clip.name));
+    }
+    let joints = clip.skeleton.len();
+    let within = |of: &Span| {
+        let (start, end) = (of.start.max(frames.start), of.end.min(frames.end));
+        (start < end).then(|| start - frames.start..end - frames.start)
+    };
+    let tracks = clip.tracks.iter().map(|track| JointTrack {
+        joint: track.joint,
+        positions: track.positions[frames.clone()].to_vec(),
+    });
+    let points = clip.points.as_ref().map(|points| {
+        let gaps = points.gaps.iter().filter_map(|gap| {
+            let (joint, frames) = (gap.joint, within(&gap.frames)?);
+            Some(Gap { joint, frames })
+        });
+        Points {
+            gaps: gaps.collect(),
+            ..*points
+        }
+    });
+    Ok(Clip {
+        name: name.to_owned(),
+        skeleton: clip.skeleton.clone(),
+        rate_hz: clip.rate_hz,
+        rotations: clip.rotations[frames.start * joints..frames.end * joints].to_vec(),
+        tracks: tracks.collect(),
+        frames: frames.len(),
+        repaired: clip.repaired.iter().filter_map(within).collect(),
+        points,
+    })
 }
 
 fn played(db: &MotionDb, clip: ClipId, detections: Vec<Mark>) -> Result<String, Box<dyn Error>> {

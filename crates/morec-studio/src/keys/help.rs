@@ -16,12 +16,13 @@ pub const HELP: &[(&str, &str, &str)] = &[
     ("Anywhere", "Ctrl T", "train"),
     ("Anywhere", "Ctrl H, F1", "history, this page"),
     ("Library", "Ctrl A", "select all clips of the list"),
-    ("Library", "Ctrl F", "search clips"),
+    ("Library, labels", "Ctrl F", "search clips"),
     (
         "Library, labels",
         "Up, Down",
         "the clip above, below in the list",
     ),
+    ("Train", "Up, Down", "the moment above, below in the list"),
     (
         "Library",
         "1 … 9",

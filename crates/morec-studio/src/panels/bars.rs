@@ -21,6 +21,9 @@ pub fn top(ctx: &Context, state: &State, out: Out) {
         .show(ctx, |ui| {
             ui.horizontal_centered(|ui| {
                 file_menu(ui, state, out);
+                if is_narrow(ui) {
+                    ui.spacing_mut().item_spacing.x = 2.0;
+                }
                 ui.add_space(6.0);
                 for panel in Panel::ALL {
                     tab(ui, state, panel, out);
@@ -55,6 +58,9 @@ fn file_menu(ui: &mut Ui, state: &State, out: Out) {
         }
         ui.separator();
         item(ui, ("Export this clip …", ""), shown, AskExportClip, out);
+        let part = shown && state.selected_stretch().is_some();
+        let text = "Export the selection as a clip …";
+        item(ui, (text, ""), part, AskExportStretch, out);
         item(
             ui,
             ("A page of it to send …", ""),
@@ -113,7 +119,7 @@ fn tab(ui: &mut Ui, state: &State, panel: Panel, out: Out) {
     let button = Button::selectable(on, text)
         .fill(egui::Color32::TRANSPARENT)
         .stroke(egui::Stroke::NONE)
-        .min_size(Vec2::new(64.0, 30.0));
+        .min_size(Vec2::new(if is_narrow(ui) { 0.0 } else { 64.0 }, 30.0));
     let response = ui.add(button);
     if on {
         let rect = response.rect;
@@ -126,6 +132,11 @@ fn tab(ui: &mut Ui, state: &State, panel: Panel, out: Out) {
     if response.clicked() {
         out.push(Command::Show(panel));
     }
+}
+
+/// True if the bar has room for what must be there alone.
+fn is_narrow(ui: &Ui) -> bool {
+    ui.ctx().content_rect().width() < 800.0
 }
 
 fn right(ui: &mut Ui, state: &State, out: Out) {

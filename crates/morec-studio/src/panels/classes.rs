@@ -1,8 +1,8 @@
 //! Classes side by side, each with strips of its samples; segments are dragged from one to another.
 
 use egui::{
-    CentralPanel, Context, Frame, Margin, Rangef, RichText, ScrollArea, SidePanel, Ui, Vec2,
-    WidgetType, style::ScrollAnimation,
+    CentralPanel, Frame, Margin, Rangef, RichText, ScrollArea, SidePanel, Ui, Vec2, WidgetType,
+    style::ScrollAnimation,
 };
 use morec_db::labels::{DbSample, SampleState as Judged};
 
@@ -16,26 +16,28 @@ const EDGE: f32 = 44.0;
 /// Speed of that at the edge itself, points a second.
 const EDGE_SPEED: f32 = 1100.0;
 
-pub fn show(ctx: &Context, state: &State, out: Out) {
+pub fn show(ui: &mut Ui, state: &State, out: Out) {
     SidePanel::right("shown")
         .frame(padded())
         .default_width(330.0)
         .width_range(260.0..=620.0)
-        .show(ctx, |ui| {
+        .show_inside(ui, |ui| {
             let height = (ui.available_height() * 0.55).max(160.0);
             view::clip_over_transport(ui, state, height, out);
             chosen(ui, state, out);
         });
-    CentralPanel::default().frame(padded()).show(ctx, |ui| {
-        tools(ui, state, out);
-        ui.add_space(4.0);
-        match (&state.classes.similar, &state.classes.groups) {
-            (None, None) if state.shelf.open => shelf::show(ui, state, out),
-            (Some(found), _) => similar::show(ui, state, found, out),
-            (None, Some(_)) => groups_and_columns(ui, state, out),
-            (None, None) => columns(ui, state, out),
-        }
-    });
+    CentralPanel::default()
+        .frame(padded())
+        .show_inside(ui, |ui| {
+            tools(ui, state, out);
+            ui.add_space(4.0);
+            match (&state.classes.similar, &state.classes.groups) {
+                (None, None) if state.shelf.open => shelf::show(ui, state, out),
+                (Some(found), _) => similar::show(ui, state, found, out),
+                (None, Some(_)) => groups_and_columns(ui, state, out),
+                (None, None) => columns(ui, state, out),
+            }
+        });
 }
 
 fn tools(ui: &mut Ui, state: &State, out: Out) {

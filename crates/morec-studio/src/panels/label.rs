@@ -1,49 +1,53 @@
 //! Labelling: clips at the left, the performer in the middle, classes at the right, the timeline below.
 
 use egui::{
-    Button, CentralPanel, Context, Rect, RichText, ScrollArea, Sense, SidePanel, TextEdit,
-    TopBottomPanel, Ui, Vec2, WidgetType,
+    Button, CentralPanel, Rect, RichText, ScrollArea, Sense, SidePanel, TextEdit, TopBottomPanel,
+    Ui, Vec2, WidgetType,
 };
 use morec_db::labels::SampleState as Judged;
 
-use super::{Out, carried, deviation, padded, player, proposals, timeline, view, widgets};
+use super::{Out, carried, deviation, library, padded, player, proposals, timeline, view, widgets};
 use crate::format;
+use crate::state::classes::is_free_name;
 use crate::state::{
-    ClassCommand, Command, CompareCommand, LibraryCommand, SimilarCommand, State, TimelineCommand,
+    ClassCommand, Command, CompareCommand, FileCommand, LibraryCommand, SimilarCommand, State,
+    TimelineCommand,
 };
 use crate::theme::Colours;
 
-pub fn show(ctx: &Context, state: &State, out: Out) {
-    let height = ctx.content_rect().height();
+pub fn show(ui: &mut Ui, state: &State, out: Out) {
+    let height = ui.available_height();
     TopBottomPanel::bottom("timeline")
         .frame(padded())
         .resizable(true)
         .default_height((height * 0.40).clamp(240.0, 420.0))
         .height_range(160.0..=height * 0.65)
-        .show(ctx, |ui| timeline::show(ui, state, out));
+        .show_inside(ui, |ui| timeline::show(ui, state, out));
     SidePanel::left("clips")
         .frame(padded())
         .default_width(190.0)
         .width_range(140.0..=320.0)
-        .show(ctx, |ui| clips(ui, state, out));
+        .show_inside(ui, |ui| clips(ui, state, out));
     SidePanel::right("classes")
         .frame(padded())
         .default_width(250.0)
         .width_range(220.0..=340.0)
-        .show(ctx, |ui| {
+        .show_inside(ui, |ui| {
             ScrollArea::vertical()
                 .auto_shrink(false)
                 .show(ui, |ui| classes(ui, state, out));
         });
-    CentralPanel::default().frame(padded()).show(ctx, |ui| {
-        let room = Vec2::new(0.0, player::HEIGHT + 6.0);
-        let rect = Rect::from_min_size(ui.cursor().min, ui.available_size() - room);
-        ui.scope_builder(egui::UiBuilder::new().max_rect(rect), |ui| {
-            view::clip(ui, state, out)
+    CentralPanel::default()
+        .frame(padded())
+        .show_inside(ui, |ui| {
+            let room = Vec2::new(0.0, player::HEIGHT + 6.0);
+            let rect = Rect::from_min_size(ui.cursor().min, ui.available_size() - room);
+            ui.scope_builder(egui::UiBuilder::new().max_rect(rect), |ui| {
+                view::clip(ui, state, out)
+            });
+            ui.advance_cursor_after_rect(rect);
+            player::transport(ui, state, out);
         });
-        ui.advance_cursor_after_rect(rect);
-        player::transport(ui, state, out);
-    });
 }
 
 fn clips(ui: &mut Ui, state: &State, out: Out) {
@@ -51,6 +55,7 @@ fn clips(ui: &mut Ui, state: &State, out: Out) {
     let Some(store) = &state.store else { return };
     let c = Colours::now(ui);
     widgets::section(ui, "CLIPS");
+    library::search(ui, state, ui.available_width() - 8.0, out);
     ui.spacing_mut().item_spacing.y = 0.0;
     let shown = state.library.shown();
     let now = state.player.motion.as_ref().map(|m| m.id);
@@ -100,6 +105,7 @@ fn clips(ui: &mut Ui, state: &State, out: Out) {
 
 fn classes(ui: &mut Ui, state: &State, out: Out) {
     widgets::section(ui, "CLASSES");
+    unnamed(ui, state, out);
     for (place, name) in state.classes.placed() {
         class(ui, state, place, name, out);
     }
@@ -223,9 +229,48 @@ fn class(ui: &mut Ui, state: &State, place: usize, name: &str, out: Out) {
             out.push(Command::Classes(ClassCommand::Choose(name.to_owned())));
             ui.close();
         }
+        ui.menu_button("Merge into …", |ui| {
+            for into in state.classes.order.iter().filter(|into| *into != name) {
+                if ui.button(into).clicked() {
+                    let (from, into) = (name.to_owned(), into.clone());
+                    out.push(Command::Classes(ClassCommand::Merge { from, into }));
+                    ui.close();
+                }
+            }
+        });
+        if ui.button("Export its labels as clips …").clicked() {
+            let class = name.to_owned();
+            out.push(Command::File(FileCommand::AskExportClass(class)));
+            ui.close();
+        }
+        let background = ui.button("It is background");
+        let hint =
+            "None of the classes: its labels go, and clips that hold nothing else are background";
+        if background.on_hover_text(hint).clicked() {
+            out.push(Command::Classes(ClassCommand::IsBackground(
+                name.to_owned(),
+            )));
+            ui.close();
+        }
         if ui.button("Remove the class and its labels").clicked() {
             out.push(Command::Classes(ClassCommand::Remove(name.to_owned())));
             ui.close();
+        }
+    });
+}
+
+/// Asks for the name of a class that a key has made.
+pub(super) fn unnamed(ui: &mut Ui, state: &State, out: Out) {
+    let mut classes = state.classes.order.iter();
+    let Some(class) = classes.find(|class| is_free_name(class)) else {
+        return;
+    };
+    ui.horizontal_wrapped(|ui| {
+        ui.label(format!("What is {class} called?"));
+        let field = format!("Name of {class}");
+        if let Some(to) = widgets::committed(ui, &field, class, "") {
+            let from = class.clone();
+            out.push(Command::Classes(ClassCommand::Rename { from, to }));
         }
     });
 }

@@ -2,8 +2,7 @@
 
 use crate::stretch::Stretch;
 use egui::{
-    CentralPanel, Context, Key, Rect, Response, RichText, ScrollArea, Sense, SidePanel, Ui, Vec2,
-    WidgetType,
+    CentralPanel, Key, Rect, Response, RichText, ScrollArea, Sense, SidePanel, Ui, Vec2, WidgetType,
 };
 use morec_db::{BACKGROUND, ClipInfo};
 
@@ -15,12 +14,12 @@ use crate::theme::Colours;
 const ROW: f32 = 26.0;
 const STRIP: f32 = 68.0;
 
-pub fn show(ctx: &Context, state: &State, out: Out) {
-    let width = (ctx.content_rect().width() * 0.42).clamp(430.0, 760.0);
+pub fn show(ui: &mut Ui, state: &State, out: Out) {
+    let width = (ui.available_width() * 0.42).clamp(430.0, 760.0);
     SidePanel::right("clip")
         .frame(padded())
         .exact_width(width)
-        .show(ctx, |ui| {
+        .show_inside(ui, |ui| {
             let height = (ui.available_height() * 0.44).max(200.0);
             view::clip_over_transport(ui, state, height, out);
             scrub(ui, state, out);
@@ -28,11 +27,13 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
                 .auto_shrink(false)
                 .show(ui, |ui| details::show(ui, state, out));
         });
-    CentralPanel::default().frame(padded()).show(ctx, |ui| {
-        tools(ui, state, out);
-        import_report::show(ui, state, out);
-        table(ui, state, out);
-    });
+    CentralPanel::default()
+        .frame(padded())
+        .show_inside(ui, |ui| {
+            tools(ui, state, out);
+            import_report::show(ui, state, out);
+            table(ui, state, out);
+        });
 }
 
 /// A line with the playhead, for clips that are only looked at.
@@ -48,30 +49,36 @@ fn scrub(ui: &mut Ui, state: &State, out: Out) {
     }
 }
 
+/// The field that searches the list of clips.
+pub(super) fn search(ui: &mut Ui, state: &State, width: f32, out: Out) {
+    let mut text = state.library.filter.clone();
+    let edit = widgets::line(&mut text)
+        .id(crate::keys::search_field())
+        .hint_text("Search names, people, tags …")
+        .desired_width(width);
+    let response = ui.add(edit);
+    response.widget_info(|| {
+        let mut info = egui::WidgetInfo::labeled(WidgetType::TextEdit, true, "Search clips");
+        info.current_text_value = Some(state.library.filter.clone());
+        info
+    });
+    let asked = ui.data_mut(|data| data.remove_temp::<bool>(crate::keys::search_field()));
+    if asked.is_some() {
+        response.request_focus();
+    }
+    if response.has_focus() && ui.input(|i| i.key_pressed(Key::Escape)) {
+        text.clear();
+    }
+    if text != state.library.filter {
+        out.push(Command::Library(LibraryCommand::Filter(text)));
+    }
+}
+
 fn tools(ui: &mut Ui, state: &State, out: Out) {
     let c = Colours::now(ui);
     ui.horizontal(|ui| {
-        let mut text = state.library.filter.clone();
-        let edit = widgets::line(&mut text)
-            .id(crate::keys::search_field())
-            .hint_text("Search names, people, tags …")
-            .desired_width((ui.available_width() - 390.0).clamp(110.0, 280.0));
-        let response = ui.add(edit);
-        response.widget_info(|| {
-            let mut info = egui::WidgetInfo::labeled(WidgetType::TextEdit, true, "Search clips");
-            info.current_text_value = Some(state.library.filter.clone());
-            info
-        });
-        let asked = ui.data_mut(|data| data.remove_temp::<bool>(crate::keys::search_field()));
-        if asked.is_some() {
-            response.request_focus();
-        }
-        if response.has_focus() && ui.input(|i| i.key_pressed(Key::Escape)) {
-            text.clear();
-        }
-        if text != state.library.filter {
-            out.push(Command::Library(LibraryCommand::Filter(text)));
-        }
+        let width = (ui.available_width() - 390.0).clamp(110.0, 280.0);
+        search(ui, state, width, out);
         if ui.button("Import clips …").clicked() {
             out.push(Command::File(FileCommand::AskImport));
         }

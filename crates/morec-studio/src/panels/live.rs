@@ -1,8 +1,8 @@
 //! Live: a source, the performer, what is recognised as it comes, and teaching from what just happened.
 
 use egui::{
-    CentralPanel, ComboBox, Context, Rect, RichText, ScrollArea, SidePanel, TopBottomPanel, Ui,
-    Vec2, WidgetType,
+    CentralPanel, ComboBox, Rect, RichText, ScrollArea, SidePanel, TopBottomPanel, Ui, Vec2,
+    WidgetType,
 };
 use morec::kinematics::WorldPose;
 use morec::templates::PerformerKind;
@@ -19,18 +19,18 @@ use crate::theme::Colours;
 /// Clips in the list of sources.
 const LISTED: usize = 500;
 
-pub fn show(ctx: &Context, state: &State, out: Out) {
+pub fn show(ui: &mut Ui, state: &State, out: Out) {
     TopBottomPanel::bottom("minutes")
         .frame(padded())
         .resizable(true)
         .default_height(178.0)
         .height_range(120.0..=360.0)
-        .show(ctx, |ui| live_line::show(ui, state, out));
+        .show_inside(ui, |ui| live_line::show(ui, state, out));
     SidePanel::left("source")
         .frame(padded())
         .default_width(250.0)
         .width_range(220.0..=340.0)
-        .show(ctx, |ui| {
+        .show_inside(ui, |ui| {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                 source(ui, state, out);
                 performers(ui, state, out);
@@ -42,13 +42,13 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
         .frame(padded())
         .default_width(270.0)
         .width_range(230.0..=380.0)
-        .show(ctx, |ui| {
+        .show_inside(ui, |ui| {
             teach::show(ui, state, out);
             teach::recognised(ui, state, out);
         });
     CentralPanel::default()
         .frame(padded())
-        .show(ctx, |ui| performer(ui, state, out));
+        .show_inside(ui, |ui| performer(ui, state, out));
 }
 
 fn source(ui: &mut Ui, state: &State, out: Out) {

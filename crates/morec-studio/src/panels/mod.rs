@@ -48,13 +48,17 @@ mod view;
 mod whole;
 mod widgets;
 
-use egui::{CentralPanel, Context};
+use egui::scroll_area::{ScrollBarVisibility, ScrollSource};
+use egui::{CentralPanel, Context, Frame, ScrollArea, Sense, Ui, UiBuilder, Vec2};
 
 use crate::state::{Panel, State};
 use crate::theme::Colours;
 pub use strips::wanted_clips;
 pub use widgets::Out;
 use widgets::padded;
+
+/// Panels are laid out in so much room at least, points.
+const LEAST: Vec2 = Vec2::new(900.0, 450.0);
 
 /// Draws the whole window.
 pub fn show(ctx: &Context, state: &State, out: Out) {
@@ -74,12 +78,37 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
     if state.store.is_none() {
         return empty(ctx, state, out);
     }
+    CentralPanel::default()
+        .frame(Frame::NONE)
+        .show(ctx, |ui| scrolled(ui, state, out));
+}
+
+/// A panel in the room that there is; one that is too small shows a part of it.
+fn scrolled(ui: &mut Ui, state: &State, out: Out) {
+    let room = ui.available_size();
+    if room.x >= LEAST.x && room.y >= LEAST.y {
+        return panel(ui, state, out);
+    }
+    ScrollArea::both()
+        .id_salt(state.panel)
+        .auto_shrink(false)
+        // The wheel is for what lies inside: timelines and views zoom by it.
+        .scroll_source(ScrollSource::SCROLL_BAR)
+        .scroll_bar_visibility(ScrollBarVisibility::AlwaysVisible)
+        .show(ui, |ui| {
+            let (rect, _) = ui.allocate_exact_size(room.max(LEAST), Sense::hover());
+            let builder = UiBuilder::new().max_rect(rect);
+            ui.scope_builder(builder, |ui| panel(ui, state, out));
+        });
+}
+
+fn panel(ui: &mut Ui, state: &State, out: Out) {
     match state.panel {
-        Panel::Library => library::show(ctx, state, out),
-        Panel::Label => label::show(ctx, state, out),
-        Panel::Classes => classes::show(ctx, state, out),
-        Panel::Train => train::show(ctx, state, out),
-        Panel::Live => live::show(ctx, state, out),
+        Panel::Library => library::show(ui, state, out),
+        Panel::Label => label::show(ui, state, out),
+        Panel::Classes => classes::show(ui, state, out),
+        Panel::Train => train::show(ui, state, out),
+        Panel::Live => live::show(ui, state, out),
     }
 }
 

@@ -14,9 +14,10 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
         return;
     };
     let c = Colours::now(ui);
-    let (title, places) = match state.train.cell {
-        Some((row, column)) => ("IN THIS CELL", judged.of_cell(row, column)),
-        None => ("MISTAKES", judged.mistakes()),
+    let places = state.listed_moments();
+    let title = match state.train.cell {
+        Some(_) => "IN THIS CELL",
+        None => "MISTAKES",
     };
     ui.horizontal(|ui| {
         widgets::section(ui, title);
@@ -41,6 +42,9 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
         .id_salt("moments")
         .auto_shrink(false)
         .show_rows(ui, height, places.len(), |ui, rows| {
+            let chosen = state.train.moment;
+            let at = places.iter().position(|place| Some(*place) == chosen);
+            widgets::keep_in_view(ui, "moments", at, rows.start, height);
             for (at, moment) in moments().skip(rows.start).take(rows.len()) {
                 let on = state.train.moment == Some(at);
                 if line(ui, moment, height, on) {

@@ -15,7 +15,7 @@ const WIDEST: f32 = 560.0;
 
 /// Draws them over the lower right corner: no control moves when one comes.
 pub fn show(ctx: &Context, state: &State, out: Out) {
-    if state.notices.is_empty() && state.leftovers.is_empty() {
+    if state.notices.is_empty() && state.leftovers.is_empty() && state.undrawn.is_empty() {
         return;
     }
     let c = Colours::of(state.dark);
@@ -26,6 +26,7 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
         .show(ctx, |ui| {
             ui.set_width(width);
             leftovers(ui, state, &c, out);
+            undrawn(ui, state, &c);
             errors(ui, state, &c, out);
         });
 }
@@ -45,6 +46,31 @@ fn errors(ui: &mut Ui, state: &State, c: &Colours, out: Out) {
         if state.notices.len() > SHOWN {
             ui.label(format!("and {} more", state.notices.len() - SHOWN));
         }
+    });
+}
+
+/// Names that are drawn with gaps.
+fn undrawn(ui: &mut Ui, state: &State, c: &Colours) {
+    let Some(first) = state.undrawn.first() else {
+        return;
+    };
+    let more = match state.undrawn.len() {
+        1 => String::new(),
+        n => format!(" and {} more", format::count(n - 1, "name")),
+    };
+    let code: Vec<String> = first
+        .chars()
+        .filter(|letter| !letter.is_ascii())
+        .map(|letter| format!("U+{:04X}", u32::from(letter)))
+        .take(4)
+        .collect();
+    card(ui, c, c.warn, |ui| {
+        let text = format!(
+            "No font of this computer has all letters of {first} ({}){more}. Install one, such as Noto Sans CJK or Noto Sans Arabic, and \
+             start again.",
+            code.join(" ")
+        );
+        line(ui, c.warn, &text, |_| {});
     });
 }
 

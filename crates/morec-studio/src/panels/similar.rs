@@ -7,6 +7,7 @@ use super::strips::{STRIP, go};
 use super::{Out, strips, widgets};
 use crate::format;
 use crate::jobs::similar::Similar;
+use crate::state::classes::LIKELY;
 use crate::state::{Command, CompareCommand, SimilarCommand, State};
 use crate::stretch::Stretch;
 use crate::theme::Colours;
@@ -36,12 +37,56 @@ pub fn tools(ui: &mut Ui, state: &State, similar: &Similar, out: Out) {
     if ui.button("Back to classes").clicked() {
         out.push(Command::Similar(SimilarCommand::Close));
     }
+    at_once(ui, state, similar, out);
     let count = format::count(similar.hits.len(), "stretch");
     let text = match similar.mirror {
         true => format!("{count}, as they are and in a mirror"),
         false => count,
     };
     ui.colored_label(c.muted, text);
+}
+
+/// All hits that are like enough become labels of a class.
+fn at_once(ui: &mut Ui, state: &State, similar: &Similar, out: Out) {
+    if similar.hits.is_empty() {
+        return;
+    }
+    let mut alike = state.classes.alike.unwrap_or(LIKELY);
+    ui.spacing_mut().slider_width = 90.0;
+    let response = ui.add(egui::Slider::new(&mut alike, 1..=100).suffix(" %"));
+    widgets::named(&response, WidgetType::Slider, "Likeness of hits", false);
+    if response.changed() {
+        out.push(Command::Similar(SimilarCommand::Alike(alike)));
+    }
+    let count = state.alike_at_once().len();
+    let mut all_are = |class: &str| {
+        let command = SimilarCommand::LabelAll(class.to_owned());
+        out.push(Command::Similar(command));
+    };
+    ui.add_enabled_ui(count > 0, |ui| match &similar.class {
+        Some(class) => {
+            if ui
+                .button(format!("All {count} above are {class}"))
+                .clicked()
+            {
+                all_are(class);
+            }
+        }
+        None => {
+            ui.menu_button(format!("All {count} above are …"), |ui| {
+                for class in &state.classes.order {
+                    if ui.button(class).clicked() {
+                        all_are(class);
+                        ui.close();
+                    }
+                }
+                if ui.button("New class").clicked() {
+                    all_are(&state.classes.free_name());
+                    ui.close();
+                }
+            });
+        }
+    });
 }
 
 /// The cards, in as many columns as there is room for.

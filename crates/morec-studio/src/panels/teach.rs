@@ -2,7 +2,7 @@
 
 use egui::{ProgressBar, RichText, ScrollArea, Ui, WidgetType};
 
-use super::{Out, widgets};
+use super::{Out, label, widgets};
 use crate::format;
 use crate::state::{Command, LiveCommand, State, TrainCommand};
 use crate::theme::Colours;
@@ -61,6 +61,7 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
             out.push(Command::Live(LiveCommand::MarkBackground));
         }
     });
+    label::unnamed(ui, state, out);
     let busy = state.live.teaching || state.is_training();
     if busy {
         ui.horizontal(|ui| {
@@ -146,8 +147,10 @@ pub fn recognised(ui: &mut Ui, state: &State, out: Out) {
                         true => format!("{} · ", seen.actor.0 + 1),
                         false => String::new(),
                     };
+                    let times = seen.repetitions.map(|n| format!("× {n} · "));
                     let text = format!(
-                        "{who}{}  {:.0} %",
+                        "{}{who}{}  {:.0} %",
+                        times.unwrap_or_default(),
                         format::clock(seen.span.start_secs, 1),
                         100.0 * seen.score
                     );

@@ -1,7 +1,7 @@
 //! Training: what is learned, how it went, how good it is on what it was not taught.
 
 use egui::{
-    CentralPanel, ComboBox, Context, Frame, Margin, RichText, ScrollArea, SidePanel, Ui, WidgetType,
+    CentralPanel, ComboBox, Frame, Margin, RichText, ScrollArea, SidePanel, Ui, WidgetType,
 };
 
 use super::{Out, background, kinds, matrix, moments, padded, thesis, view, widgets};
@@ -13,12 +13,12 @@ use crate::jobs::judge::only_part;
 use crate::state::{Command, CrossvalView, FileCommand, State, TrainCommand};
 use crate::theme::Colours;
 
-pub fn show(ctx: &Context, state: &State, out: Out) {
+pub fn show(ui: &mut Ui, state: &State, out: Out) {
     SidePanel::left("what to learn")
         .frame(padded())
         .default_width(220.0)
         .width_range(180.0..=320.0)
-        .show(ctx, |ui| {
+        .show_inside(ui, |ui| {
             // Above the lists, which scroll when there are many classes.
             buttons(ui, state, out);
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
@@ -30,37 +30,39 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
         .frame(padded())
         .default_width(340.0)
         .width_range(280.0..=620.0)
-        .show(ctx, |ui| {
+        .show_inside(ui, |ui| {
             let height = (0.52 * ui.available_height()).clamp(160.0, 420.0);
             view::clip_over_transport(ui, state, height, out);
             moments::show(ui, state, out);
         });
-    CentralPanel::default().frame(padded()).show(ctx, |ui| {
-        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-            // An index of the method of 2009 comes after its tree, which says more.
-            let index = state.train.index.as_ref();
-            let of_2009 = index.is_some_and(|index| index.model.needs_rotations());
-            let first = of_2009 && state.train.thesis.is_some();
-            if first {
-                thesis::show(ui, state, out);
-                ui.add_space(14.0);
-            }
-            let nothing = state.train.index.is_none() && state.train.judged.is_none();
-            if nothing && state.train.thesis.is_none() {
-                widgets::nothing(
-                    ui,
-                    "Nothing is trained yet",
-                    "Choose classes at the left and train.",
-                );
-            } else {
-                trained(ui, state, out);
-                matrix::show(ui, state, out);
-            }
-            if !first {
-                thesis::show(ui, state, out);
-            }
+    CentralPanel::default()
+        .frame(padded())
+        .show_inside(ui, |ui| {
+            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                // An index of the method of 2009 comes after its tree, which says more.
+                let index = state.train.index.as_ref();
+                let of_2009 = index.is_some_and(|index| index.model.needs_rotations());
+                let first = of_2009 && state.train.thesis.is_some();
+                if first {
+                    thesis::show(ui, state, out);
+                    ui.add_space(14.0);
+                }
+                let nothing = state.train.index.is_none() && state.train.judged.is_none();
+                if nothing && state.train.thesis.is_none() {
+                    widgets::nothing(
+                        ui,
+                        "Nothing is trained yet",
+                        "Choose classes at the left and train.",
+                    );
+                } else {
+                    trained(ui, state, out);
+                    matrix::show(ui, state, out);
+                }
+                if !first {
+                    thesis::show(ui, state, out);
+                }
+            });
         });
-    });
 }
 
 fn buttons(ui: &mut Ui, state: &State, out: Out) {

@@ -47,6 +47,8 @@ pub struct Classes {
     pub renaming: Option<(String, String)>,
     /// Proposals at least this likely are accepted at once, percent; [`LIKELY`] unless chosen.
     pub likely: Option<u8>,
+    /// Hits of a search at least this like the example are labelled at once, percent.
+    pub alike: Option<u8>,
     /// The name of a new class so far.
     pub adding: String,
     /// The class of the key Q.
@@ -194,8 +196,17 @@ impl Classes {
     /// A name for the class of a key that has none yet.
     pub fn free_name(&self) -> String {
         (1..)
-            .map(|n| format!("gesture {n}"))
+            .map(|n| format!("{FREE_NAME}{n}"))
             .find(|name| !self.order.contains(name))
             .unwrap_or_default()
     }
+}
+
+/// Beginning of the names of classes that a key has made.
+const FREE_NAME: &str = "gesture ";
+
+/// True of names that nobody has given.
+pub fn is_free_name(name: &str) -> bool {
+    let number = name.strip_prefix(FREE_NAME);
+    number.is_some_and(|n| n.parse::<u32>().is_ok())
 }

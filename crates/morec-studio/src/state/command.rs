@@ -109,10 +109,16 @@ pub enum FileCommand {
     AskExportLabels(LabelFormat),
     /// The clip that is shown, as BVH.
     AskExportClip,
+    /// The selected stretch, or the selected label, as a clip.
+    AskExportStretch,
+    /// The labels of a class as clips.
+    AskExportClass(String),
     /// A page that plays the clip that is shown.
     AskExportPage,
     ExportLabels(LabelFormat, PathBuf),
     ExportClip(PathBuf),
+    ExportStretch(PathBuf),
+    ExportClass(String, PathBuf),
     ExportPage(PathBuf),
     /// No dialog can be opened: a path is typed.
     NoDialog(Ask),
@@ -263,6 +269,13 @@ pub enum ClassCommand {
         from: String,
         to: String,
     },
+    /// The labels of a class become those of another.
+    Merge {
+        from: String,
+        into: String,
+    },
+    /// What a class shows is none of the classes.
+    IsBackground(String),
     Remove(String),
     /// The key of a class goes down, or up.
     Key {
@@ -331,6 +344,8 @@ pub enum TrainCommand {
     Cell(Option<(usize, usize)>),
     /// Goes to the moment of this place in the cross-validation.
     Moment(usize),
+    /// Goes to the moment so many lines below the chosen one, above it where negative.
+    StepMoment(i64),
     Keep(String),
     UseIndex(String),
     /// The figures with which the method of 2009 is trained from now on.
@@ -357,5 +372,7 @@ pub enum Ask {
     ExportIndex,
     ExportLabels(LabelFormat),
     ExportClip(String),
+    ExportStretch(String),
+    ExportClass(String),
     ExportPage(String),
 }

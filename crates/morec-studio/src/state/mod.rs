@@ -87,6 +87,8 @@ pub struct State {
     pub notices: Vec<Notice>,
     /// Number of commands that may have changed something.
     acts: u64,
+    /// Names with letters that no font has.
+    pub undrawn: Vec<String>,
     /// Message about the last action, for the status bar.
     pub said: String,
     /// The command that would do the same.
@@ -218,6 +220,7 @@ impl State {
             undo_asks: false,
             notices: Vec::new(),
             acts: 0,
+            undrawn: Vec::new(),
             said: String::new(),
             command_line: String::new(),
             library: Library::default(),

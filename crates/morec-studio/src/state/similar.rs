@@ -13,5 +13,9 @@ pub enum SimilarCommand {
     Mirror(bool),
     /// The hit of this place is of a class.
     Label(usize, String),
+    /// Hits at least this like the example, percent, are labelled at once by the next.
+    Alike(u8),
+    /// All those hits are of a class.
+    LabelAll(String),
     Close,
 }

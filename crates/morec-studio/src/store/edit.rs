@@ -52,6 +52,13 @@ pub enum Edit {
         from: String,
         to: String,
     },
+    /// The labels of a class become those of another.
+    MergeClass {
+        from: String,
+        into: String,
+    },
+    /// A class shows none of the classes.
+    ClassIsBackground(String),
     RemoveClass(String),
     Describe {
         clips: Vec<ClipId>,
@@ -161,6 +168,15 @@ impl Edit {
             Edit::RenameClass { from, to } => {
                 db.rename_class(from, to)?;
                 Ok(format!("{from} is called {to} now"))
+            }
+            Edit::MergeClass { from, into } => {
+                let moved = db.merge_classes(std::slice::from_ref(from), into)?;
+                Ok(format!("{} of {from} now {into}", samples(moved)))
+            }
+            Edit::ClassIsBackground(name) => {
+                let tagged = db.class_is_background(name)?;
+                let clips = crate::format::count(tagged, "clip");
+                Ok(format!("{name} removed, {clips} marked as background"))
             }
             Edit::RemoveClass(name) => {
                 db.remove_class(name)?;

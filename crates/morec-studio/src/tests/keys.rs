@@ -230,10 +230,17 @@ fn clips_are_looked_through_searched_and_labelled_by_keys_alone() {
     person.presses(Key::Num2);
     person.settle();
     assert_eq!(person.labels().len(), 1);
-    // From anywhere into the search.
+    // Into the search of the same list.
     person.key_with(Key::F, Modifiers::COMMAND);
     person.frames(3);
     person.window.event(egui::Event::Text("ben".to_owned()));
+    person.frames(3);
+    assert!(person.offers("Show ben_1") && !person.offers("Show ada_1"));
+    // From elsewhere into that of the library, which is the same.
+    person.key(Key::Enter);
+    person.key_with(Key::Num4, Modifiers::COMMAND);
+    person.frames(3);
+    person.key_with(Key::F, Modifiers::COMMAND);
     person.frames(3);
     assert!(person.offers("ben_1") && !person.offers("ada_1"));
 }

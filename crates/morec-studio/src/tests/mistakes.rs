@@ -217,3 +217,16 @@ fn the_reason_of_a_miss_is_read_whole() {
     let text = person.place(&why);
     assert!(text.height() > 20.0, "it is wrapped: {text:?}");
 }
+
+#[test]
+fn the_list_of_mistakes_is_gone_through_by_keys() {
+    let (_folder, mut person) = judged();
+    let listed = person.state().listed_moments();
+    assert!(listed.len() > 1);
+    person.key(Key::ArrowDown);
+    assert_eq!(person.state().train.moment, Some(listed[0]));
+    person.key(Key::ArrowDown);
+    assert_eq!(person.state().train.moment, Some(listed[1]));
+    person.key(Key::ArrowUp);
+    assert_eq!(person.state().train.moment, Some(listed[0]));
+}

@@ -5,7 +5,9 @@ use morec_db::exchange::{self, ClipLengths, LabelFormat};
 
 use super::{Person, made, takes};
 use crate::state::layout::{CameraLayout, Layout};
-use crate::state::{Command, FileCommand, LibraryCommand, Panel, State, ViewCommand};
+use crate::state::{
+    Command, FileCommand, LibraryCommand, Panel, State, TimelineCommand, ViewCommand,
+};
 
 #[test]
 fn labels_go_out_in_every_form() {
@@ -183,4 +185,33 @@ fn a_layout_with_parts_that_cannot_be_is_used_as_far_as_it_can() {
     };
     state.lay_out(&endless);
     assert_eq!(state.camera, camera, "left as it was");
+}
+
+#[test]
+fn a_stretch_and_the_labels_of_a_class_go_out_as_clips() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), 2)]);
+    let range = Some((1.0, 2.5));
+    person.command(Command::Timeline(TimelineCommand::Range(range)));
+    let out = folder.path().join("part.bvh");
+    person.command(Command::File(FileCommand::ExportStretch(out.clone())));
+    let read = morec::files::open(&out).unwrap();
+    let whole = &takes()[0].clip;
+    let frames = (1.5 * whole.rate_hz).round() as usize;
+    assert!(read[0].clip.frames.abs_diff(frames) <= 1);
+    let out = folder.path().join("waves");
+    let class = "wave".to_owned();
+    person.command(Command::File(FileCommand::ExportClass(class, out.clone())));
+    assert!(person.state().notices.is_empty());
+    let labels = person.labels();
+    let waves = labels.iter().filter(|label| label.1 == "wave").count();
+    let files = std::fs::read_dir(&out).unwrap();
+    let files: Vec<_> = files.map(|file| file.unwrap().path()).collect();
+    assert_eq!(files.len(), waves);
+    assert!(out.join("ada_1_wave_1.bvh").exists(), "{files:?}");
+    // The motion is that of the label.
+    let label = takes()[0].labels.iter().find(|l| l.class == "wave");
+    let secs = label.unwrap().span.duration_secs();
+    let read = morec::files::open(&out.join("ada_1_wave_1.bvh")).unwrap();
+    assert!((read[0].clip.duration_secs() - secs).abs() < 0.1);
 }

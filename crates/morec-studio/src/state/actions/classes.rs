@@ -24,6 +24,8 @@ impl State {
                 self.keep_places(new);
             }
             ClassCommand::Rename { from, to } => self.rename_class(&from, to.trim()),
+            ClassCommand::Merge { from, into } => self.edit(Edit::MergeClass { from, into }),
+            ClassCommand::IsBackground(name) => self.edit(Edit::ClassIsBackground(name)),
             ClassCommand::Remove(name) => match self.classes.added.contains(&name) {
                 true => {
                     self.classes.added.retain(|n| *n != name);
@@ -98,7 +100,9 @@ impl State {
             return;
         }
         if self.classes.order.iter().any(|n| n == to) {
-            self.complain(format!("There is a class {to} already"));
+            self.complain(format!(
+                "There is a class {to} already: a right click on {from}, Merge into, makes one of both"
+            ));
             return;
         }
         // It keeps its place, its key and its colour.

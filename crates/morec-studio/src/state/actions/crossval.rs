@@ -26,6 +26,26 @@ impl State {
         }
     }
 
+    /// Moments of the list that is shown, by place.
+    pub fn listed_moments(&self) -> Vec<usize> {
+        let judged = self.train.judged.as_ref();
+        judged.map_or_else(Vec::new, |judged| match self.train.cell {
+            Some((row, column)) => judged.of_cell(row, column),
+            None => judged.mistakes(),
+        })
+    }
+
+    pub(in crate::state) fn step_moment(&mut self, by: i64) {
+        let listed = self.listed_moments();
+        let from = self.train.moment;
+        let from = from.and_then(|from| listed.iter().position(|at| *at == from));
+        let last = listed.len().saturating_sub(1);
+        let to = from.map_or(0, |from| from.saturating_add_signed(by as isize).min(last));
+        if let Some(&at) = listed.get(to) {
+            self.go_to_moment(at);
+        }
+    }
+
     /// Plays a moment in a loop, and offers to compare it.
     pub(in crate::state) fn go_to_moment(&mut self, at: usize) {
         let Some(judged) = &self.train.judged else {

@@ -283,6 +283,15 @@ impl State {
             FileCommand::ExportIndex(path) => self.export_index(&path),
             FileCommand::AskExportLabels(form) => self.ask = Some(Ask::ExportLabels(form)),
             FileCommand::AskExportClip => self.ask = self.shown_name().map(Ask::ExportClip),
+            FileCommand::AskExportStretch => {
+                self.ask = self.shown_name().map(Ask::ExportStretch);
+            }
+            FileCommand::AskExportClass(class) => self.ask = Some(Ask::ExportClass(class)),
+            FileCommand::ExportStretch(path) => match self.selected_stretch() {
+                Some((of, _)) => self.export(Export::Stretch(of), path),
+                None => self.say("select a label or a stretch first"),
+            },
+            FileCommand::ExportClass(class, path) => self.export(Export::Class(class), path),
             FileCommand::AskExportPage => self.ask = self.shown_name().map(Ask::ExportPage),
             FileCommand::ExportLabels(form, path) => self.export(Export::Labels(form), path),
             FileCommand::ExportClip(path) => {
@@ -404,6 +413,8 @@ fn export_line(store: &Store, has_index: bool, what: &Export, path: &Path) -> Op
     Some(match what {
         Export::Labels(form) => export.word(path).with("--form", form.name()),
         Export::Clip(id) => export.word(path).with("--motion", &clip(id)?.name),
+        // No command writes a part of a clip.
+        Export::Stretch(_) | Export::Class(_) => return None,
         Export::Page(id, _) => {
             let labels = export.word("labels.tsv").with("--clip", &clip(id)?.name);
             let play = ShownCommand::new("morec play").word(&clip(id)?.path);

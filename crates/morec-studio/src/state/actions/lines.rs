@@ -257,6 +257,12 @@ impl State {
                 ShownCommand::all(lines?.into_iter())?
             }
             Edit::RenameClass { from, to } => morec("db classes").with("--rename", from).word(to),
+            Edit::MergeClass { from, into } => {
+                let line = morec("db classes").with("--merge", from);
+                line.with("--into", into)
+            }
+            // Tags follow from what the classes of each clip are.
+            Edit::ClassIsBackground(_) => return None,
             Edit::RemoveClass(name) => morec("db classes").with("--forget", name),
             Edit::Describe { clips, update } => describe_line(db, snapshot, clips, update)?,
             Edit::Background { clips, on } => {

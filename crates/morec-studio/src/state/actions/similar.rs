@@ -6,6 +6,7 @@ use morec_db::search::Hit;
 use super::lines::ShownCommand;
 use crate::jobs::JobOutcome;
 use crate::jobs::similar::{self, Similar};
+use crate::state::classes::LIKELY;
 use crate::state::{Panel, SimilarCommand, State};
 use crate::store::Edit;
 use crate::stretch::Stretch;
@@ -29,6 +30,8 @@ impl State {
                 }
             }
             SimilarCommand::Label(at, class) => self.label_hit(at, class),
+            SimilarCommand::Alike(percent) => self.classes.alike = Some(percent),
+            SimilarCommand::LabelAll(class) => self.label_hits(&class),
             SimilarCommand::Close => self.classes.similar = None,
         }
     }
@@ -87,6 +90,31 @@ impl State {
         self.panel = Panel::Classes;
     }
 
+    /// Places of the hits that are labelled at once.
+    pub fn alike_at_once(&self) -> Vec<usize> {
+        let least = f64::from(self.classes.alike.unwrap_or(LIKELY)) / 100.0;
+        let similar = self.classes.similar.iter();
+        let hits = similar.flat_map(|similar| similar.hits.iter().enumerate());
+        hits.filter(|(_, hit)| f64::from(hit.score) >= least)
+            .map(|(at, _)| at)
+            .collect()
+    }
+
+    fn label_hits(&mut self, class: &str) {
+        let places = self.alike_at_once();
+        let Some(similar) = &mut self.classes.similar else {
+            return;
+        };
+        let new = places.iter().map(|at| labelled(&similar.hits[*at], class));
+        let new: Vec<NewSample> = new.collect();
+        for at in places.into_iter().rev() {
+            similar.hits.remove(at);
+        }
+        if !new.is_empty() {
+            self.edit(Edit::Label(new));
+        }
+    }
+
     fn label_hit(&mut self, at: usize, class: String) {
         let Some(similar) = &mut self.classes.similar else {
             return;
@@ -95,14 +123,19 @@ impl State {
             return;
         }
         let hit: Hit = similar.hits.remove(at);
-        self.edit(Edit::Label(vec![NewSample {
-            clip: hit.clip,
-            class,
-            start_secs: hit.span.start_secs,
-            stop_secs: hit.span.stop_secs,
-            whole_clip: false,
-            state: Judged::Accepted,
-            score: None,
-        }]));
+        self.edit(Edit::Label(vec![labelled(&hit, &class)]));
+    }
+}
+
+/// A hit as a label.
+fn labelled(hit: &Hit, class: &str) -> NewSample {
+    NewSample {
+        clip: hit.clip,
+        class: class.to_owned(),
+        start_secs: hit.span.start_secs,
+        stop_secs: hit.span.stop_secs,
+        whole_clip: false,
+        state: Judged::Accepted,
+        score: None,
     }
 }

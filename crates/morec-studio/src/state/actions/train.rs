@@ -38,6 +38,7 @@ impl State {
             TrainCommand::Judge => self.start_judging(self.train_settings()),
             TrainCommand::Cell(cell) => self.show_cell(cell),
             TrainCommand::Moment(at) => self.go_to_moment(at),
+            TrainCommand::StepMoment(by) => self.step_moment(by),
             TrainCommand::Keep(name) => {
                 let bytes = self.train.bytes.clone();
                 if !bytes.is_empty() {

@@ -1,0 +1,72 @@
+//! Small windows, and names in other scripts.
+
+use std::path::PathBuf;
+
+use egui::{Key, Modifiers, Rect, vec2};
+
+use super::{Person, made};
+use crate::fonts::Fonts;
+use crate::state::Panel;
+use crate::store::Edit;
+
+/// A control at the edge of each panel.
+const EDGES: [(Panel, &str); 5] = [
+    (Panel::Library, "Position"),
+    (Panel::Label, "Propose"),
+    (Panel::Classes, "Group cuts"),
+    (Panel::Train, "Start training"),
+    (Panel::Live, "Mark as background"),
+];
+const TOP: [&str; 9] = [
+    "File", "Library", "Label", "Classes", "Train", "Live", "Undo", "Redo", "Keys",
+];
+
+fn sized(width: f32, height: f32) -> (tempfile::TempDir, Person, Rect) {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), 2)]);
+    person.window.set_size(vec2(width, height));
+    person.frames(3);
+    let window = Rect::from_min_size(egui::Pos2::ZERO, vec2(width, height));
+    (folder, person, window)
+}
+
+#[test]
+fn half_of_a_full_screen_shows_each_panel_whole() {
+    let (_folder, mut person, window) = sized(960.0, 540.0);
+    for (panel, edge) in EDGES {
+        person.goes_to(panel);
+        person.frames(2);
+        for name in TOP.into_iter().chain([edge]) {
+            let at = person.place(name);
+            assert!(window.contains_rect(at), "{panel:?}: {name} at {at:?}");
+        }
+    }
+}
+
+/// Renames a class, with these files as fonts of the system.
+fn renamed(name: &str, files: Vec<PathBuf>) -> (tempfile::TempDir, Person) {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), 1)]);
+    person.window.state_mut().fonts = Fonts::of(files);
+    let (from, to) = ("wave".to_owned(), name.to_owned());
+    person.command(crate::state::Command::Edit(Edit::RenameClass { from, to }));
+    person.frames(3);
+    (folder, person)
+}
+
+#[test]
+fn a_name_that_no_font_can_draw_is_said_and_a_font_of_the_system_draws_what_it_has() {
+    let (_folder, mut person) = renamed("波", vec![PathBuf::from("no/such.ttf")]);
+    assert!(person.sees_part("No font of this computer has all letters of 波 (U+6CE2)"));
+    // It goes with the name.
+    person.key_with(Key::Z, Modifiers::COMMAND);
+    person.settle();
+    person.frames(3);
+    assert!(!person.sees_part("No font of this computer"));
+
+    let arabic = PathBuf::from("/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf");
+    let is_there = arabic.exists();
+    let (_folder, person) = renamed("موجة", vec![arabic]);
+    assert_eq!(person.can_draw("موجة"), is_there);
+    assert_eq!(person.sees_part("No font of this computer"), !is_there);
+}

@@ -1,0 +1,135 @@
+//! What is done to many labels at once: classes merged, classes that are background, hits of a search, lists gone through by keys.
+
+use egui::{Key, Modifiers};
+use morec_db::labels::SampleState as Judged;
+
+use super::{Person, made};
+use crate::state::{Command, LiveCommand, Panel, SimilarCommand, TimelineCommand};
+
+fn of_class(person: &Person, class: &str) -> usize {
+    let labels = person.labels();
+    labels.iter().filter(|label| label.1 == class).count()
+}
+
+#[test]
+fn a_class_is_merged_into_another_and_taken_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), 2)]);
+    let (waves, claps) = (of_class(&person, "wave"), of_class(&person, "clap"));
+    assert!(waves > 0 && claps > 0);
+    person.goes_to(Panel::Label);
+    person.right_click("Class wave");
+    person.click("Merge into … ⏵");
+    person.frames(3);
+    person.click("clap");
+    person.settle();
+    assert_eq!(of_class(&person, "clap"), waves + claps);
+    assert_eq!(of_class(&person, "wave"), 0);
+    let line = person.state().command_line.clone();
+    assert!(line.ends_with("--merge wave --into clap"), "{line}");
+    person.undo();
+    assert_eq!(of_class(&person, "wave"), waves);
+}
+
+#[test]
+fn a_class_that_is_background_loses_its_labels_and_marks_clips_of_nothing_else() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), 1)]);
+    let clips = |person: &Person| {
+        let snapshot = person.state().store.as_ref().unwrap().snapshot.clone();
+        let marked = snapshot.clips.iter().filter(|c| c.is_background());
+        marked.map(|c| c.name.clone()).collect::<Vec<_>>()
+    };
+    // Of ben's clip the whole is of no interest, and a part of ada's.
+    person.click("ben_1");
+    person.settle();
+    person.key(Key::Num4);
+    person.settle();
+    assert_eq!(of_class(&person, "gesture 1"), 1);
+    person.goes_to(Panel::Label);
+    person.click("Show ada_1");
+    person.settle();
+    let range = Some((0.1, 0.8));
+    person.command(Command::Timeline(TimelineCommand::Range(range)));
+    let class = "gesture 1".to_owned();
+    person.command(Command::Timeline(TimelineCommand::LabelRange(class)));
+    let others = person.labels().len() - of_class(&person, "gesture 1");
+    person.right_click("Class gesture 1");
+    person.click("It is background");
+    person.settle();
+    assert_eq!(clips(&person), ["ben_1"], "ada's has other labels");
+    assert_eq!(person.labels().len(), others);
+    person.undo();
+    assert!(clips(&person).is_empty());
+    assert_eq!(of_class(&person, "gesture 1"), 2);
+}
+
+#[test]
+fn all_hits_of_a_likeness_become_labels_in_one_step() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), 1)]);
+    person.goes_to(Panel::Label);
+    let wave = person.state().shown_samples().iter();
+    let wave = wave.filter(|s| s.state == Judged::Accepted);
+    let id = wave.map(|s| s.id).next();
+    person.command(Command::Timeline(TimelineCommand::Select {
+        id,
+        add: false,
+    }));
+    person.key(Key::F);
+    person.settle();
+    let labels = person.labels().len();
+    let similar = person.state().classes.similar.as_ref().unwrap();
+    let class = similar.class.clone().unwrap();
+    let all = similar.hits.len();
+    let scores: Vec<f32> = similar.hits.iter().map(|hit| hit.score).collect();
+    // Below the third nearest.
+    let percent = (100.0 * scores[2]).floor() as u8;
+    person.command(Command::Similar(SimilarCommand::Alike(percent)));
+    let meant = person.state().alike_at_once().len();
+    assert!((3..=all).contains(&meant));
+    person.click(&format!("All {meant} above are {class}"));
+    person.settle();
+    assert_eq!(person.labels().len(), labels + meant);
+    let left = person.state().classes.similar.as_ref().unwrap();
+    assert_eq!(left.hits.len(), all - meant);
+    person.undo();
+    assert_eq!(person.labels().len(), labels);
+}
+
+#[test]
+fn the_search_is_where_the_list_of_labelling_is() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), 1)]);
+    person.goes_to(Panel::Label);
+    person.key_with(Key::F, Modifiers::COMMAND);
+    person.frames(3);
+    person.window.event(egui::Event::Text("ben".to_owned()));
+    person.frames(3);
+    assert_eq!(person.state().panel, Panel::Label);
+    assert!(person.offers("Show ben_1") && !person.offers("Show ada_1"));
+}
+
+#[test]
+fn a_class_that_a_key_made_asks_for_its_name_live() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), 0)]);
+    person.goes_to(Panel::Live);
+    person.click("Start");
+    person.settle();
+    while person.state().live.now_secs() < 3.0 {
+        person.frames(1);
+    }
+    person.command(Command::Live(LiveCommand::Range(Some((1.0, 2.0)))));
+    assert!(!person.sees_part("What is gesture 1 called?"));
+    person.key(Key::Num1);
+    person.settle();
+    assert!(person.sees("What is gesture 1 called?"));
+    person.click("Name of gesture 1");
+    person.window.event(egui::Event::Text("nod".to_owned()));
+    person.frames(2);
+    person.key(Key::Enter);
+    person.settle();
+    assert_eq!(of_class(&person, "nod"), 1);
+    assert!(!person.sees_part("What is gesture"));
+}
