@@ -102,6 +102,7 @@ fn the_whole_job_and_then_again_by_hand() {
             &source,
             "--emit",
             "json:-",
+            "--tentative",
         ])
         .ok();
     let events: Vec<serde_json::Value> = told
