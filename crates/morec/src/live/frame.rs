@@ -67,7 +67,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// Positions of the joints that play roles in `rig`, which templates compare.
+    /// Positions of the role joints, which templates compare.
     pub fn key_pose(&self, rig: &Rig) -> KeyPose {
         let mut key = KeyPose::default();
         for (role, joint) in rig.roles.played() {
