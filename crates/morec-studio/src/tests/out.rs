@@ -212,6 +212,6 @@ fn a_stretch_and_the_labels_of_a_class_go_out_as_clips() {
     // The motion is that of the label.
     let label = takes()[0].labels.iter().find(|l| l.class == "wave");
     let secs = label.unwrap().span.duration_secs();
-    let read = morec::files::open(&out.join("ada_1_wave_1.bvh")).unwrap();
+    let read = morec::files::open(out.join("ada_1_wave_1.bvh")).unwrap();
     assert!((read[0].clip.duration_secs() - secs).abs() < 0.1);
 }
