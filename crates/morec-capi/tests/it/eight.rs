@@ -217,7 +217,7 @@ fn an_amc_finds_its_skeleton_and_a_source_without_a_body_is_refused() {
     // One arm is nobody.
     assert!(!mrStart());
     assert!(
-        last_error().contains("none of the bones"),
+        last_error().contains("no bone that the index uses"),
         "{}",
         last_error()
     );

@@ -180,7 +180,7 @@ fn two_sides_of_one_motion_teach_each_other_as_in_the_command() {
     person.goes_to(Panel::Train);
     person.click("Start training");
     person.settle();
-    assert!(person.sees_part("mirrored copies of 12 samples teach too"));
+    assert!(person.sees_part("mirrored copies of 12 samples are used too"));
 }
 
 /// Plays the first clip live until a moment.

@@ -35,7 +35,7 @@ pub enum StartError {
     #[error("no skeleton is known: one must come before the first frame")]
     NoSkeleton,
     /// The stream shows a performer of another kind than the index is of.
-    #[error("this index is of {index}; the stream shows {shown}")]
+    #[error("this index is of {index}; what is shown here is {shown}")]
     OtherProfile {
         /// What the index is of.
         index: &'static str,

@@ -375,7 +375,7 @@ mod tests {
         };
         let data = material.sort_out(clips()).unwrap();
         assert_eq!(names(&data.clips), ["taught", "resting", "both"]);
-        assert!(data.notes[0].starts_with("1 clips hold no sample of the classes"));
+        assert!(data.notes[0].starts_with("1 clips have no sample of the classes"));
         assert!(data.notes[0].ends_with("tested"), "{:?}", data.notes);
     }
 

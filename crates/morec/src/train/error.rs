@@ -6,7 +6,7 @@ use crate::templates::TemplateModelError;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum TrainError {
     /// There is no sample to learn from.
-    #[error("no samples: no label lies inside its clip")]
+    #[error("no sample to learn from: no label lies inside its clip")]
     NoSamples,
     /// Labelled clips of which none shows a body.
     #[error(
