@@ -70,13 +70,10 @@ fn other_files_are_plain_errors() {
 fn a_schema_of_another_hand_is_refused_by_name() {
     let delete = "AFTER UPDATE ON clips BEGIN DELETE FROM samples; END";
     for (sql, named) in [
-        (
-            format!("CREATE TRIGGER gone {delete}"),
-            r#"the trigger "gone""#,
-        ),
+        (format!("CREATE TRIGGER gone {delete}"), r#"trigger "gone""#),
         (
             "CREATE VIEW people AS SELECT subject FROM clips".into(),
-            r#"the view "people""#,
+            r#"view "people""#,
         ),
         (
             "DROP TRIGGER clips_moved".into(),

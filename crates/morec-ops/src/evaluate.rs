@@ -254,7 +254,7 @@ mod tests {
         let [absent, unlabelled] = plain.notes.as_slice() else {
             panic!("{:?}", plain.notes);
         };
-        assert!(absent.contains("not there: z"), "{absent}");
+        assert!(absent.contains("unknown clips: z"), "{absent}");
         assert!(
             unlabelled.starts_with("1 clips have no label"),
             "{unlabelled}"

@@ -170,7 +170,7 @@ mod tests {
             let bytes = index.to_bytes().unwrap();
             let index = MotionIndex::from_bytes(&bytes).unwrap();
             assert_eq!(heading(&index), HeadingLine::Shoulders);
-            let said = format!("{of} clips that teach show no hips");
+            let said = format!("{of} training clips show no hips");
             let note = report.notes.iter().find(|note| note.starts_with(&said));
             assert!(note.unwrap().ends_with("right_forearm, head"), "{note:?}");
             assert_eq!(index.heading_doubt(shown), None);

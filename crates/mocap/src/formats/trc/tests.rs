@@ -76,7 +76,7 @@ fn disagreements_are_said() {
     }
     let (clip, said) = load(&TEXT.replace("60.00\t60.00\t3", "100\t100\t3"));
     assert!(
-        clip.rate_hz > 58.0 && clip.rate_hz < 62.0 && said.contains("100 Hz is said"),
+        clip.rate_hz > 58.0 && clip.rate_hz < 62.0 && said.contains("100 Hz is stated"),
         "{said}"
     );
 }
