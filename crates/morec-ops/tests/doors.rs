@@ -62,10 +62,13 @@ fn python_default(signature: &str, name: &str) -> Option<String> {
     Some(default.trim_end_matches(',').to_owned())
 }
 
+/// How a door writes an option with its value, or why it cannot.
+type Spelling = Box<dyn Fn(&str, &Value) -> Result<String, String>>;
+
 /// A door, and what it calls an option; or why it has none of the name.
 struct Door {
     name: &'static str,
-    spelling: Box<dyn Fn(&str, &Value) -> Result<String, String>>,
+    spelling: Spelling,
     /// Options that are said otherwise there.
     otherwise: &'static [(&'static str, &'static str)],
 }

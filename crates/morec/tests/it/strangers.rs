@@ -105,7 +105,7 @@ fn what_is_named_as_background_is_not_reported_again_where_few_classes_are_taugh
     let right = |index: &MotionIndex| {
         let found = found(index, 0);
         let labels = takes[0].labels.iter().filter(|label| {
-            let mut named = found.iter().map(|d| d.clone().named(&index.model));
+            let mut named = found.iter().map(|d| d.named(&index.model));
             named.any(|d| d.class == label.class && d.span.overlap_secs(label.span) > 0.5)
         });
         labels.count()
