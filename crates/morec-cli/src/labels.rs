@@ -40,7 +40,7 @@ pub struct LabelArgs {
     /// Such as that of a video.
     #[arg(hide_short_help = true, long, value_name = "HZ", value_parser = files::rate)]
     pub label_rate: Option<f64>,
-    /// Number of the first frame in labels: 0, or as in the C3D file
+    /// Number of the first frame in labels: 0, or `file` for that of the C3D file
     #[arg(
         long,
         hide_short_help = true,

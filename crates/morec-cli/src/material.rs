@@ -44,7 +44,7 @@ pub struct MaterialArgs {
     /// Or give the labels a column person.
     #[arg(long, value_name = "TSV")]
     pub people: Option<PathBuf>,
-    /// Background clips without any class; they set the detection threshold
+    /// Background clips: motion of none of the classes; sets the threshold
     ///
     /// Clips, folders, or file stems of --clips.
     #[arg(long, value_name = "DIR|CLIP", num_args = 1..)]

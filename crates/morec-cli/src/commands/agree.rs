@@ -26,7 +26,7 @@ use crate::table::TextTable;
 /// Compares two files of labels over the clips that both name: Cohen's kappa by units of time, event agreement beyond chance (events
 /// of the same class that overlap by half), and how far apart the starts and stops of matching events lie, class by class.
 ///
-/// Kappa depends on the length of the unit, which is therefore printed. LabelAgreement of events by chance is the mean F1 with the second
+/// Kappa depends on the length of the unit, which is therefore printed. Agreement of events by chance is the mean F1 with the second
 /// annotator's events moved by random times.
 #[derive(clap::Args)]
 #[command(after_help = "\

@@ -16,7 +16,7 @@ use crate::rng::Rng;
 /// Draws by which agreement by chance is estimated.
 const CHANCE_DRAWS: usize = 200;
 
-/// LabelAgreement of two annotators, A and B, over streams that both have labelled.
+/// Agreement of two annotators, A and B, over streams that both have labelled.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LabelAgreement {
     /// Streams that were compared.
@@ -25,9 +25,9 @@ pub struct LabelAgreement {
     pub secs: f64,
     /// Length of a unit of time, seconds: kappa depends on it.
     pub unit_secs: f64,
-    /// LabelAgreement by units of time, over all classes and "no label". Of labels that overlap, the one that started last counts.
+    /// Agreement by units of time, over all classes and "no label". Of labels that overlap, the one that started last counts.
     pub time: Kappa,
-    /// LabelAgreement by events, over all classes.
+    /// Agreement by events, over all classes.
     pub events: EventAgreement,
     /// Each class of either annotator, by name.
     pub classes: Vec<ClassAgreement>,
@@ -71,7 +71,7 @@ pub struct EventAgreement {
     pub stop_p90_secs: Option<f64>,
 }
 
-/// LabelAgreement about one class.
+/// Agreement about one class.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ClassAgreement {
     /// Its name.

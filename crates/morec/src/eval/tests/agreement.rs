@@ -1,4 +1,4 @@
-//! LabelAgreement of two annotators, against counts made by hand and against chance itself.
+//! Agreement of two annotators, against counts made by hand and against chance itself.
 
 use super::*;
 
