@@ -125,6 +125,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 fn lengths_of_labels(files: &[(&PathBuf, &Labels)]) -> Result<BTreeMap<String, ClipLength>> {
     /// Places to a second: finer than any labels.
     const RATE_HZ: f64 = 1000.0;
+    let endings_count = names_with_endings(files);
     let mut lengths = BTreeMap::new();
     for (path, labels) in files {
         for row in &labels.rows {
@@ -135,8 +136,14 @@ fn lengths_of_labels(files: &[(&PathBuf, &Labels)]) -> Result<BTreeMap<String, C
                     row.line
                 );
             };
-            let name = labels_clip(&row.clip);
-            let length = lengths.entry(name).or_insert(ClipLength {
+            // The annotators may have written folders and endings differently.
+            let (base, stem) = base_and_stem(&row.clip);
+            let name = if endings_count.contains(stem) {
+                base
+            } else {
+                stem
+            };
+            let length = lengths.entry(name.to_owned()).or_insert(ClipLength {
                 frames: 0,
                 rate_hz: RATE_HZ,
             });
@@ -148,9 +155,27 @@ fn lengths_of_labels(files: &[(&PathBuf, &Labels)]) -> Result<BTreeMap<String, C
     Ok(lengths)
 }
 
-/// The clip's name without folders and ending, as both annotators may have written it differently.
-fn labels_clip(name: &str) -> String {
-    names_of_clip(name).last().unwrap_or(name).to_owned()
+/// Stems of clips whose ending belongs to the name, because one file names two clips that differ in it alone: `rec` of `rec.1` and `rec.2`.
+fn names_with_endings<'l>(files: &[(&PathBuf, &'l Labels)]) -> BTreeSet<&'l str> {
+    let mut found = BTreeSet::new();
+    for (_, labels) in files {
+        let mut names: BTreeMap<&str, &str> = BTreeMap::new();
+        for row in &labels.rows {
+            let (base, stem) = base_and_stem(&row.clip);
+            if base != stem && *names.entry(stem).or_insert(base) != base {
+                found.insert(stem);
+            }
+        }
+    }
+    found
+}
+
+/// A clip's name without folders, and without the ending too.
+fn base_and_stem(name: &str) -> (&str, &str) {
+    let [.., base, stem] = names_of_clip(name).collect::<Vec<_>>()[..] else {
+        return (name, name);
+    };
+    (base, stem)
 }
 
 /// The clips that both name; the labels of others are left out, which is printed.

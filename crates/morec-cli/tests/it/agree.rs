@@ -48,3 +48,21 @@ fn what_cannot_be_compared_is_named() {
         .morec(&["agree", "ann.tsv", "frames.tsv", "--label-rate", "10"])
         .ok();
 }
+
+#[test]
+fn recordings_that_differ_in_their_ending_are_two() {
+    let of = |first: &str, second: &str| {
+        format!("clip\tclass\tstart_secs\tstop_secs\nrec.1\t{first}\t0\t4\nrec.2\t{second}\t0\t4\n")
+    };
+    let files = [
+        ("ann.tsv", of("walk", "jump")),
+        ("ben.tsv", of("jump", "walk")),
+    ];
+    let files = files.each_ref().map(|(name, text)| (*name, text.as_str()));
+    let ran = Folder::with(&files).morec(&["agree", "ann.tsv", "ben.tsv", "--json"]);
+    let said: Value = serde_json::from_str(&ran.ok()).unwrap();
+    assert_eq!(
+        (&said["clips"], &said["events"]["matched"]),
+        (&2.into(), &0.into())
+    );
+}
