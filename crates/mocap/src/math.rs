@@ -128,6 +128,14 @@ pub fn same_hemisphere(previous: &Quat, q: Quat) -> Quat {
     }
 }
 
+/// The value of `values` nearest to this share of their order, 0 for the least and 1 for the largest; 0 of none. O(n log n).
+#[cfg(feature = "formats")]
+pub(crate) fn quantile(mut values: Vec<f64>, share: f64) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let at = (values.len().saturating_sub(1)) as f64 * share;
+    values.get(at.round() as usize).copied().unwrap_or(0.0)
+}
+
 /// Spherical interpolation along the shorter arc; exactly `a` at 0 and exactly `b` at 1.
 pub fn slerp(a: &Quat, b: &Quat, t: f64) -> Quat {
     if t <= 0.0 {

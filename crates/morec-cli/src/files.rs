@@ -20,8 +20,8 @@ use crate::output;
 pub struct ReadArgs {
     /// ASF skeleton of AMC clips, or OSIM model of MOT and STO clips
     ///
-    /// By default it is searched for beside the clip and in the folders above: of the same stem (a.asf for a.amc), of the
-    /// subject (13.asf for 13_29.amc), or one that fits.
+    /// By default, the file is searched for beside the clip and in the folders above: first the same stem (a.asf for
+    /// a.amc), then the subject's (13.asf for 13_29.amc), then the one that fits the motion best.
     #[arg(hide_short_help = true, long, value_name = "ASF")]
     pub skeleton: Option<PathBuf>,
     /// Frame rate, instead of the file's (AMC states none: 120 Hz)

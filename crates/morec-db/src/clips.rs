@@ -5,7 +5,7 @@ use rusqlite::{Connection, OptionalExtension, Row, params};
 use crate::history::counted;
 use crate::{DbError, MotionDb, names};
 
-/// The tag of clips that are background: training learns from them what is none of the classes.
+/// The tag of background clips, which train as motion outside all classes.
 pub const BACKGROUND: &str = "background";
 
 /// A clip's number in its database.

@@ -21,7 +21,7 @@ struct MorecExtension;
 #[gdextension]
 unsafe impl ExtensionLibrary for MorecExtension {}
 
-/// The expected performer: whoever it is, the person who taught, or anyone.
+/// The expected performer.
 #[derive(GodotConvert, Var, Export, Default, Clone, Copy)]
 #[godot(via = GString)]
 pub enum ExpectedPerformer {

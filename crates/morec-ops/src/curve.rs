@@ -1,6 +1,6 @@
 //! What more samples, and more people, are worth.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use morec::crossval::{CrossvalData, CrossvalError, CrossvalOptions, TaughtLimit, crossval};
 use morec::eval::{Evaluation, MEASURED_OVERLAP};
@@ -150,7 +150,7 @@ fn points_of(data: &CrossvalData<'_>) -> Vec<CurvePoint> {
     for sample in data.samples {
         *samples.entry(&sample.class).or_default() += 1;
     }
-    let people: std::collections::BTreeSet<&str> = data
+    let people: BTreeSet<&str> = data
         .clips
         .iter()
         .filter_map(|clip| clip.person.as_deref())
@@ -173,16 +173,11 @@ fn points_of(data: &CrossvalData<'_>) -> Vec<CurvePoint> {
         .collect()
 }
 
-/// Drops points without measures, and the last numbers of samples and of people if they are already all that folds have.
+/// Drops points without measures, and points that measure what all samples and people do: the folds have no more.
 fn drop_what_is_all(points: &mut Vec<CurvePoint>) {
-    let all = points.last().and_then(|all| all.draws.first().cloned());
-    let last = points.len().saturating_sub(1);
-    let mut place = 0;
-    points.retain(|point| {
-        place += 1;
-        let is_all = place <= last && point.draws.iter().all(|draw| Some(draw) == all.as_ref());
-        !is_all && !point.draws.is_empty()
-    });
+    let Some(all) = points.pop() else { return };
+    points.retain(|point| point.draws.iter().any(|draw| *draw != all.draws[0]));
+    points.push(all);
 }
 
 /// Sentences on what the last steps brought.
@@ -192,23 +187,19 @@ fn advice(points: &[CurvePoint]) -> Vec<String> {
         return Vec::new();
     };
     let mut advice = Vec::new();
-    let step = |of: fn(&CurvePoint) -> Option<usize>, what: &str| {
+    let step = |of: fn(&CurvePoint) -> Option<usize>, [one, several]: [&str; 2]| {
         let last = before.iter().rev().find(|point| of(point).is_some())?;
-        let (from, to) = (f1(last)?, f1(all)?);
-        let number = of(last)?;
-        let plural = if number == 1 { "" } else { "s" };
-        Some((
-            last,
-            format!(
-                "from at most {number} {what}{plural} to all, F1 of events goes from {from:.3} to {to:.3}"
-            ),
-        ))
+        let (number, from, to) = (of(last)?, f1(last)?, f1(all)?);
+        let what = if number == 1 { one } else { several };
+        let sentence = format!(
+            "from at most {number} {what} to all, F1 of events goes from {from:.3} to {to:.3}"
+        );
+        Some((last, sentence))
     };
-    let by_samples = step(|point| point.samples, "sample");
-    let by_people = step(|point| point.people, "person");
-    for (_, sentence) in by_samples.iter().chain(&by_people) {
-        advice.push(sentence.replace("persons", "people"));
-    }
+    let by_samples = step(|point| point.samples, ["sample", "samples"]);
+    let by_people = step(|point| point.people, ["person", "people"]);
+    let steps = by_samples.iter().chain(&by_people);
+    advice.extend(steps.map(|(_, sentence)| sentence.clone()));
     let classes = all
         .draws
         .iter()
@@ -225,7 +216,7 @@ fn advice(points: &[CurvePoint]) -> Vec<String> {
             .filter(|most| gain(most) > 0.0)
         {
             advice.push(format!(
-                "{} gains most by them: {:.0} % more of its samples are found",
+                "{} gains most by more samples: {:.0} % more of its samples are found",
                 most.0,
                 100.0 * gain(most)
             ));
@@ -290,7 +281,7 @@ mod tests {
             "from at most 2 samples to all, F1 of events goes from 0.600 to 0.700"
         );
         assert!(
-            advice[1].starts_with("jump gains most by them: 40 %"),
+            advice[1].starts_with("jump gains most by more samples: 40 %"),
             "{advice:?}"
         );
         assert!(

@@ -3,7 +3,7 @@
 use super::body::BodyMeasures;
 use super::options::Stated;
 use crate::clip::Clip;
-use crate::math::{Axis, Quat, Vec3, portable, same_hemisphere};
+use crate::math::{Axis, Quat, Vec3, portable, quantile, same_hemisphere};
 use crate::signed_axis::SignedAxis;
 
 /// The axis that the format states, unless the body clearly stands along another; else the one the body tells.
@@ -147,12 +147,6 @@ fn is_on_floor(body: &BodyMeasures, up: SignedAxis) -> bool {
     !lowest.is_empty()
         && quantile(lowest.clone(), 0.1) > BELOW * size
         && quantile(lowest, 0.9) < ABOVE * size
-}
-
-fn quantile(mut values: Vec<f64>, share: f64) -> f64 {
-    values.sort_by(f64::total_cmp);
-    let at = (values.len().saturating_sub(1)) as f64 * share;
-    values.get(at.round() as usize).copied().unwrap_or(0.0)
 }
 
 /// The one axis, Y or Z, along which no point of a clip of points is ever below the floor of the room.

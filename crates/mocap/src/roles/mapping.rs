@@ -22,7 +22,7 @@ use super::{Role, RoleMap};
 use crate::clip::Skeleton;
 use crate::parse_error::{self, ParseError};
 
-/// The lines of a mapping file: each role at most once. As a value, a table from roles to joints (`null` for nobody), or the file's text.
+/// The lines of a mapping file: each role at most once. Serialised as a table from roles to joints (`null`: no joint has the role); the text of a file is read too.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(try_from = "MappingValue", into = "MappingValue")]
 pub struct Mapping {

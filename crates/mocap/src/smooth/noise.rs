@@ -2,7 +2,7 @@
 
 use super::SmoothParams;
 use crate::clip::Clip;
-use crate::math::{Quat, Vec3, same_hemisphere};
+use crate::math::{Quat, Vec3, quantile, same_hemisphere};
 
 /// What noise of variance 1 leaves in a squared fourth difference: the squares of 1 −4 6 −4 1 (Rice, *Bandwidth choice for nonparametric
 /// regression*, 1984).
@@ -74,15 +74,6 @@ fn deviation(values: &[[f64; 4]]) -> f64 {
 fn third_quartile(mut deviations: Vec<f64>) -> f64 {
     deviations.retain(|deviation| *deviation > 0.0);
     quantile(deviations, JOINT_SHARE)
-}
-
-fn quantile(mut values: Vec<f64>, share: f64) -> f64 {
-    values.sort_by(f64::total_cmp);
-    let place = (share * values.len() as f64) as usize;
-    values
-        .get(place.min(values.len().saturating_sub(1)))
-        .copied()
-        .unwrap_or(0.0)
 }
 
 #[cfg(test)]

@@ -35,7 +35,7 @@ pub struct Args {
     listen: Address,
     /// Output: .bvh, .jsonl (lines of JSON) or .mdb (a database)
     ///
-    /// Takes of a database are also kept beside it. Several takes are numbered.
+    /// Several takes are numbered. With a database, each take is also written to a file beside it.
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
     /// Tag of the takes in a database; can be repeated

@@ -23,8 +23,8 @@ use report::{CompressionReport, CompressionResult};
 
 /// Smooth clips into keyframes and Bézier curves
 ///
-/// Each channel (the rotation of a joint, or the position of one that moves in its parent's frame) becomes cubic Bézier
-/// curves, fitted by least squares and split until they are within the thresholds everywhere. Noise finer than that
+/// Cubic Bézier curves replace each channel: the rotation of a joint, or the position of a joint that moves in its
+/// parent's frame. They are fitted by least squares and split until they are within the thresholds everywhere. Noise finer than that
 /// disappears, and the curves can be sampled at any rate.
 ///
 /// Writes sampled BVH, or .mclip, the stored form, which every command reads. Prints sizes and errors: values are the

@@ -113,17 +113,18 @@ fn sorted_events<'p>(
     Ok(events)
 }
 
-/// The clip that an observation is of: the known clip that its name or its media file names, or its name.
+/// The clip of an observation: its name or one of its media files, if that is a known clip, else its name.
 fn clip_of<'p>(id: &'p str, observation: &'p Value, context: &LabelContext<'p>) -> &'p str {
     let files = observation["file"]
         .as_object()
         .into_iter()
         .flat_map(Map::values);
-    let mut media = files
+    let media = files
         .flat_map(|files| files.as_array().into_iter().flatten())
         .filter_map(Value::as_str);
-    let named = std::iter::once(id).chain(media.by_ref());
-    let known = named.into_iter().find(|name| context.knows(name));
+    let known = std::iter::once(id)
+        .chain(media)
+        .find(|name| context.knows(name));
     context.clip.or(known).unwrap_or(id)
 }
 

@@ -167,8 +167,8 @@ impl MotionDb {
         })
     }
 
-    /// Says that what a class shows is none of the classes: its samples are forgotten, and clips that hold accepted samples of it alone are
-    /// tagged as [background](BACKGROUND). Gives how many clips were tagged.
+    /// Turns a class into background: removes the class with its samples, and tags as [background](BACKGROUND) the clips whose accepted
+    /// samples are all of it. Returns the number of tagged clips.
     ///
     /// # Errors
     /// There is no such class.

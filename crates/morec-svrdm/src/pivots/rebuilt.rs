@@ -37,7 +37,7 @@ pub fn clip_of_pose_rows(
     let mut pivots = vec![Quat::identity(); set.len()];
     for frame in 0..clip.frames {
         let place = frame as f64 / clip.rate_hz * params.rate_hz;
-        let turned = |pivot: usize| turned(rows, place, pivot);
+        let turns: Vec<Option<Quat>> = (0..set.len()).map(|p| turned(rows, place, p)).collect();
         let locals = &mut rebuilt.rotations[frame * joints.len()..][..joints.len()];
         for (joint, of) in joints.iter().enumerate() {
             let above = of.parent.map_or(Quat::identity(), |parent| world[parent]);
@@ -45,11 +45,11 @@ pub fn clip_of_pose_rows(
             if map.joint(0) == Some(joint) {
                 pivots[0] = world[joint];
                 for pivot in 1..set.len() {
-                    let by = turned(pivot).unwrap_or_else(Quat::identity);
-                    pivots[pivot] = pivots[set.parent(pivot)] * by;
+                    let turn = turns[pivot].unwrap_or_else(Quat::identity);
+                    pivots[pivot] = pivots[set.parent(pivot)] * turn;
                 }
             }
-            if let Some(pivot) = pivot_of[joint].filter(|pivot| turned(*pivot).is_some()) {
+            if let Some(pivot) = pivot_of[joint].filter(|pivot| turns[*pivot].is_some()) {
                 world[joint] = pivots[pivot];
                 locals[joint] = above.conjugate() * world[joint];
             }

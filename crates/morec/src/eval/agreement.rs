@@ -1,6 +1,6 @@
 //! How far two annotators of the same streams agree.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use serde::Serialize;
 
@@ -8,7 +8,7 @@ use super::figures::{quantile, share};
 use super::pairs::{OverlapScore, pair};
 use super::{
     Boundaries, ClipDetection, EvalError, EvaluatedStream, GroundTruth, MEASURED_OVERLAP,
-    StreamInfo, streams, timing,
+    StreamInfo, all_classes, streams, timing,
 };
 use crate::TimeSpan;
 use crate::rng::Rng;
@@ -109,10 +109,7 @@ impl LabelAgreement {
         assert!(unit_secs > 0.0, "a unit of time has a length");
         let b: Vec<ClipDetection> = b.iter().map(ClipDetection::from).collect();
         let streams = streams(infos, a, &b)?;
-        let classes: BTreeSet<&str> = (a.iter().map(|label| label.class.as_str()))
-            .chain(b.iter().map(|label| label.class.as_str()))
-            .collect();
-        let classes: Vec<&str> = classes.into_iter().collect();
+        let classes: Vec<&str> = all_classes(&streams).into_iter().collect();
         let units = UnitLabels::of(&streams, &classes, unit_secs);
         let of_class = |(place, class): (usize, &&str)| {
             let of = only(&streams, class);
@@ -180,7 +177,7 @@ impl EventAgreement {
     }
 }
 
-/// Pairs after B's events were moved along each stream by a time of their own.
+/// Number of pairs after the events of B were moved, in each stream by one random time.
 fn matched_by_chance(streams: &[EvaluatedStream<'_>], rng: &mut Rng) -> usize {
     let mut matched = 0;
     for stream in streams {
@@ -209,11 +206,11 @@ fn beyond_chance(observed: Option<f64>, chance: Option<f64>) -> Option<f64> {
     (chance < 1.0).then(|| (observed - chance) / (1.0 - chance))
 }
 
-/// Both annotators' labels of each unit of time, counted.
+/// Counts of units of time by both annotators' labels.
 struct UnitLabels {
     /// By the label of A and of B; the last is no label.
     counts: Vec<Vec<usize>>,
-    /// For each class: units that A, that B, and that both give it, of labels that overlap every one.
+    /// For each class: units that A gives it, that B gives it, and that both do. Labels that overlap all count.
     given: Vec<[usize; 3]>,
     units: usize,
 }

@@ -20,8 +20,8 @@ use crate::table::TextTable;
 ///
 /// Searches all clips for motions like the accepted samples and keeps the hits as proposals with their probability.
 /// Accept the sure ones in bulk, check the doubtful ones singly: accepted ones train the next round, rejected ones
-/// count against similar motions and are not proposed again. Proposals that nobody judged are replaced; those of `morec
-/// group --name-as` and of files stay.
+/// count against similar motions and are not proposed again. Unjudged proposals of earlier calls are replaced;
+/// those of `morec group --name-as` and of files stay.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
