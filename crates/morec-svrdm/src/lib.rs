@@ -11,6 +11,22 @@
 //! | [`svrdm`] | the recogniser: stages from rows to detections | §§3.7, 4.6 |
 //! | `train_tree` (feature `train`) | its training: from feature vectors to a tree of machines | §§3.7, 4.5 |
 //!
+//! # Terms
+//!
+//! | term | meaning |
+//! |---|---|
+//! | pivot | a joint whose rotation counts, relative to its parent pivot |
+//! | pose row | the pivots' quaternions at one frame of the model's rate, 120 a second |
+//! | dimension | a number of a reduced pose row (principal component) |
+//! | chunk | 16 rows of a stream at 120 Hz, the step of the recogniser |
+//! | window | a run of 4 to 20 chunks that may be a motion |
+//! | feature vector | describes a window to the tree: the first eigenvectors (directions) of its `AᵀA`, joined |
+//! | motion profile | a window's or sample's rows projected on its first direction (the thesis's "motion vector") |
+//! | cell | one window's class and confidence |
+//! | branch, side | a node of the tree that separates two sets of classes, its sides; a leaf is one class |
+//! | machine | a function that is about 1 at samples of its side and small elsewhere |
+//! | exemplar | a training vector on the surface of a side's enclosing sphere |
+//!
 //! # Notation
 //!
 //! | sign | is |
