@@ -32,7 +32,7 @@ pub struct Skeleton {
     "joint {joint} ({name}) names joint {parent} as its parent; parents must come before their children"
 )]
 pub struct OrderError {
-    /// The offending joint.
+    /// Index of the joint at fault.
     pub joint: usize,
     /// Name of the clip.
     pub name: String,
@@ -112,7 +112,7 @@ impl Skeleton {
 /// A joint whose position in its parent's frame changes over time (a root, nearly always).
 #[derive(Debug, Clone, PartialEq)]
 pub struct JointTrack {
-    /// The joint.
+    /// Index of the joint in the skeleton.
     pub joint: usize,
     /// Its position in its parent's frame (in the world's, for a root), one for each frame, in the clip's
     /// length unit. Replaces [`Joint::offset`].
@@ -124,7 +124,7 @@ pub struct JointTrack {
 pub struct Gap {
     /// The joint that stands for the point.
     pub joint: usize,
-    /// The frames.
+    /// Frames of the clip, from 0, the stop excluded.
     pub frames: Span,
 }
 
@@ -147,7 +147,7 @@ pub struct Points {
 pub struct Clip {
     /// Name of the clip: its file's stem, by default.
     pub name: String,
-    /// The joints.
+    /// Joints, their parents and offsets.
     pub skeleton: Skeleton,
     /// Frames a second.
     pub rate_hz: f64,

@@ -35,7 +35,7 @@ fn learn(chance: &mut Chance, bit: bool) {
     }
 }
 
-/// The writing side.
+/// Range coder that writes bits with given probabilities.
 pub struct Writer {
     low: u64,
     range: u32,
@@ -120,7 +120,7 @@ impl Coder for Writer {
     }
 }
 
-/// The reading side.
+/// Reads what [`Writer`] wrote, with the same probabilities.
 pub struct Reader<'a> {
     bytes: &'a [u8],
     at: usize,

@@ -92,7 +92,7 @@ impl Axis {
         }
     }
 
-    /// 0, 1 or 2.
+    /// Index of the coordinate: 0 for x, 1 for y, 2 for z.
     pub fn index(self) -> usize {
         self as usize
     }

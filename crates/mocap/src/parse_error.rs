@@ -6,7 +6,7 @@ use std::fmt;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Place {
-    /// The file as a whole.
+    /// No place within the file.
     File,
     /// A line of a text file, from 1.
     Line(u64),
@@ -79,7 +79,7 @@ pub fn shortened(text: &str) -> std::borrow::Cow<'_, str> {
 /// Something that was repaired or looks wrong, in a file that was read all the same.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
 pub struct Warning {
-    /// Its place.
+    /// Line, byte or other place of the fault.
     pub at: Place,
     /// Fault and repair, in a sentence.
     pub text: String,

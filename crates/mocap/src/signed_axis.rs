@@ -9,7 +9,7 @@ use crate::math::{Axis, Quat, Vec3};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
 #[serde(try_from = "String")]
 pub struct SignedAxis {
-    /// The axis.
+    /// The axis without its direction.
     pub axis: Axis,
     /// Against its direction.
     pub negative: bool,
@@ -22,7 +22,7 @@ impl SignedAxis {
         negative: false,
     };
 
-    /// The unit vector.
+    /// The direction, of length 1.
     pub fn unit(self) -> Vec3 {
         let unit = self.axis.unit().into_inner();
         if self.negative { -unit } else { unit }

@@ -49,7 +49,7 @@ impl TimeSpan {
         self.stop_secs - self.start_secs
     }
 
-    /// The moment halfway.
+    /// Half-way between start and stop, seconds.
     pub fn middle_secs(self) -> f64 {
         0.5 * (self.start_secs + self.stop_secs)
     }

@@ -41,7 +41,7 @@ pub struct MorecFrame {
     pub rotations: *const f64,
     /// A `MorecSpace`.
     pub space: i32,
-    /// 0.
+    /// Must be 0.
     pub reserved: u32,
 }
 

@@ -86,7 +86,7 @@ impl Handle for MorecRecognizer {
     }
 }
 
-/// A handle for `of`.
+/// Puts `of` into the table; the handle is its number there.
 pub(crate) fn give<H: Handle>(of: H::Of) -> Result<*mut H, CallError> {
     let mut table = TABLE.write().unwrap_or_else(PoisonError::into_inner);
     let number = table

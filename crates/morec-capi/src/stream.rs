@@ -45,7 +45,7 @@ struct StreamCounts {
     suppressed: AtomicU64,
 }
 
-/// Status of a stream.
+/// Counts since the stream began.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct StreamStatus {
     pub(crate) frames: u64,
@@ -165,7 +165,6 @@ impl Stream {
         Ok(taken)
     }
 
-    /// Its status.
     pub(crate) fn status(&self) -> StreamStatus {
         let counts = &self.counts;
         StreamStatus {

@@ -46,7 +46,6 @@ pub struct PosedClip {
 
 /// [`PoseArgs`], read and checked.
 pub struct PoseReader<'a> {
-    /// The pivots.
     pub set: PivotSet,
     /// Parameters of pose rows.
     pub params: PoseParams,

@@ -23,15 +23,15 @@ pub enum DbError {
         "{path}: expected a motion database, found an SQLite file of another program (application id {found:#x})"
     )]
     Foreign {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// Its application id.
+        /// The application id in its header.
         found: i32,
     },
     /// The file is marked as a motion database, but its tables, triggers or views are not those of one.
     #[error("{}: expected the schema of a motion database, found {found}", path.display())]
     Altered {
-        /// The file.
+        /// Path of the database.
         path: PathBuf,
         /// What is there and should not be, or the other way round.
         found: String,
@@ -41,9 +41,9 @@ pub enum DbError {
         "{path}: schema {found} is newer than this program knows ({known}); a newer morec reads it"
     )]
     Newer {
-        /// The file.
+        /// Path of the database.
         path: PathBuf,
-        /// Its schema.
+        /// Version of its schema.
         found: i32,
         /// The newest schema known here.
         known: i32,
@@ -51,11 +51,11 @@ pub enum DbError {
     /// The file was written by an older version and is open for reading only.
     #[error("{path}: schema {found} must be brought to {known} first: open it once for writing")]
     Older {
-        /// The file.
+        /// Path of the database.
         path: PathBuf,
-        /// Its schema.
+        /// Version of its schema.
         found: i32,
-        /// The schema needed.
+        /// Version of the schema that is needed.
         known: i32,
     },
     /// The file may not be written.
@@ -81,7 +81,7 @@ pub enum DbError {
     Unknown {
         /// Of what: clip, class, edit.
         kind: &'static str,
-        /// The name.
+        /// The name asked for.
         name: String,
         /// Names that exist, after a semicolon; may be empty.
         hint: String,

@@ -28,7 +28,7 @@ const SHARED_MEMORY: usize = 2 << 30;
 pub enum ImportOutcome {
     /// Its clips are in the database now.
     Imported {
-        /// Their names.
+        /// Names of the new clips.
         clips: Vec<String>,
         /// Repairs and doubts.
         warnings: Vec<String>,
@@ -54,7 +54,7 @@ pub struct Refused {
 /// Outcomes of all files, in their order.
 #[derive(Debug, Clone, PartialEq, Default, serde::Serialize)]
 pub struct ImportLog {
-    /// Path and outcome.
+    /// Each path with what became of it.
     pub files: Vec<(PathBuf, ImportOutcome)>,
     /// True if it was cancelled: files that are not named were not looked at.
     pub cancelled: bool,
@@ -100,7 +100,7 @@ impl ImportLog {
 /// Number of files of an import, by outcome.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct ImportCounts {
-    /// Imported.
+    /// Imported, with or without warnings.
     pub imported: usize,
     /// Imported, with something that was repaired or looks wrong.
     pub with_warnings: usize,

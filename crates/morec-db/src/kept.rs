@@ -19,7 +19,7 @@ use crate::{ClipId, DbError, StoredClip};
 pub struct KeptClip {
     /// Name of the clip.
     pub name: String,
-    /// Its file.
+    /// Path, format and hash of the file that it was read from.
     pub file: KeptFile,
     /// Its number among the clips of the file, from 0.
     pub character: usize,

@@ -45,7 +45,7 @@ pub struct Proposal {
     /// Number of the clip.
     #[serde(rename = "clip_id")]
     pub clip: ClipId,
-    /// Its proposed class.
+    /// Name of the class that is proposed.
     pub class: String,
     /// Start and stop, seconds.
     #[serde(flatten)]

@@ -25,7 +25,7 @@ pub(crate) fn recipe(params: &FeatureParams) -> String {
 /// A clip's rows and the bones they cover.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ClipRows {
-    /// The clip.
+    /// The clip that the rows describe.
     pub clip: ClipId,
     /// Bones of which the rows speak.
     pub bones: BoneSet,

@@ -7,7 +7,7 @@ use rusqlite::{Connection, params};
 
 use crate::{ClipId, DbError, MotionDb};
 
-/// Kind of a segment.
+/// What happens between two cuts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum SegmentKind {

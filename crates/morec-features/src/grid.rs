@@ -32,7 +32,7 @@ pub struct Grid<S> {
 pub struct GridFrame<'a, S> {
     /// The pose before, and how far from it to this one the frame lies, 0 … 1; `None` where it is this pose itself.
     pub before: Option<(&'a S, f64)>,
-    /// The pose.
+    /// The pose at the frame's time, or the next one after it.
     pub now: &'a S,
 }
 

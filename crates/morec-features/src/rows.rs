@@ -40,7 +40,7 @@ impl Rows {
         self.data.is_empty()
     }
 
-    /// Row `index`.
+    /// Row `index`, from 0: `dim` values. Panics beyond the last row.
     #[inline]
     pub fn row(&self, index: usize) -> &[f32] {
         &self.data[index * self.dim..(index + 1) * self.dim]

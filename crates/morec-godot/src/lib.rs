@@ -21,7 +21,7 @@ struct MorecExtension;
 #[gdextension]
 unsafe impl ExtensionLibrary for MorecExtension {}
 
-/// The expected performer.
+/// Who performs: decides how the threshold follows the performer's scores.
 #[derive(GodotConvert, Var, Export, Default, Clone, Copy)]
 #[godot(via = GString)]
 pub enum ExpectedPerformer {
@@ -51,7 +51,7 @@ pub struct RecognizerNode {
     /// False alarms a minute that background motion may raise: 0.1 is strict, 1 is generous; 0 as trained.
     #[export]
     sensitivity: f64,
-    /// The expected performer.
+    /// Who performs: auto, teacher or anyone.
     #[export]
     performer: ExpectedPerformer,
     /// Also signal what seems to be under way: `motion_started` and `motion_cancelled`.

@@ -6,7 +6,7 @@ use morec::live::{Event, Phase};
 /// An event, its class's name and its source.
 #[derive(Debug, Clone, Copy)]
 pub struct NamedEvent<'a> {
-    /// The event.
+    /// The event, with numbers of classes and performers.
     pub event: &'a Event,
     /// The class's name.
     pub class: &'a str,

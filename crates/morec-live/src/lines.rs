@@ -22,7 +22,7 @@ pub const SILENCE: Duration = Duration::from_secs(30);
 
 /// Something that came.
 pub enum Came {
-    /// A line.
+    /// A line was read whole.
     Line {
         /// Whose it is.
         connection: u64,

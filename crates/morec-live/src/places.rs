@@ -13,7 +13,6 @@ const UNKNOWN: Duration = Duration::from_secs(1);
 /// Likewise one that has shown a body, so long after the last.
 const SILENT: Duration = Duration::from_secs(5);
 
-/// A connection that is open.
 struct OpenConnection {
     number: u64,
     machine: IpAddr,
@@ -42,7 +41,7 @@ fn machine_at(address: IpAddr) -> IpAddr {
     }
 }
 
-/// A number for the machine at an address.
+/// A number by which connections of one machine are counted together; for IPv6, of its network.
 pub fn machine_number(address: IpAddr) -> u128 {
     match machine_at(address) {
         IpAddr::V4(v4) => v4.to_ipv6_mapped().to_bits(),

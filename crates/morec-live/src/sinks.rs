@@ -8,7 +8,7 @@ use crate::{Address, LiveError, NamedEvent, Sink};
 
 /// A sink that has been opened.
 pub struct OpenSink {
-    /// It.
+    /// Ready for events.
     pub sink: Box<dyn Sink>,
     /// Name of the sink, with the port that was free if it asked for any.
     pub name: String,

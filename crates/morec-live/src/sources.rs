@@ -57,7 +57,7 @@ impl Default for SourceOptions<'_> {
 
 /// A source that has been opened.
 pub struct OpenSource {
-    /// It.
+    /// Listening, or playing.
     pub source: Box<dyn Source>,
     /// Behaviour when its frames are not taken in time: whether it can wait.
     pub overload: OverflowPolicy,

@@ -33,7 +33,6 @@ const GOODBYE: Duration = Duration::from_millis(500);
 /// A listener by number.
 type Listener = (u64, SyncSender<String>);
 
-/// The connected listeners.
 #[derive(Default)]
 struct Hall {
     listeners: Vec<Listener>,

@@ -96,7 +96,7 @@ pub struct CrossvalMeasures {
     pub divided: String,
     /// Streams, samples and detections of the clips as they are.
     pub tested: Tested,
-    /// Their measures.
+    /// Measures over all tested clips.
     pub evaluation: Evaluation,
     /// Measures of the copies that are worse in one way.
     pub perturbed: Vec<(Perturbation, Evaluation)>,

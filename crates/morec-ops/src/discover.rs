@@ -39,14 +39,14 @@ pub struct DiscoverClip {
     pub person: Option<String>,
     /// Bones that its rows cover.
     pub bones: BoneSet,
-    /// Its rows.
+    /// Feature rows, one for each tick.
     pub rows: Rows,
 }
 
 /// Sets of the same motion, those that explain most first.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DiscoveredSets {
-    /// The sets.
+    /// Those that cover the most motion first.
     pub sets: Vec<DiscoveredSet>,
     /// What was seen once, by clip and time.
     pub alone: Vec<AloneStretch>,
@@ -59,7 +59,7 @@ pub struct DiscoveredSets {
 /// A set of the same motion.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DiscoveredSet {
-    /// From 1.
+    /// Number of the set, from 1.
     pub set: usize,
     /// Median length of an instance.
     pub length_secs: f64,

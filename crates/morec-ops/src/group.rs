@@ -66,7 +66,7 @@ pub enum Grouping {
     Clips,
 }
 
-/// A method of grouping.
+/// How samples are grouped, and by what distance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, ValueEnum)]
 #[serde(rename_all = "snake_case")]
 pub enum GroupMethod {

@@ -42,7 +42,7 @@ pub struct ImportedFiles {
 /// A clip that is nearly another, by name.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CopiedClip {
-    /// The longer one.
+    /// Name of the longer clip.
     pub of: String,
     /// The shorter one; the whole of it lies in the other.
     pub copy: String,

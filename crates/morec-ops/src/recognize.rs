@@ -41,7 +41,7 @@ impl RecognizeSettings {
         Ok(self.options().tuned(model)?)
     }
 
-    /// The options of a stream.
+    /// These settings as options of a stream; others have their defaults.
     pub fn options(&self) -> StreamOptions {
         StreamOptions {
             sensitivity: self.sensitivity,
@@ -73,7 +73,7 @@ pub struct StreamSettings {
 
 #[cfg(feature = "clap")]
 impl StreamSettings {
-    /// The options.
+    /// These settings as options of a stream; others have their defaults.
     pub fn options(&self) -> StreamOptions {
         StreamOptions {
             tentative: self.tentative,

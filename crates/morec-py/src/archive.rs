@@ -58,7 +58,6 @@ fn row<'py>(py: Python<'py>, clip: &KeptClip) -> PyResult<Bound<'py, PyDict>> {
     Ok(row)
 }
 
-/// The kept clip of a row.
 fn kept(row: &Bound<'_, PyDict>) -> PyResult<KeptClip> {
     let get = |name: &str| -> PyResult<Bound<'_, PyAny>> {
         let value = row.get_item(name)?;

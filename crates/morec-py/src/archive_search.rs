@@ -25,7 +25,7 @@ pub struct SearchPart {
     index: SearchIndex,
 }
 
-/// An example to search for.
+/// A stretch to search for, prepared once for all parts.
 #[pyclass(frozen, module = "morec")]
 pub struct SearchExample {
     example: Example,

@@ -534,7 +534,6 @@ impl PyDatabase {
     }
 }
 
-/// Names of the clips.
 fn names(db: &MotionDb) -> Result<BTreeMap<ClipId, String>, DbError> {
     let clips = db.clips(&ClipFilter::default())?;
     Ok(clips.into_iter().map(|c| (c.id, c.name)).collect())

@@ -160,7 +160,7 @@ pub fn operation_error(error: OperationError) -> PyErr {
     }
 }
 
-/// The rows of a table of labels.
+/// Labels in a table, as rows for Python.
 #[pyfunction]
 pub fn rows_of_table(bytes: &Bound<'_, PyBytes>) -> PyResult<Vec<LabelRow>> {
     let row = |label: Label| {

@@ -10,7 +10,7 @@ use crate::state::{Command, FileCommand, State};
 use crate::store::Wake;
 use crate::{dialogs, keys, theme};
 
-/// The program.
+/// The state, the panels that draw it and the threads that work for it.
 pub struct Studio {
     pub state: State,
     pub dialogs: dialogs::Dialogs,

@@ -40,7 +40,7 @@ pub trait Chooser: Send + Sync {
     fn choose(&self, dialog: &Dialog) -> Option<Vec<PathBuf>>;
 }
 
-/// The dialogs of the system.
+/// File dialogs of the operating system, with the feature `window`.
 pub struct SystemDialogs;
 
 #[cfg(not(feature = "window"))]

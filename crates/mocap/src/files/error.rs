@@ -28,15 +28,15 @@ pub enum FileErrorKind {
     /// A skeleton file cannot be opened.
     #[error("skeleton {}: {why}", path.display())]
     OpenSkeleton {
-        /// The skeleton file.
+        /// Path of the skeleton.
         path: PathBuf,
-        /// Why.
+        /// Error of the system.
         why: io::Error,
     },
     /// A skeleton file is not what it should be.
     #[error("skeleton {}: {why}", path.display())]
     Skeleton {
-        /// The skeleton file.
+        /// Path of the skeleton.
         path: PathBuf,
         /// Place and cause.
         why: ParseError,
@@ -44,7 +44,7 @@ pub enum FileErrorKind {
     /// The motion is not what it should be, or not of this skeleton.
     #[error("with skeleton {}: {why}", skeleton.display())]
     Motion {
-        /// The skeleton file.
+        /// Path of the skeleton.
         skeleton: PathBuf,
         /// Place and cause.
         why: ParseError,
@@ -82,7 +82,7 @@ impl FileErrorKind {
         }
     }
 
-    /// The error of the file at `path`.
+    /// This error with the path of the file that it concerns.
     pub fn at(self, path: &Path) -> FileError {
         FileError {
             path: path.to_owned(),

@@ -34,7 +34,7 @@ pub struct FileReader {
     pub positions: Option<PositionChannels>,
     /// Limits of what a file may declare.
     pub limits: Limits,
-    /// Options of the import.
+    /// Unit, up axis and roles, where they are not to be inferred.
     pub import: ImportOptions,
 }
 

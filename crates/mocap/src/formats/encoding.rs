@@ -26,7 +26,6 @@ impl Encoding {
         }
     }
 
-    /// Its usual name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Utf8 => "UTF-8",

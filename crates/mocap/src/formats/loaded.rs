@@ -11,7 +11,7 @@ pub struct Limits {
     pub joints: usize,
     /// Joints from a root to a leaf.
     pub depth: usize,
-    /// Bytes in one line.
+    /// Bytes in one line of text.
     pub line_bytes: usize,
     /// Frames in one clip.
     pub frames: usize,

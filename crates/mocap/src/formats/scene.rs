@@ -23,7 +23,6 @@ impl Local {
     };
 }
 
-/// A node of a scene.
 #[derive(Debug, Clone)]
 pub(super) struct SceneNode {
     pub(super) name: String,

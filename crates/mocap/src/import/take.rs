@@ -14,7 +14,7 @@ pub struct Take {
     pub clip: Clip,
     /// The joint of each part of the body.
     pub roles: RoleMap,
-    /// Report of the import.
+    /// What was inferred: unit, up axis, roles, rest pose.
     pub report: ImportReport,
     /// Repairs and oddities of the file it is from; clips of one file share them.
     pub warnings: Vec<Warning>,

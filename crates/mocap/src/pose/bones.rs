@@ -173,7 +173,7 @@ impl BoneSet {
     pub const UPPER: BoneSet = BoneSet::range(4, 11);
     /// The line of the shoulders and the arms.
     pub const ARMS: BoneSet = BoneSet::range(5, 10);
-    /// The left hand.
+    /// The left hand, not mirrored.
     pub const LEFT_HAND: BoneSet = BoneSet::range(11, 18);
     /// The right hand, or a hand that is seen alone, a left one as in a mirror.
     pub const HAND: BoneSet = BoneSet::range(18, 25);

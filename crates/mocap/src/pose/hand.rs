@@ -11,16 +11,16 @@ use super::KeyPose;
 )]
 #[serde(rename_all = "lowercase")]
 pub enum Hand {
-    /// The left one.
+    /// The performer's left.
     Left,
-    /// The right one.
+    /// The performer's right.
     Right,
 }
 
 /// Points of a finger from its base to its tip.
 type Finger = [Role; 4];
 
-/// The points of one hand.
+/// Roles of the joints of one hand.
 pub struct HandPoints {
     /// The joint of the wrist.
     pub wrist: Role,
@@ -88,7 +88,7 @@ impl Hand {
         }
     }
 
-    /// The other one.
+    /// The hand of the other side.
     pub const fn other(self) -> Hand {
         match self {
             Hand::Left => Hand::Right,
@@ -96,7 +96,7 @@ impl Hand {
         }
     }
 
-    /// Its points.
+    /// Roles of its joints.
     pub const fn points(self) -> HandPoints {
         match self {
             Hand::Left => LEFT,

@@ -141,7 +141,7 @@ impl Profile {
         (count > 0.0).then(|| sum / count)
     }
 
-    /// Length of a hand in this pose.
+    /// [`Hand::length`] of the first hand that `pose` shows, in the pose's unit.
     pub fn hand_length(self, pose: &KeyPose) -> Option<f64> {
         let hands = self.rooted_in().iter();
         hands.into_iter().find_map(|hand| hand.length(pose))

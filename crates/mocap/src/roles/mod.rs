@@ -152,7 +152,7 @@ impl Role {
         NAMES[self.index()]
     }
 
-    /// The role of this name.
+    /// The role with this [`name`](Self::name); `None` for any other word.
     pub fn from_name(name: &str) -> Option<Role> {
         Role::ALL.into_iter().find(|r| r.name() == name)
     }

@@ -12,7 +12,6 @@ use super::bezier::{ChannelKind, ChannelValue, Tangent, bernstein};
 pub(super) struct FitSpan<'a> {
     kind: ChannelKind,
     samples: &'a [ChannelValue],
-    /// The last key.
     end: ChannelValue,
     /// Derivative by a tangent at the last key.
     end_tangents: Matrix4x3<f64>,

@@ -50,9 +50,7 @@ impl StepSize {
 pub(super) struct Lattice {
     /// Kind of the values.
     pub kind: ChannelKind,
-    /// Step of keys.
     pub key: StepSize,
-    /// Step of tangents.
     pub tangent: StepSize,
 }
 
@@ -121,7 +119,7 @@ impl Lattice {
         rounded(tangent, self.tangent)
     }
 
-    /// The tangent of a code.
+    /// The tangent that [`tangent_code`](Self::tangent_code) gave this code, to within half a step.
     pub fn tangent(&self, code: &Code) -> Tangent {
         vector(code, self.tangent)
     }
@@ -148,7 +146,7 @@ pub(super) struct Piece {
     pub frames: u32,
     /// The key it ends at.
     pub key: Code,
-    /// Its tangents.
+    /// In whole steps.
     pub tangents: Tangents,
 }
 

@@ -78,7 +78,7 @@ pub enum SmoothError {
         least: f64,
         /// The most it may be.
         most: f64,
-        /// The value found.
+        /// The refused value.
         found: f64,
     },
     /// Tables whose sizes disagree, or a rate beyond all use.
@@ -89,11 +89,11 @@ pub enum SmoothError {
         "joint {joint} ({name}), frame {frame}: expected finite values below {most:e}, found others"
     )]
     Value {
-        /// The joint.
+        /// Index of the joint in the skeleton.
         joint: usize,
         /// Name of the clip.
         name: String,
-        /// The frame.
+        /// Frame of the clip, from 0.
         frame: usize,
         /// The largest value allowed, in the clip's unit of length.
         most: f64,
@@ -103,9 +103,9 @@ pub enum SmoothError {
         "joints within {bound_metres} m of where they were: {reached_metres} m is as near as it came"
     )]
     Bound {
-        /// The bound.
+        /// The bound asked for, metres.
         bound_metres: f64,
-        /// The distance reached.
+        /// The smallest error that was reached, metres.
         reached_metres: f64,
     },
     /// The listener said so.

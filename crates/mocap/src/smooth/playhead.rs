@@ -14,7 +14,7 @@ pub(super) trait PlayedChannel {
 
 /// The frame of some channels at which they were last asked, rotations joint by joint and then tracks.
 pub(super) struct Playhead {
-    /// A clip of one frame.
+    /// One frame long, to pose the skeleton.
     frame: Clip,
     pose: WorldPose,
     /// Of each channel, the curve that the last frame lay on.

@@ -3,7 +3,7 @@
 use morec::live::{SessionOptions, Threading};
 use morec_live::pin_thread;
 
-/// `--layout`.
+/// The values of `--layout`.
 #[derive(clap::ValueEnum, Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum LayoutArg {
     /// One thread

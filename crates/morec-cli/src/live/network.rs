@@ -32,7 +32,7 @@ impl NetworkArgs {
     }
 }
 
-/// A share of 1.
+/// Reads a number from 0 to 1.
 fn share(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(share) if (0.0..=1.0).contains(&share) => Ok(share),

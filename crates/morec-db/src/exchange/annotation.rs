@@ -16,7 +16,7 @@ pub struct Annotation {
     pub class: String,
     /// Start and stop in seconds; `None` for the whole clip.
     pub extent: Option<(f64, f64)>,
-    /// Person in it.
+    /// Who performs, if the file says.
     pub person: Option<String>,
     /// Confidence of the program that proposed it.
     pub score: Option<f64>,

@@ -22,7 +22,7 @@ pub struct Effect {
 /// A step that was taken back or done again, or would be.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
 pub struct ReplayedStep {
-    /// The step.
+    /// The step as `history` lists it.
     #[serde(flatten)]
     pub step: HistoryStep,
     /// Its effects on the database.

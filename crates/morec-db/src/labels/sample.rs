@@ -122,11 +122,11 @@ pub struct Added {
 /// Conditions on samples; all must hold.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct SampleFilter {
-    /// In this clip.
+    /// Samples in this clip only.
     pub clip: Option<ClipId>,
-    /// Of this class.
+    /// Samples of the class with this name only.
     pub class: Option<String>,
-    /// In this state.
+    /// Samples in this state only.
     pub state: Option<SampleState>,
 }
 

@@ -12,7 +12,7 @@ use crate::{ClipId, ClipUpdate, DbError, MotionDb};
 /// What a clip as a whole is said to show; `None` leaves it as it is.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct WholeClip {
-    /// The clip.
+    /// The clip that is labelled or described.
     pub clip: ClipId,
     /// The class that all of it shows.
     pub class: Option<String>,
@@ -20,7 +20,7 @@ pub struct WholeClip {
     pub subject: Option<String>,
 }
 
-/// Name of the step.
+/// What the history calls it: the number of clips and their class.
 fn step_name(clips: &[WholeClip]) -> String {
     let number = counted(clips.len(), "whole clip");
     let mut classes: Vec<&str> = clips.iter().filter_map(|c| c.class.as_deref()).collect();

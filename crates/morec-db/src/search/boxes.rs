@@ -138,7 +138,7 @@ impl<'a> BoxView<'a> {
         total(&squares)
     }
 
-    /// Of the travel.
+    /// Squared distance of `travel` from the bounds of root motion.
     #[inline(always)]
     pub fn travel(&self, travel: &[f32; TRAVEL]) -> f32 {
         let (values, _) = self.bytes[2 * X..][..4 * TRAVEL].as_chunks::<2>();

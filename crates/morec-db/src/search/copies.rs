@@ -14,7 +14,7 @@ use crate::ClipId;
 /// Two clips of which one is nearly the other.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct NearCopy {
-    /// The longer one.
+    /// The longer clip.
     pub of: ClipId,
     /// The shorter one; the whole of it lies in the other.
     pub copy: ClipId,

@@ -17,7 +17,7 @@ use super::windows::shown;
 use super::{Example, SearchIndex};
 use crate::ClipId;
 
-/// Options of a search.
+/// What a search returns, and how it ranks.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SearchOptions {
     /// Most hits.

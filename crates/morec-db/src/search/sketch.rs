@@ -28,7 +28,6 @@ impl Default for SketchLanes {
 }
 
 impl SketchLanes {
-    /// All zero.
     pub const ZERO: Self = Self([0.0; LANES]);
 }
 

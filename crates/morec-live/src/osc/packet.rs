@@ -13,9 +13,9 @@ const BUNDLE: &[u8; 8] = b"#bundle\0";
 /// An argument of a message.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Arg<'a> {
-    /// `i`
+    /// 32-bit integer, tag `i`.
     Int(i32),
-    /// `f`
+    /// 32-bit float, tag `f`.
     Float(f32),
     /// `h`
     Long(i64),

@@ -28,7 +28,6 @@ impl Datagram {
         self.malformed |= malformed > 0;
     }
 
-    /// Its messages.
     pub(super) fn said(&self) -> &[VmcMessage] {
         &self.said
     }

@@ -13,7 +13,6 @@ use morec::roles::{Role, RoleMap};
 
 pub use camera::Camera;
 
-/// Side of the body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BodySide {
     Left,

@@ -16,7 +16,7 @@ pub struct JobProgress {
     wake: Wake,
 }
 
-/// A stage of a job.
+/// What a job does now and how far it is.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct JobStage {
     pub name: String,

@@ -45,7 +45,6 @@ impl Thesis {
     }
 }
 
-/// A node of the tree.
 #[derive(Debug)]
 pub enum TreeNodeView {
     Leaf(String),

@@ -22,7 +22,6 @@ use crate::body::Camera;
 use crate::store::Edit;
 use crate::stretch::Stretch;
 
-/// The panels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Panel {
     Library,
@@ -147,7 +146,7 @@ impl FileCommand {
     }
 }
 
-/// A path that is typed.
+/// Text of a path, where there is no file dialog.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TypedPath {
     pub ask: Ask,

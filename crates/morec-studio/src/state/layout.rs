@@ -127,7 +127,6 @@ impl Default for Layout {
 }
 
 impl State {
-    /// The present layout.
     pub fn layout(&self) -> Layout {
         let store = self.store.as_ref().filter(|s| !s.temporary);
         Layout {

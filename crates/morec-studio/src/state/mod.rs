@@ -346,7 +346,6 @@ impl State {
         }
     }
 
-    /// The clip that is shown.
     pub fn shown_clip(&self) -> Option<&ClipInfo> {
         let id = self.player.motion.as_ref()?.id;
         self.store.as_ref()?.snapshot.clip(id)

@@ -13,7 +13,6 @@ pub const BY: &str = "studio";
 /// One change of the database.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Edit {
-    /// Labels that are new.
     Label(Vec<NewSample>),
     /// Labels of files, beside what is there or in place of the labels of the clips they name.
     LabelFiles {

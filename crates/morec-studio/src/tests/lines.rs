@@ -38,7 +38,7 @@ fn shape(words: &[String]) -> Vec<String> {
     shape
 }
 
-/// The commands of a line.
+/// Commands joined by `&&`, word by word.
 fn commands(line: &str) -> Vec<Vec<String>> {
     let words = shlex::split(line).unwrap_or_else(|| panic!("not a line of a shell: {line}"));
     let commands = words.split(|word| word == "&&").map(<[String]>::to_vec);

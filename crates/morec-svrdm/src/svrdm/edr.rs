@@ -28,7 +28,7 @@ const NONE: f32 = 1e30;
 pub struct Path {
     /// Values that were left out or do not match.
     pub cost: u32,
-    /// Steps.
+    /// Pairs of values and values left out.
     pub steps: u32,
 }
 

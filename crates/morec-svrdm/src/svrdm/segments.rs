@@ -138,7 +138,7 @@ impl SegmentAssembly {
         }
     }
 
-    /// Chunks that are kept.
+    /// Number of chunks whose sums are kept: those of the longest window.
     pub fn chunks_kept(&self) -> usize {
         self.ring.len()
     }

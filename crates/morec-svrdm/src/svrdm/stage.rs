@@ -8,7 +8,7 @@ use super::tree::Node;
 pub enum Stage {
     /// Input assembly: pose rows projected, in chunks.
     InputAssembly,
-    /// Segment assembly.
+    /// Segment assembly: `AᵀA` of each window.
     SegmentAssembly,
     /// Feature vector extraction.
     FeatureExtraction,
@@ -43,7 +43,7 @@ impl Stage {
         }
     }
 
-    /// Its name.
+    /// In words, as in the thesis: `input assembly`.
     pub fn name(self) -> &'static str {
         match self {
             Stage::InputAssembly => "input assembly",

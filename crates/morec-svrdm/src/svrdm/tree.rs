@@ -33,7 +33,7 @@ impl Tree {
         Ok(Self { parts })
     }
 
-    /// Its parts.
+    /// Branches and machines, as they are stored.
     pub fn parts(&self) -> &TreeParts {
         &self.parts
     }

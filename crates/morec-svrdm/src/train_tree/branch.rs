@@ -10,9 +10,9 @@ use super::sigma::{algorithm4, of_sides, quantile};
 /// A trained branch that does not know its place in the tree yet.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TrainedBranch {
-    /// The plane.
+    /// Projects feature vectors to the plane of the two sides' centroids.
     pub plane: Plane,
-    /// The machines in it.
+    /// One for each side, over points of the plane.
     pub machines: Machines,
     /// Results of the cross-validation of widths, if there was one.
     pub cross: Option<cross::WidthOutcome>,

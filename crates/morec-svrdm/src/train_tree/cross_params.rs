@@ -45,11 +45,11 @@ impl Default for CrossParams {
 /// Multiples in even ratios.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Multiples {
-    /// The smallest.
+    /// The smallest value tried.
     pub low: f64,
-    /// The largest.
+    /// The largest value tried.
     pub high: f64,
-    /// Their number.
+    /// Number of values tried.
     pub count: usize,
 }
 

@@ -29,7 +29,7 @@ pub struct FeatureSample {
 /// A tree and what was found while it grew.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Grown {
-    /// The tree.
+    /// Ready to descend.
     pub tree: Tree,
     /// Of each branch, the root first.
     pub branches: Vec<BranchReport>,
@@ -46,7 +46,7 @@ pub struct BranchReport {
     pub exemplars: [usize; 2],
     /// Width under which the classes were parted.
     pub sigma_partition: f64,
-    /// `σ_f`.
+    /// Width of the kernel over feature vectors, `σ_f`.
     pub sigma_full: f64,
     /// `σ_r`.
     pub sigma_reduced: f64,
@@ -74,7 +74,7 @@ pub enum GrowError {
     Dimension {
         /// Sample or background.
         what: &'static str,
-        /// Its number.
+        /// Index of the sample.
         index: usize,
         /// Values of the first sample.
         expected: usize,
@@ -86,7 +86,7 @@ pub enum GrowError {
     NotFinite {
         /// Sample or background.
         what: &'static str,
-        /// Its number.
+        /// Index of the sample.
         index: usize,
     },
     /// Algorithm 4 has no widths to try.

@@ -22,7 +22,7 @@ pub struct MacroClasses<'a> {
 /// The plane of two sides' centroids.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plane {
-    /// `σ_f`.
+    /// Width of the kernel over feature vectors, `σ_f`.
     pub sigma: f64,
     /// For each side, which of its samples its enclosing sphere rests on.
     pub exemplars: [Vec<usize>; 2],

@@ -92,21 +92,21 @@ pub enum SigmaRule {
     Algorithm4,
     /// These multiples of that.
     Scaled {
-        /// Of `σ_f`.
+        /// Factor of `σ_f`.
         full: f64,
         /// Of `σ_r`.
         reduced: f64,
     },
     /// These quantiles (0.5 is the median) of the distances between samples of a side, and the mean of both sides.
     Quantile {
-        /// For `σ_f`.
+        /// Quantile that gives `σ_f`.
         full: f64,
         /// For `σ_r`.
         reduced: f64,
     },
     /// These widths.
     Fixed {
-        /// `σ_f`.
+        /// `σ_f`, in the distance of feature vectors.
         full: f64,
         /// `σ_r`.
         reduced: f64,
@@ -157,7 +157,7 @@ pub enum Sweep {
         low: f64,
         /// Of the largest.
         high: f64,
-        /// Their number.
+        /// Number of widths tried.
         count: usize,
     },
     /// In even steps between multiples of the largest distance: as the reference prototype has it.
@@ -166,14 +166,14 @@ pub enum Sweep {
         low: f64,
         /// Of the largest.
         high: f64,
-        /// Their number.
+        /// Number of widths tried.
         count: usize,
     },
     /// In even steps between two widths, whatever the samples.
     Absolute {
-        /// The smallest.
+        /// The smallest width tried.
         low: f64,
-        /// The largest.
+        /// The largest width tried.
         high: f64,
         /// From one to the next.
         step: f64,

@@ -50,7 +50,7 @@ impl Default for Stop {
 /// A solution and how good it is.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Solution {
-    /// `α`.
+    /// The weights `α`, one for each sample.
     pub alpha: DVector<f64>,
     /// By how much the Karush-Kuhn-Tucker conditions are missed at most.
     pub residual: f64,

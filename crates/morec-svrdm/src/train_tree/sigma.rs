@@ -66,7 +66,7 @@ impl Sweep {
 /// Result of Algorithm 4.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Estimate {
-    /// `σ`.
+    /// The width `σ` of the kernel.
     pub sigma: f64,
     /// The factor of `R` at which samples were on the boundary.
     pub radius_factor: f64,

@@ -50,7 +50,7 @@ pub struct ClassifiedClip {
 pub struct NamedClassification<'a> {
     /// The class, if the clip is accepted as one of the index's.
     pub class: Option<&'a str>,
-    /// Its probability.
+    /// Probability that the clip shows it.
     pub probability: Option<f64>,
     /// The class whose samples are nearest, accepted or not.
     pub nearest: Option<&'a str>,

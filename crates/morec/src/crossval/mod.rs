@@ -62,7 +62,7 @@ pub struct CrossvalData<'a> {
     pub clips: &'a [TrainClip],
     /// All samples of the classes.
     pub samples: &'a [Sample],
-    /// The classes.
+    /// Names of the classes; a `ClassId` is an index into this.
     pub classes: &'a [String],
     /// Clips that hold none of the classes: what is recognised in them is a false alarm. A clip may be background
     /// too; it is then tested only in folds that leave it out of training.
@@ -74,9 +74,9 @@ pub struct CrossvalData<'a> {
 /// Clips that are only tested.
 #[derive(Debug, Clone, Copy)]
 pub struct Tests<'a> {
-    /// The clips.
+    /// Clips to test, not to train on.
     pub clips: &'a [TrainClip],
-    /// Their samples.
+    /// Their labels.
     pub samples: &'a [Sample],
 }
 
@@ -111,7 +111,7 @@ pub struct Tested {
     pub streams: Vec<StreamInfo>,
     /// The samples of those streams.
     pub truths: Vec<GroundTruth>,
-    /// The detections.
+    /// What was recognised in them.
     pub founds: Vec<ClipDetection>,
     /// Samples without an event ([`event_pairs`]), and why; not looked for in copies.
     pub misses: Vec<Miss>,
@@ -137,7 +137,7 @@ pub struct CrossvalOutcome {
 pub struct FoldReport {
     /// Name of the part that was left out.
     pub name: String,
-    /// Report of the training.
+    /// What training reports: samples, background, threshold, notes.
     pub training: TrainingReport,
 }
 
@@ -150,7 +150,7 @@ pub enum CrossvalError {
     /// Training failed.
     #[error("fold {fold}: {source}")]
     Train {
-        /// The fold.
+        /// Name of the part that was left out.
         fold: String,
         /// Why.
         source: TrainError,
@@ -158,9 +158,9 @@ pub enum CrossvalError {
     /// A clip cannot be recognised.
     #[error("fold {fold}, clip {clip}: {source}")]
     Recognize {
-        /// The fold.
+        /// Name of the part that was left out.
         fold: String,
-        /// The clip.
+        /// Name of the clip.
         clip: String,
         /// Why.
         source: StartError,
@@ -282,7 +282,7 @@ fn run_sensitivities(
     Ok(())
 }
 
-/// The clips that a fold trains on.
+/// Clips with samples of the fold, and background that the fold does not test.
 fn training_clips(material: &CrossvalData<'_>, fold: &Fold) -> Vec<TrainClip> {
     let taught = fold.taught.iter().map(|&i| &material.samples[i]);
     let teachers: BTreeSet<&str> = taught.map(|s| s.clip.as_str()).collect();
@@ -317,7 +317,6 @@ fn train_fold(
     })
 }
 
-/// A clip to test.
 struct TestClip<'a> {
     clip: &'a TrainClip,
     /// True if it holds none of the classes.

@@ -61,7 +61,7 @@ pub enum Finding {
     },
     /// The body lies along an axis that is not Y: most likely that axis is up.
     UpIsNotY {
-        /// The axis.
+        /// The axis along which the body stands.
         axis: Axis,
         /// True if the body points against it.
         negative: bool,
@@ -82,12 +82,12 @@ pub enum Finding {
     },
     /// Parts of the body are never seen.
     JointsMissing {
-        /// The roles concerned.
+        /// Parts of the body that are concerned.
         roles: RoleSet,
     },
     /// Parts of the body come and go.
     JointsFlicker {
-        /// The roles concerned.
+        /// Parts of the body that are concerned.
         roles: RoleSet,
     },
     /// The size of the body is none in any common unit of length.
@@ -107,7 +107,7 @@ pub enum Finding {
     },
     /// Few frames a second.
     SlowRate {
-        /// The rate.
+        /// Frames a second.
         rate_hz: f64,
     },
     /// Frames are missing.

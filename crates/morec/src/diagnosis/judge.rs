@@ -43,7 +43,7 @@ impl Findings {
         self.count == 0
     }
 
-    /// The gravest.
+    /// The first finding of the gravest severity.
     pub fn worst(&self) -> Option<&Finding> {
         self.iter().next()
     }

@@ -8,7 +8,6 @@ use super::neighbours::Neighbours;
 
 /// Sets that explain less are none.
 const LEAST_GAIN_SECS: f64 = 0.3;
-/// Sets at most.
 const MOST_SETS: usize = 400;
 /// A candidate that shares more than this share of the shorter with a member of a set is used up.
 const SHARED: f64 = 0.15;

@@ -74,7 +74,7 @@ pub struct EventAgreement {
 /// Agreement about one class.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ClassAgreement {
-    /// Its name.
+    /// Name of the class.
     pub class: String,
     /// By units of time: this class or not.
     pub time: Kappa,

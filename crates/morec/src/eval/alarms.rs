@@ -12,7 +12,7 @@ use super::spans::{mostly_outside, union};
 /// false alarm.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct FalseAlarms {
-    /// Their number.
+    /// Number of false alarms.
     pub count: usize,
     /// Length of the known streams.
     pub minutes: f64,
@@ -27,7 +27,7 @@ pub struct UnknownFigures {
     pub clips: usize,
     /// Number of them with at least one detection.
     pub clips_accepted: usize,
-    /// Their share.
+    /// Share of the unknown streams with at least one detection; `None` without such streams.
     pub unknown_accepted: Option<f64>,
     /// Number of detections.
     pub detections: usize,

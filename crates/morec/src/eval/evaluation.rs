@@ -61,7 +61,7 @@ pub struct Totals {
 pub struct ClassFigures {
     /// Name of the class.
     pub class: String,
-    /// Its labelled samples.
+    /// Number of its samples.
     pub samples: usize,
     /// Its detections in known streams.
     pub detections: usize,

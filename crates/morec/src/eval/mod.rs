@@ -93,12 +93,12 @@ pub struct GroundTruth {
     pub span: TimeSpan,
 }
 
-/// A detection.
+/// What was recognised in a stream, as a table of detections has it.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ClipDetection {
     /// The stream's name.
     pub clip: String,
-    /// The detected class.
+    /// Name of the class.
     pub class: String,
     /// When it happens, from the stream's beginning.
     #[serde(flatten)]
@@ -129,13 +129,13 @@ pub enum EvalError {
     /// A stream is named twice.
     #[error("the stream {clip} is named twice; names must differ")]
     TwoStreams {
-        /// The name.
+        /// Name of the stream.
         clip: String,
     },
     /// A stream without a length.
     #[error("the stream {clip} lasts {duration_secs} s; expected a positive length")]
     NoLength {
-        /// The stream.
+        /// Name of the stream.
         clip: String,
         /// The duration that was given.
         duration_secs: f64,
@@ -168,7 +168,7 @@ pub enum EvalError {
     /// A labelled sample in a stream that is said to hold none.
     #[error("{clip} is named as unknown motion but holds a sample of {class}")]
     SampleInUnknown {
-        /// The stream.
+        /// Name of the stream.
         clip: String,
         /// The sample's class.
         class: String,

@@ -13,7 +13,7 @@ pub const SCORE_BINS: usize = 10;
 pub struct ScoreBin {
     /// Number of detections.
     pub count: usize,
-    /// Their mean score.
+    /// Mean score of these detections.
     pub mean_score: f64,
     /// The share of them that is right, as [`EventScore`](super::EventScore) counts it.
     pub right: f64,

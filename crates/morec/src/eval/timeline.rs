@@ -21,7 +21,7 @@ pub enum GroundTruthVerdict {
     Missed,
 }
 
-/// Verdict on a detection.
+/// Whether a detection is right, and why not.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DetectionVerdict {
@@ -38,7 +38,7 @@ pub enum DetectionVerdict {
 /// One stream, its samples and its detections in order of time.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Timeline {
-    /// The stream.
+    /// Name and length of the stream.
     pub stream: StreamInfo,
     /// Its samples and what became of them.
     pub truths: Vec<(GroundTruth, GroundTruthVerdict)>,

@@ -13,7 +13,7 @@ use super::{ClipDetection, EvaluatedStream, GroundTruth, MEASURED_OVERLAP};
 pub struct Delay {
     /// Number of measured pairs.
     pub count: usize,
-    /// Median.
+    /// Median, seconds; `None` without pairs.
     pub median_secs: Option<f64>,
     /// Nine in ten are no later (linear interpolation between neighbours).
     pub p90_secs: Option<f64>,

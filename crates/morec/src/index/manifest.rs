@@ -97,7 +97,7 @@ pub struct HeldWords {
 /// Activities without their tables.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ActivityWords {
-    /// Ticks of a window.
+    /// Length of a window in ticks.
     pub window_ticks: usize,
     /// See [`Activities::share`](crate::templates::Activities::share).
     pub share: f32,

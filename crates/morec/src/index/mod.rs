@@ -56,7 +56,7 @@ pub struct Provenance {
 /// A trained index: what a file holds.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MotionIndex {
-    /// The trained model.
+    /// Templates or tree, with thresholds and parameters.
     pub model: Model,
     /// Names of the joints that played each role in training: a hint for skeletons on which the role map fails.
     pub roles: BTreeMap<Role, String>,

@@ -62,9 +62,9 @@ pub enum ReportedAt {
 pub struct FoundRow {
     /// The clip's name.
     pub clip: String,
-    /// The detected class.
+    /// Name of the class.
     pub class: String,
-    /// Its extent.
+    /// Frames, seconds, or the whole clip.
     pub extent: Extent,
     /// Score, if the recogniser gives one.
     pub score: Option<f64>,

@@ -11,7 +11,7 @@ use super::Sample;
 pub struct ClassLengths {
     /// Name of the class.
     pub class: String,
-    /// Its samples.
+    /// Number of its samples.
     pub samples: usize,
     /// People who show it, of those who are known.
     pub people: usize,

@@ -13,7 +13,7 @@ pub struct Mark<C = String> {
 }
 
 impl<C> Mark<C> {
-    /// `class` in `span`.
+    /// A mark of `class` over `span`, seconds from the clip's beginning.
     pub fn new(class: impl Into<C>, span: TimeSpan) -> Self {
         let class = class.into();
         Self { class, span }

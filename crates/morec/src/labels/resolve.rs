@@ -8,7 +8,7 @@ use crate::clip::Clip;
 use crate::eval::GroundTruth;
 use crate::formats::{Place, Warning};
 
-/// Length of a clip.
+/// What turns frames of a clip into seconds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ClipLength {
     /// Number of frames.

@@ -11,7 +11,6 @@ use super::{Event, EventOptions, OverflowPolicy};
 /// Events that one frame can give at most, with room to spare: what is kept while readers are full.
 const PENDING: usize = 256;
 
-/// Options of a worker.
 #[derive(Debug, Clone)]
 pub(super) struct WorkerOptions {
     pub(super) events: EventOptions,

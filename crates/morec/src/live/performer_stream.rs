@@ -228,7 +228,7 @@ impl PerformerStream {
         self.performer.finish()
     }
 
-    /// The index.
+    /// The index that recognises.
     pub fn index(&self) -> &Arc<MotionIndex> {
         &self.index
     }

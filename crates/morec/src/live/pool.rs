@@ -36,7 +36,7 @@ struct Worker {
     thread: Option<JoinHandle<()>>,
 }
 
-/// A stream of a pool.
+/// The caller's end of a stream that a pool follows.
 #[derive(Debug)]
 pub struct PoolStream {
     /// Input for frames. Dropping it ends the stream.

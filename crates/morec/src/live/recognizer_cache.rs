@@ -23,7 +23,7 @@ impl RecognizerCache {
         }
     }
 
-    /// The model.
+    /// The model of all recognisers.
     pub fn model(&self) -> &Model {
         &self.model
     }

@@ -26,7 +26,7 @@ pub enum Threading {
     Stages,
 }
 
-/// Options of a session.
+/// How a session runs: threads, queues, what is reported.
 #[derive(Debug, Clone)]
 pub struct SessionOptions {
     /// Distribution of recognition over threads; pools are always inline.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::{Frame, PerformerId, Rig};
 
-/// One event of a source.
+/// What a source gives when it is asked for the next frame.
 #[derive(Debug, Clone)]
 pub enum SourceEvent {
     /// The frame was filled in.
@@ -22,7 +22,7 @@ pub enum SourceEvent {
 /// Something of a source's performers on its way, a frame as `F`.
 #[derive(Debug)]
 pub enum SourceItem<F> {
-    /// A frame.
+    /// The next pose of a performer.
     Frame(F),
     /// From now on this performer has this skeleton.
     Rig(PerformerId, Arc<Rig>),

@@ -31,7 +31,7 @@ pub struct Status {
     pub motions: u64,
     /// Motions not reported because of the refractory time.
     pub suppressed: u64,
-    /// Counts of the source.
+    /// What the source counts: lost, late and unreadable packets.
     pub source: SourceCounts,
     /// The longest that a frame has waited from its arrival to the end of its recognition, seconds.
     pub longest_wait_secs: f64,
@@ -46,7 +46,7 @@ pub struct Status {
 /// Status of one performer: the solution at this moment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PerformerStatus {
-    /// The performer.
+    /// The performer that it is about.
     pub actor: PerformerId,
     /// Frames of this performer.
     pub frames: u64,

@@ -24,7 +24,7 @@ impl Device {
         Self::SixTrackers,
     ];
 
-    /// Its name.
+    /// As messages and tests call it.
     pub fn name(self) -> &'static str {
         match self {
             Self::Optical => "optical",

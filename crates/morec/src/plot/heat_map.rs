@@ -56,7 +56,7 @@ impl HeatMap {
         self
     }
 
-    /// Names rows and columns.
+    /// Labels of rows and columns, in order.
     #[must_use]
     pub fn names(mut self, rows: Vec<String>, columns: Vec<String>) -> Self {
         (self.row_names, self.column_names) = (rows, columns);

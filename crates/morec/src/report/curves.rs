@@ -53,7 +53,6 @@ pub(super) fn push_sensitivity(out: &mut String, sensitivities: &[(f64, Evaluati
     out.push_str("</table></div>\n");
 }
 
-/// The reliability diagram.
 pub(super) fn push_reliability(out: &mut String, reliability: &Reliability) {
     let Some(error) = reliability.error else {
         return;

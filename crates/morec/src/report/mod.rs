@@ -31,11 +31,11 @@ pub use notes::{TrainedClass, learning_notes};
 /// Everything a report shows.
 #[derive(Debug, Clone, Copy)]
 pub struct Report<'a> {
-    /// The heading.
+    /// Heading of the page.
     pub title: &'a str,
     /// Origin of the report, as pairs of name and value: command, data, method, date.
     pub about: &'a [(String, String)],
-    /// The measures.
+    /// Measures of all streams together and of each class.
     pub evaluation: &'a Evaluation,
     /// Verdicts on samples and detections, stream by stream.
     pub timelines: &'a [Timeline],

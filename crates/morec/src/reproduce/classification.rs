@@ -56,7 +56,7 @@ pub struct SplitResult {
     pub confusion: Vec<Vec<usize>>,
     /// Bytes of the index file.
     pub index_bytes: usize,
-    /// The branches.
+    /// What training found at each branch, the root first.
     pub branches: Vec<BranchReport>,
     /// The way of one sample that did not train down the tree, a line for each branch (Fig. 5.2).
     pub path: Vec<String>,

@@ -12,7 +12,7 @@ use crate::train::StreamKind;
 
 use super::study::{ReproduceError, Study, frames_of, rows_of};
 
-/// Clusters at one τ.
+/// Clusters at one required likeness τ, compared with the classes.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Clustering {
     /// Required likeness of two samples.
@@ -20,13 +20,13 @@ pub struct Clustering {
     /// True if samples are centred on the database's mean and reduced to 16 dimensions (§4.2), false if taken as they
     /// are.
     pub centred: bool,
-    /// Samples.
+    /// Number of samples.
     pub samples: usize,
     /// Clusters found.
     pub clusters: usize,
     /// Pairs of samples.
     pub pairs: PairCounts,
-    /// Rand index.
+    /// Share of pairs on which clusters and classes agree.
     pub rand_index: f64,
     /// The same, 0 for chance.
     pub adjusted_rand_index: f64,

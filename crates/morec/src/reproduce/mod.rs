@@ -45,7 +45,7 @@ pub struct Reproduction {
     pub performance: Vec<StagePerformance>,
     /// Cuts and clusters as one chain, beside sets without labels.
     pub unlabelled: Vec<UnlabelledChain>,
-    /// All pictures.
+    /// SVG and TSV of all figures.
     #[serde(skip)]
     pub pictures: Vec<Picture>,
 }

@@ -15,7 +15,7 @@ use crate::train::thesis::Setting;
 /// Passes over the clips; the one of median time counts.
 const PASSES: usize = 5;
 
-/// One stage.
+/// Time of one stage.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct StageCost {
     /// Its letters in the thesis.

@@ -17,9 +17,9 @@ use crate::train::{TrainClip, TrainError};
 pub struct Study<'a> {
     /// Labelled clips; clips named as background too.
     pub clips: &'a [TrainClip],
-    /// Their samples.
+    /// Labels of these clips.
     pub samples: &'a [Sample],
-    /// The classes.
+    /// Names of the classes; a `ClassId` is an index into this.
     pub classes: &'a [String],
     /// Clips that hold none of them.
     pub unknown: &'a [TrainClip],
@@ -36,7 +36,7 @@ pub struct Picture {
     pub name: String,
     /// Caption of the picture.
     pub caption: String,
-    /// The picture.
+    /// The picture as an SVG element.
     pub svg: String,
     /// Data of the picture, as tab-separated text with a header, where that is not in [`Reproduction`](super::Reproduction).
     pub table: Option<String>,

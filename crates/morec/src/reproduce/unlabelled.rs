@@ -16,11 +16,11 @@ use super::study::{ReproduceError, Study, rows_of};
 /// What a way from clips to groups gives.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct UnlabelledChain {
-    /// Its name.
+    /// Name of the method in the report.
     pub method: &'static str,
     /// Segments that are grouped.
     pub segments: usize,
-    /// Groups.
+    /// Number of groups found.
     pub groups: usize,
     /// Labelled samples.
     pub samples: usize,

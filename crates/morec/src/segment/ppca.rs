@@ -11,7 +11,7 @@ pub struct Ppca {
     axes: Vec<f64>,
     /// `1/λᵢ` of each axis.
     precisions: Vec<f64>,
-    /// `1/λ`.
+    /// `1/λ` of the directions that are left out.
     noise_precision: f64,
 }
 

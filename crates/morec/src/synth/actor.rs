@@ -13,13 +13,11 @@ pub(super) type Perform = fn(&mut Actor);
 /// A person on stage. Motions are scheduled from [`Actor::now_secs`] on and move it forward.
 #[derive(Debug, Clone)]
 pub struct Actor {
-    /// The person.
     pub person: Person,
     /// Lengths of the person's body.
     pub body: SyntheticBody,
     /// Chance, for what varies from one performance to the next.
     pub rng: Rng,
-    /// The scheduled motion.
     pub timeline: PoseTimeline,
     /// When the next motion starts.
     pub now_secs: f64,
@@ -155,7 +153,7 @@ impl Actor {
         }
     }
 
-    /// Pitches the hips by `pitch_rad`.
+    /// Positive pitch leans forward.
     pub fn hips_pitch(&mut self, start_secs: f64, secs: f64, pitch_rad: f64) {
         self.timeline
             .to(HIPS_TURN, start_secs, secs, pitch_rad * self.size());

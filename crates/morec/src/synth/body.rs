@@ -50,7 +50,6 @@ impl SyntheticBody {
         }
     }
 
-    /// The joints.
     pub fn skeleton(&self) -> &Skeleton {
         &self.skeleton
     }

@@ -43,11 +43,11 @@ use crate::labels::{Mark, Sample};
 /// A clip with what was performed in it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SyntheticTake {
-    /// The clip.
+    /// The motion, metres and Y up.
     pub clip: Clip,
     /// Performed motions, each from leaving rest to its return, in order, without overlap.
     pub labels: Vec<Mark<&'static str>>,
-    /// The person.
+    /// Name of the person.
     pub person: String,
 }
 

@@ -62,13 +62,13 @@ pub fn all() -> impl Iterator<Item = SyntheticMotion> {
         .chain(everyday.into_iter().map(of(MotionKind::Everyday)))
 }
 
-/// The motions of one kind.
+/// Gestures, motions of no class, or everyday motions.
 pub fn of_kind(kind: MotionKind) -> impl Iterator<Item = SyntheticMotion> {
     all().filter(move |m| m.kind == kind)
 }
 
 impl SyntheticMotion {
-    /// The motion of this name.
+    /// The motion that scripts call `name`; `None` if there is none.
     pub fn named(name: &str) -> Option<SyntheticMotion> {
         all().find(|m| m.name == name)
     }

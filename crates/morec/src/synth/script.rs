@@ -12,11 +12,11 @@ use crate::rng::Rng;
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("line {line} of the script: expected one of {expected}, found \"{found}\"")]
 pub struct UnknownMotion {
-    /// The line, from 1.
+    /// Line of the script, from 1.
     pub line: usize,
     /// The names there are.
     pub expected: String,
-    /// The name given.
+    /// The word that names no motion.
     pub found: String,
 }
 

@@ -11,7 +11,7 @@ use super::smooth::{min_jerk, sin_cos};
 pub enum LimbSide {
     /// The left one, at +X when facing +Z.
     Left,
-    /// The right one.
+    /// At −X when facing +Z.
     Right,
 }
 
@@ -32,7 +32,7 @@ impl LimbSide {
         }
     }
 
-    /// The other one.
+    /// The limb on the opposite side.
     pub fn other(self) -> LimbSide {
         match self {
             LimbSide::Left => LimbSide::Right,

@@ -6,7 +6,6 @@ use crate::decode::{ClassDistance, FAR};
 const MAGIC: [u8; 4] = *b"MCM1";
 /// Bytes of what stands before the ticks.
 const HEADER_BYTES: usize = 12;
-/// Bytes of a match.
 const MATCH_BYTES: usize = 18;
 /// Rows of a template at most: nine hours of ticks.
 const MAX_LONGEST: u32 = 1 << 20;

@@ -49,7 +49,7 @@ impl EarlyDetectionParams {
 /// A class that seems to be under way.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OngoingMatch {
-    /// The class.
+    /// The class of the beginning that was matched.
     pub class: ClassId,
     /// Mean squared distance of what was seen from the beginning of a sample.
     pub distance: f32,

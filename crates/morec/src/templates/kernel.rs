@@ -291,7 +291,7 @@ fn combine<const ROWS: usize, const WIDE: usize>(
 pub const SUMS: usize = 8;
 pub type SumBlock = [f64; SUMS];
 
-/// `row` in blocks.
+/// Blocks of a row, the last padded with zeros.
 pub fn blocks(row: &[f32]) -> impl Iterator<Item = [f32; SUMS]> {
     row.chunks(SUMS).map(|part| {
         let mut block = [0.0; SUMS];

@@ -49,7 +49,6 @@ impl PackedSymmetric {
         diagonal.map(|at| f64::from(self.packed[at])).sum()
     }
 
-    /// The square matrix.
     pub(crate) fn unpack(&self) -> DMatrix<f64> {
         DMatrix::from_fn(self.dim, self.dim, |i, j| {
             let (row, column) = if i >= j { (i, j) } else { (j, i) };

@@ -31,7 +31,7 @@ pub struct TemplateModel {
     pub decode: DecodeParams,
     /// The classes; a [`ClassId`] is an index into this.
     pub classes: Vec<ClassInfo>,
-    /// The templates.
+    /// Templates of the classes, before the metric.
     pub samples: Vec<TemplateSample>,
     /// Templates of what must not be taken for any class, before the metric.
     pub negatives: Vec<Rows>,

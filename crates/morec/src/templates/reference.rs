@@ -11,7 +11,7 @@ use super::{Metric, PackedSymmetric};
 pub struct ReferenceRows {
     /// Rows of the classes.
     pub rows: Rows,
-    /// The class of each.
+    /// For each row, its class.
     pub classes: Vec<ClassId>,
     /// Rows of anything else.
     pub others: Rows,

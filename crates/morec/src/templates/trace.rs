@@ -12,7 +12,7 @@ use super::{Metric, StrangerGate, TemplateModel, TemplateModelError};
 /// The nearest template of a class at a tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Nearest {
-    /// The match.
+    /// Distance and gate of its match.
     pub comparison: NormalizedMatch,
     /// Its place among the model's samples.
     pub template: usize,

@@ -41,7 +41,7 @@ impl Evidence {
     /// Distances from here on count alike.
     pub const REACH: f32 = NOTHING_NEAR as f32;
 
-    /// That of a candidate.
+    /// What the verifier looks at in a candidate.
     pub fn of(candidate: &Candidate) -> Self {
         let Candidate {
             distance,
@@ -129,7 +129,7 @@ impl LinearScore {
 /// One class's stretches that were and that were not it, and what each says of a stretch like it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Exemplars {
-    /// The class.
+    /// The class that they decide about.
     pub class: ClassId,
     /// Shapes, before the metric: `SHAPE_ROWS` rows for each exemplar.
     pub shapes: Rows,

@@ -15,9 +15,9 @@ use super::set::{TrainSample, TrainStream, overlap_share};
 /// A class much of whose samples another class matches as well as its own other samples do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct AlikeClasses {
-    /// The class.
+    /// The class whose samples are matched.
     pub class: ClassId,
-    /// The other.
+    /// The class that matches them.
     pub other: ClassId,
     /// Samples of the class that the other matches.
     pub samples: usize,
@@ -102,7 +102,6 @@ impl SampleRivals {
 /// if the medoid is nearer than this many times what is near enough.
 const MEDOID_REACH: f32 = 2.5;
 
-/// The templates of one class.
 struct ClassTemplates {
     /// Among all samples.
     places: Vec<usize>,

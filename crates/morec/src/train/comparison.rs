@@ -25,7 +25,6 @@ pub struct TrainingContext<'a> {
     pub set: &'a TrainSet,
     /// Of the rows.
     pub metric: &'a Metric,
-    /// The parameters.
     pub params: &'a TrainParams,
     /// Listener.
     pub progress: &'a dyn Progress,

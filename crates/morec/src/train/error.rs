@@ -33,7 +33,7 @@ pub enum TrainError {
     Clip {
         /// Name of the clip.
         clip: String,
-        /// Why.
+        /// What is wrong, as the end of a sentence.
         problem: String,
     },
     /// Options that make no sense, alone or with these clips.

@@ -30,7 +30,7 @@ pub struct TrainClip {
     pub roles: RoleMap,
     /// Frames that a conversion left at the start.
     pub rest: Span,
-    /// Kind of the stream.
+    /// Whether it is labelled, background or everyday motion.
     pub source: StreamKind,
     /// The person who moves, if known.
     pub person: Option<String>,

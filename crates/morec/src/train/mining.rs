@@ -12,7 +12,7 @@ use super::set::{StreamKind, TrainStream, overlap_share};
 
 /// A template's match at a tick of a stream.
 pub struct Offer<'a> {
-    /// The tick.
+    /// The tick at which the match ends.
     pub tick: usize,
     /// Place of the template among those of all parts.
     pub template: usize,

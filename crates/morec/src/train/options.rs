@@ -11,10 +11,10 @@ use super::params::TrainParams;
 pub enum Everyday {
     /// If clips named as background hold less than [`ENOUGH_BACKGROUND_SECS`].
     Auto,
-    /// Always.
+    /// However much background is named.
     #[default]
     Always,
-    /// Never.
+    /// Only named background and unlabelled parts count.
     Never,
 }
 

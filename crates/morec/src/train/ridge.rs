@@ -45,7 +45,7 @@ pub fn linear<const N: usize>(
 
 /// Kernel ridge regression `α = (K + diag(λ / w))⁻¹ y`, and for each sample the fit without its group.
 pub struct KernelFit {
-    /// `α`.
+    /// `α`, one for each sample.
     pub weights: Vec<f64>,
     /// For sample `i` of group `G`: the fit at `i` from all samples outside `G`, in closed form:
     /// `y_G − (H_GG)⁻¹ α_G` with `H` the inverse above (Rifkin and Lippert 2007, §4, for blocks).

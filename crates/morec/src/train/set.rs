@@ -94,7 +94,7 @@ pub struct TrainSample {
 pub struct TrainSet {
     /// Names of the classes; a [`ClassId`] is an index into this.
     pub classes: Vec<String>,
-    /// All streams.
+    /// Labelled clips and background.
     pub streams: Vec<TrainStream>,
     /// Everyday gestures, and real everyday motion, for the second look alone: as background of a verifier they lower the score that is
     /// asked for, because little of them comes near the classes.

@@ -34,7 +34,7 @@ use super::verifier;
 /// A model and how it came about.
 #[derive(Debug, Clone)]
 pub struct TrainedTemplates {
-    /// The model.
+    /// Ready to recognise.
     pub model: TemplateModel,
     /// The stretches that became negatives.
     pub negatives: Vec<NearMiss>,

@@ -27,7 +27,6 @@ pub(super) struct BvhHierarchy {
     pub lines: Vec<u64>,
     /// For each joint, its columns.
     pub columns: Vec<Range<usize>>,
-    /// The columns.
     pub channels: Vec<Channel>,
     /// First joint of each root, in order.
     pub roots: Vec<usize>,

@@ -7,7 +7,6 @@ use crate::formats::{ParseError, Place};
 
 /// The text of a motion table, in pieces of whole lines.
 pub(super) trait TableText {
-    /// Its length.
     fn bytes(&self) -> usize;
     /// Back to its start.
     fn rewind(&mut self) -> Result<(), ParseError>;

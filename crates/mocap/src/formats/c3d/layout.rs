@@ -18,7 +18,7 @@ pub(super) struct C3dLayout {
 }
 
 impl C3dLayout {
-    /// Bytes in a frame.
+    /// Of points and analog channels.
     pub(super) fn frame_bytes(&self) -> usize {
         let value = if self.floats { 4 } else { 2 };
         value * (4 * self.points + self.analog)

@@ -168,7 +168,7 @@ impl GltfChannel {
         }
     }
 
-    /// The value of key `key`.
+    /// Without the tangents of a cubic spline.
     fn value(&self, key: usize) -> &[f64] {
         let width = self.width();
         match self.between {

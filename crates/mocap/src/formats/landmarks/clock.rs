@@ -33,7 +33,7 @@ pub(super) fn time_of(frame: &Value) -> Option<f64> {
     fields.iter().find_map(time)
 }
 
-/// The number of a frame.
+/// What the frame says of its number, under any of the usual keys.
 pub(super) fn number_of(frame: &Value) -> Option<f64> {
     const KEYS: &str = "frame frame_id frameid frame_number framenumber frame_num frame_index frameindex frame_idx frameidx frame_no \
         index";

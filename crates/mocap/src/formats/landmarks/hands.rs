@@ -71,7 +71,7 @@ fn gather(value: &Value, depth: usize, points_in: PointsIn, found: &mut Vec<Side
     }
 }
 
-/// The points of a value that is one hand.
+/// The points of `value`, if there are as many as a hand has.
 fn hand_points(value: &Value, points_in: PointsIn) -> Option<NamedPoints> {
     let points = points_in(value)?;
     NUMBERED_HANDS.contains(&points.len()).then_some(points)

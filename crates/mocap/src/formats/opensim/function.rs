@@ -21,7 +21,6 @@ pub(super) enum Function {
 }
 
 impl Function {
-    /// The identity.
     pub(super) fn identity() -> Self {
         Self::Linear(vec![1.0, 0.0])
     }

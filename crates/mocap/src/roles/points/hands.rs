@@ -47,7 +47,7 @@ pub fn numbered_hand(count: usize, hand: Hand) -> Option<Vec<Option<Role>>> {
 pub enum NumberedPoints {
     /// Of a performer, or of the hand that the line is about.
     Of(Vec<OptionalPlace>),
-    /// Of each hand.
+    /// Of both hands in one line.
     Hands(BTreeMap<Hand, Vec<OptionalPlace>>),
 }
 

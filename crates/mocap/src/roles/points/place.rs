@@ -9,7 +9,7 @@ use crate::roles::Role;
 pub enum PointJoint {
     /// The middle of these; of one, the point itself.
     Middle(Vec<PointJoint>),
-    /// A point.
+    /// A point, by its index.
     Point(usize),
     /// A hip joint's centre, from the pelvis.
     HipCentre {

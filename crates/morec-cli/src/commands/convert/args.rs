@@ -55,7 +55,7 @@ pub struct Args {
     pub(super) read: ReadArgs,
 }
 
-/// Content of a CSV.
+/// What the rows of a CSV hold.
 #[derive(clap::ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CsvContent {
     /// Positions of the joints, metres

@@ -11,7 +11,7 @@ use morec::tables::{Content, write_csv, write_npz};
 use super::wanted::Wanted;
 use crate::output;
 
-/// A form of clips.
+/// Formats that `convert` writes.
 #[derive(clap::ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ClipForm {
     /// Skeleton and rotations; the clip's units and axes

@@ -79,7 +79,6 @@ pub struct Live {
     pub(super) retrain: bool,
     /// Seconds until a take begins.
     pub countdown: Option<f64>,
-    /// The take.
     pub take: Option<Recording>,
     /// Number of detections of each class.
     pub counts: BTreeMap<String, usize>,

@@ -18,7 +18,7 @@ use crate::jobs::load::extent;
 /// Length of the stream that is kept for looking back, seconds.
 pub const KEPT_SECS: f64 = 300.0;
 
-/// A performer.
+/// A performer of the source, with the last minutes of the stream.
 pub struct LivePerformer {
     pub actor: PerformerId,
     pub rig: Option<Arc<Rig>>,

@@ -32,7 +32,7 @@ pub enum TreeError {
     /// Something about a node.
     #[error("node {node}: {what}")]
     Node {
-        /// Its number.
+        /// Index of the branch.
         node: usize,
         /// The fault, as the end of a sentence.
         what: &'static str,

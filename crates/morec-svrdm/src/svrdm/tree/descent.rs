@@ -21,7 +21,7 @@ pub enum Descent {
 /// A class that every branch on the way to it accepted.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ClassCandidate {
-    /// The class.
+    /// The class of the leaf.
     pub class: ClassId,
     /// The least output on the way: at least what was asked for.
     pub output: f64,

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use morec_features::ClassId;
 
-/// Parts of a tree.
+/// A [`Tree`](super::Tree) before its consistency was checked: what index files hold.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TreeParts {
     /// Values in a feature vector, `n`.

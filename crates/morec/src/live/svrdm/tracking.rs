@@ -17,7 +17,6 @@ use crate::svrdm::{Cell, ChunkDetection, SegmentScoring, SegmentTracking, SvrdmM
 use super::belt::{RingReceiver, RingSender};
 use super::message::{End, MessageStamp, StageMessage, What};
 
-/// The last stage.
 pub(super) struct Tracking {
     performers: Vec<TrackedPerformer>,
     min_chunks: usize,

@@ -59,7 +59,7 @@ pub(super) struct SlidingWindow {
 }
 
 impl SlidingWindow {
-    /// Of at most `most` rows.
+    /// A window over the last `most` rows.
     pub fn new(layout: RowLayout, most: usize) -> Self {
         let dim = layout.dim();
         Self {

@@ -77,7 +77,6 @@ const HEAD_BONE: usize = 10;
 
 type V3 = [f32; 3];
 
-/// One tick of a body.
 #[derive(Debug, Clone, Copy)]
 struct BodyTick {
     /// In the heading frame, from shoulders or hips, in arm or leg lengths.

@@ -29,7 +29,7 @@ const SEGMENT: usize = SEGMENT_ROWS * PADDED;
 /// What a segment is, and how surely.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Judged {
-    /// The nearest class.
+    /// Class of the nearest sample.
     pub class: ClassId,
     /// `ln(s_T / d₁)`, `ln(c₃ / d₁)`, or their mean: see [`SecondLook`].
     pub score: f32,

@@ -36,7 +36,7 @@ pub const LONG: Growth = Growth {
 /// The end of a growth, if it is known yet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum GrownExtent {
-    /// This is the extent.
+    /// The motion has ended.
     To(LookExtent),
     /// The motion still goes on.
     GoesOn,

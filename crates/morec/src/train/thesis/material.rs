@@ -168,7 +168,7 @@ impl ThesisTrainingData {
     }
 }
 
-/// Frames of a sample at `rate_hz`.
+/// At most `count` frames.
 fn frames(sample: &Sample, rate_hz: f64, count: usize) -> Range<usize> {
     if sample.whole_clip {
         return 0..count;

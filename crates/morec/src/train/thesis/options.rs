@@ -13,7 +13,7 @@ use morec_svrdm::train_tree::{SigmaRule, SignRule, TreeParams};
 pub enum ThresholdRule {
     /// Those that the parameters name.
     Fixed,
-    /// Estimated.
+    /// By cross-validation over the training samples.
     Estimated {
         /// Parts into which each class's samples are dealt; each is left out in turn.
         folds: usize,

@@ -24,7 +24,6 @@ pub struct FolderSummary {
 }
 
 impl FolderSummary {
-    /// Adds a file.
     pub fn add(&mut self, file: &FileReport) {
         self.files += 1;
         let FileReport::Read(report) = file else {
