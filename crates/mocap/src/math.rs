@@ -9,7 +9,7 @@ pub type Quat = UnitQuaternion<f64>;
 
 /// Functions that the standard library takes from the system, whose last digits differ from one to the other: these are the same
 /// to the bit everywhere. What is not here (root, rounding, products) is exact in the standard library, too.
-#[doc(hidden)] // Of use to nobody but the crates that compute with clips.
+#[doc(hidden)] // Used by the crates that compute with clips only.
 pub mod portable {
     use nalgebra::{ComplexField, RealField};
 

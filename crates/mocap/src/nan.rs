@@ -5,10 +5,10 @@ use std::borrow::Cow;
 /// What stands for no number.
 const WORDS: [&str; 4] = ["-Infinity", "Infinity", "-NaN", "NaN"];
 
-/// What becomes `null` in place of a number that is none.
+/// What is written as `null` in place of a number that is not finite.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NoNumber {
-    /// The number alone.
+    /// The number itself.
     Alone,
     /// The innermost list that it is in: a place of which a coordinate is unknown is unknown.
     InList,

@@ -35,7 +35,7 @@ pub enum MorecFinding {
     JointsMissing = 1 << 9,
     /// Parts of the body come and go.
     JointsFlicker = 1 << 10,
-    /// The size of the body is none in any common unit.
+    /// The size of the body is not a person's in any common unit.
     UnknownUnit = 1 << 11,
     /// Positions jitter.
     Noisy = 1 << 12,

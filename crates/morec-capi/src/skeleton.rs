@@ -189,7 +189,7 @@ fn joints(
     Skeleton::new(joints).map_err(|error| CallError::invalid(error.to_string()))
 }
 
-/// Farther away than this is nobody; and lengths of such numbers can still be squared.
+/// No performer is farther away than this; lengths of such numbers can still be squared.
 const FARTHEST: f64 = 1e9;
 
 /// True for a finite position.

@@ -13,11 +13,11 @@ pub enum MorecStatus {
     Ok = 0,
     /// A pointer that must point to something is null.
     NullPointer = 1,
-    /// A handle that is none: never was one, of another kind, or destroyed.
+    /// An invalid handle: never given, of another kind, or destroyed.
     BadHandle = 2,
     /// Invalid value; no change.
     InvalidValue = 3,
-    /// There is not enough room for the answer; what it takes is said where the function says so.
+    /// There is not enough room for the answer; the function's documentation says where the room needed is returned.
     BufferTooSmall = 4,
     /// Another thread is using this recogniser just now; nothing was changed.
     Busy = 5,

@@ -15,7 +15,7 @@ use crate::status::CallError;
 
 /// Events that one frame can settle at most, with room to spare; no frame is taken with less.
 const ROOM: usize = 96;
-/// Events that can wait, if nobody says.
+/// Events that can wait by default.
 const USUAL_EVENTS: usize = 256;
 /// The fewest, and the most.
 const EVENTS: std::ops::RangeInclusive<usize> = 128..=1 << 20;

@@ -148,7 +148,7 @@ pub extern "C" fn morec_version() -> *const c_char {
     VERSION.as_ptr().cast()
 }
 
-/// The name of a `MorecRole` or a point of a hand or of a custom skeleton, as in `left_forearm`, `right_index_tip` and `point_1`; null for a number that is none. The text stays for ever.
+/// The name of a `MorecRole` or a point of a hand or of a custom skeleton, as in `left_forearm`, `right_index_tip` and `point_1`; null for a number without a name. The text stays for ever.
 #[unsafe(no_mangle)]
 pub extern "C" fn morec_role_name(role: i32) -> *const c_char {
     self::role(role).map_or(std::ptr::null(), |role| NAMES[role.index()].as_ptr())

@@ -1,4 +1,4 @@
-//! What the program tells people to type exists: examples in its help, options and commands in its messages.
+//! Tests that commands and options exist which help and messages advise.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};

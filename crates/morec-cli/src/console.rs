@@ -99,7 +99,7 @@ impl<W: Write> Write for PlainText<W> {
 /// Flushes standard output.
 ///
 /// # Errors
-/// The first failure to write to it, such as a full disk; a reader that has gone is none.
+/// The first failure to write to it, such as a full disk; a closed pipe does not count.
 pub fn finish() -> Result<()> {
     let flushed = std::io::stdout().flush();
     let failed = FAILED.lock().ok().and_then(|mut failed| failed.take());

@@ -11,7 +11,7 @@ use morec::report::Report;
 use crate::output;
 use crate::table::TextTable;
 
-/// Writes the report as a page, and says so on standard error.
+/// Writes the report as a page, and its path to standard error.
 pub fn write_report(path: &Path, report: &Report<'_>) -> anyhow::Result<()> {
     output::check_page(path)?;
     if let Some(folder) = path.parent() {

@@ -10,7 +10,7 @@ use serde_json::ser::{Formatter, PrettyFormatter, Serializer};
 pub const FORMAT_VERSION: u32 = 1;
 
 /// Writes a value as JSON, indented, with a line ending. The object, or each object of a list, begins with the
-/// `format_version`. A reader that has gone is an [`io::Error`] that says so.
+/// `format_version`. A closed pipe is an [`io::Error`].
 pub fn write_json(out: &mut impl Write, value: &impl Serialize) -> io::Result<()> {
     value.serialize(&mut Serializer::with_formatter(
         &mut *out,

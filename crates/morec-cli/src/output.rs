@@ -199,7 +199,7 @@ impl Output {
         beside.persist(&self.target)?;
         #[cfg(unix)]
         if let Ok(folder) = File::open(folder_of(&self.target)) {
-            // The name, too, is on the disk; a file system that cannot say so is no reason to fail.
+            // The name, too, is on the disk; a file system that cannot sync a folder is no reason to fail.
             let _ = folder.sync_all();
         }
         Ok(())

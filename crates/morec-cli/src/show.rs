@@ -1,7 +1,7 @@
 //! The demo's show: a stream played in the terminal, with what is said about it and when.
 //!
 //! [`frame::draw`] makes one picture as text and knows no terminal. [`play`] writes pictures to one at accelerated
-//! real time, or just the events where there is none.
+//! real time, or only the events if standard output is no terminal.
 
 mod frame;
 pub mod picture;
@@ -17,7 +17,7 @@ pub use shown::{ShownClip, event_line};
 /// Pictures a second.
 const PICTURES_HZ: f64 = 25.0;
 
-/// Writes the events, a line each: the show where nobody watches.
+/// Writes the events, a line each: for output that is no terminal.
 pub fn write_events(scene: &ShownClip, out: &mut impl Write) -> io::Result<()> {
     for said in scene.said {
         writeln!(out, "{}", event_line(said))?;

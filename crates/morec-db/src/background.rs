@@ -1,4 +1,4 @@
-//! Clips that are marked as background: motion that is none of the classes.
+//! Clips that are marked as background: motion of no class.
 
 use std::collections::BTreeSet;
 

@@ -45,7 +45,7 @@ pub struct ClipCuts {
     pub still: Vec<Still>,
 }
 
-/// A stretch in which nobody moves.
+/// A stretch in which the performer stands still.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[allow(missing_docs)] // The names say it.
 pub struct Still {
@@ -117,7 +117,7 @@ impl Cutter {
 
 impl MotionDb {
     /// Cuts `clips` in parallel and keeps what is found in place of earlier cuts, by whatever method. A clip that was cut by
-    /// hand is left as it is, and the report says so.
+    /// hand is not cut again; the report lists it.
     ///
     /// # Errors
     /// Figures that make no sense; the database cannot be read or written; the listener cancelled. A clip that cannot be
@@ -183,7 +183,7 @@ impl MotionDb {
             found = Some(stretches(clip, &rows, Vec::new()).1);
         }
         self.edit(&format!("cut {} by hand", clip.name), |conn| {
-            // Read where nobody else writes: what another program made of the stillness stays.
+            // Read within the transaction: changes of the stillness by another program stay.
             let before = segments::of_clip(conn, clip.id)?;
             let mut segments = match (before.is_empty(), found) {
                 (false, _) => before,

@@ -13,7 +13,7 @@
 //! | clips in | [`MotionDb::import`] |
 //! | classes and samples | [`labels`] |
 //! | what was changed, taking it back | [`MotionDb::history`], [`MotionDb::undo`] |
-//! | clips that are none of the classes | [`MotionDb::background`] |
+//! | clips of no class | [`MotionDb::background`] |
 //! | labels in other programs' forms | [`exchange`] |
 //! | cuts where behaviour changes | [`MotionDb::cut`] |
 //! | rows, search by example, near copies | [`rows`], [`search`] |

@@ -2,7 +2,7 @@
 //!
 //! More motions like the accepted samples are searched for as the trained recogniser does: under a metric that forgets how samples of one
 //! class differ (with one sample a class there is nothing to forget, and rows are compared as they are), against the
-//! other classes and against what was rejected. How near is near enough is learned from the answers themselves: every
+//! other classes and against what was rejected. The threshold is learned from the answers: every
 //! judged stretch is looked for without its own template, and what that says about right and wrong becomes the
 //! probability that a proposal is right, on one scale for all classes ([`confidence`]).
 //!

@@ -69,7 +69,7 @@ impl MotionDb {
         let end = after_secs + 0.5 / clip.rate_hz;
         let what = format!("replace the file of clip {name}");
         let (old, kept, removed, cuts) = self.edit(&what, |conn| {
-            // Again, where nobody else writes: another program may have removed the clip while the file was read.
+            // Again within the transaction: another program may have removed the clip while the file was read.
             let old = clips::find(conn, name)?;
             let filter = SampleFilter {
                 clip: Some(old.id),

@@ -78,7 +78,7 @@ fn write_signed(out: &mut Vec<u8>, value: i32) {
     }
 }
 
-/// Reads `rows` rows of `dim` levels, each times `step`; `None` of bytes that are none of it. O(levels).
+/// Reads `rows` rows of `dim` levels, each times `step`; `None` if the bytes are damaged. O(levels).
 pub fn read_blocks(mut bytes: &[u8], rows: usize, dim: usize, step: f32) -> Option<Vec<f32>> {
     // What claims to be endless takes no memory.
     let most = bytes.len() / LEAST_BYTES / dim.max(1) * BLOCK;

@@ -1,4 +1,4 @@
-//! The classes an index tells apart.
+//! The classes of an index.
 
 use std::fmt;
 

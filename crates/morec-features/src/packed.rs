@@ -40,8 +40,8 @@ impl Rows {
         bytes
     }
 
-    /// Reads rows of `dim` values that [`to_packed`](Self::to_packed) wrote, of this release or an earlier one; `None` for bytes that are none of
-    /// it. `params` must be those that rows of earlier releases were made with: they foretell directions from velocities.
+    /// Reads rows of `dim` values that [`to_packed`](Self::to_packed) of this release or an earlier one wrote; `None` if the bytes are damaged.
+    /// `params` must be those that rows of earlier releases were made with: their directions are predicted from velocities.
     pub fn from_packed(bytes: &[u8], dim: usize, params: &FeatureParams) -> Option<Rows> {
         let (len, codes) = bytes.split_first_chunk::<4>()?;
         let len = u32::from_le_bytes(*len);

@@ -52,7 +52,7 @@ pub struct FeatureParams {
     pub root_sigma_frames: f64,
     /// Half width of the Gaussian over root motion, in frames.
     pub root_cut_frames: usize,
-    /// Bone velocities saturate towards this speed, per second: fast is fast, whoever does it.
+    /// Bone velocities saturate towards this speed, per second: people perform one motion at different speeds.
     pub velocity_saturation: f64,
     /// Weight of velocities against directions.
     pub velocity_weight: f64,

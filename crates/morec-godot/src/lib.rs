@@ -34,7 +34,7 @@ pub enum ExpectedPerformer {
     Anyone,
 }
 
-/// Recognises the motions of an index in what a skeleton or XR trackers show, frame by frame, and says so by signals.
+/// Recognises the motions of an index in what a skeleton or XR trackers show, frame by frame, and emits signals.
 #[derive(GodotClass)]
 #[class(base = Node, init, rename = MorecRecognizer)]
 pub struct RecognizerNode {

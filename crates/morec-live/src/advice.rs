@@ -6,7 +6,7 @@ use morec::diagnosis::{Finding, Severity};
 use morec::index::MotionIndex;
 use morec::live::{MAX_PERFORMERS, Status};
 
-/// Nothing has come in so long: say so.
+/// After so long without data, that is reported.
 const SILENCE: Duration = Duration::from_secs(2);
 /// Between two looks.
 const EVERY: Duration = Duration::from_millis(200);

@@ -1,4 +1,4 @@
-//! A fake Axis: whoever connects over TCP is sent every frame.
+//! A fake Axis: sends every frame to each TCP connection.
 
 use std::io::Write;
 use std::net::{SocketAddr, TcpListener, TcpStream, UdpSocket};

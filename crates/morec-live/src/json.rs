@@ -81,7 +81,7 @@ impl JsonSource {
         Ok((Self::of_connections(lines, notices), at))
     }
 
-    /// Lines of whoever connects; what is wrong with connections is in `notices`.
+    /// Lines of all connections; faults of connections are in `notices`.
     pub(crate) fn of_connections(lines: Lines, notices: Notices) -> Self {
         Self {
             notices,

@@ -1,4 +1,4 @@
-//! Lines of text from standard input or from whoever connects, each on a thread of its own.
+//! Lines of text from standard input or from TCP connections, each on a thread of its own.
 
 use std::io::{BufRead, BufReader, ErrorKind, Read};
 use std::net::{IpAddr, SocketAddr, TcpListener, TcpStream};
@@ -13,7 +13,7 @@ use crate::{LiveError, Notices};
 
 /// A longer line is no pose.
 pub const LONGEST: u64 = 1 << 16;
-/// Lines that may wait, half a second of four senders; then whoever sends them does.
+/// Lines that may wait, half a second of four senders; then the sender waits.
 const WAITING: usize = 128;
 /// However long they are, they take little memory.
 const _: () = assert!(WAITING as u64 * LONGEST <= 8 << 20);
@@ -185,7 +185,7 @@ impl Read for Patient {
     }
 }
 
-/// Sends every line until the end of `reader`, or until nobody takes them.
+/// Sends every line until the end of `reader`, or until the receiver is dropped.
 fn forward(number: u64, mut reader: impl BufRead, sender: &SyncSender<Came>) {
     let (mut bytes, mut lines) = (Vec::new(), 0);
     loop {
@@ -214,7 +214,7 @@ fn forward(number: u64, mut reader: impl BufRead, sender: &SyncSender<Came>) {
             return;
         }
     }
-    // If nobody takes it, nobody needs to know.
+    // A dropped receiver is no fault.
     let _ = sender.send(Came::Closed(number));
 }
 

@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// This many different ones are shown.
 const MAX_SHOWN: usize = 8;
 
-/// Texts that a source has left for whoever shows them; copies share them.
+/// Texts of a source for the user; copies share them.
 #[derive(Debug, Clone, Default)]
 pub struct Notices {
     left: Arc<Mutex<Left>>,

@@ -4,7 +4,7 @@ use std::io;
 
 use crate::NamedEvent;
 
-/// Takes events, one by one, without holding up whoever emits them.
+/// Takes events, one by one, without blocking the caller.
 pub trait Sink: Send {
     /// Emits one event.
     ///

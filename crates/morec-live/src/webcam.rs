@@ -47,7 +47,7 @@ const MEDIAPIPE: &str = "/mediapipe/";
 const KNOWN_BY: [&str; 3] = ["pose.js", "hands.js", "vision_bundle.mjs"];
 /// What the page tracks, as its list says; the first, unless the folder has nothing but hands.
 const TRACKED: [&str; 3] = ["body", "hand", "hands"];
-/// A longer request is none of a browser's.
+/// Requests of browsers are shorter.
 const LARGEST_HEAD: usize = 1 << 13;
 
 /// Opens `webcam` (a free port of this machine) or `webcam://HOST:PORT`. Returns where the page is, too.
@@ -70,7 +70,7 @@ pub fn webcam(
     let tracked = tracked(address, &folder)?;
     let notices = Notices::default();
     let attend = move |number, stream, sender: &SyncSender<Came>| {
-        // Whoever goes away in the middle is none of our business.
+        // A connection that is closed in the middle is no fault.
         let _ = answer(number, stream, sender, &folder, tracked);
     };
     let (lines, at) = Lines::serve(at, &notices, Arc::new(attend))?;
@@ -208,7 +208,7 @@ fn take_lines(number: u64, stream: TcpStream, sender: &SyncSender<Came>) {
             return;
         }
     }
-    // If nobody takes it, nobody needs to know.
+    // A dropped receiver is no fault.
     let _ = sender.send(Came::Closed(number));
 }
 

@@ -1,4 +1,4 @@
-//! Events for whoever connects with a WebSocket: browsers, engines, scripts.
+//! Events over a WebSocket, for browsers, engines and scripts.
 //!
 //! Limits are there for those who mean no good, or hang: of listeners, of connections that say hello at once, and of how long
 //! for it, messages of a few kilobytes, slow listeners let go. A page in a browser is served only if it comes from this
@@ -40,7 +40,7 @@ struct Hall {
     greeting: usize,
     /// Threads that serve a listener.
     serving: usize,
-    /// The sink has gone: nobody is let in.
+    /// The sink was dropped: no connection is accepted.
     closed: bool,
 }
 
@@ -154,7 +154,7 @@ fn attend(number: u64, stream: TcpStream, hall: &SharedHall, origin: Option<&str
     if let Some(socket) = socket {
         serve(socket, &events);
     }
-    // The place of whoever leaves is free at once, not at the next event.
+    // The place of a closed connection is free at once, not at the next event.
     let mut hall = hall.lock();
     hall.listeners.retain(|(other, _)| *other != number);
     hall.serving -= 1;
@@ -171,7 +171,7 @@ fn serve(mut socket: Socket, events: &Receiver<String>) {
             }
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => {
-                // Goodbye; whoever does not hear it finds out.
+                // A close frame; if it is lost, the other end notices the closed socket.
                 let _ = socket.close(None);
                 let _ = socket.flush();
                 return;

@@ -132,7 +132,7 @@ impl CrossvalSettings {
     /// What is left out in turn, in words, with how many parts there are.
     ///
     /// # Errors
-    /// There is nobody but one person, without whom nothing is left to learn from.
+    /// Only one person is named, so nothing is left to train from.
     pub fn divided(&self, data: &CrossvalData<'_>) -> Result<String, OperationError> {
         let labelled: BTreeSet<&str> = data.samples.iter().map(|s| s.clip.as_str()).collect();
         let clips = data

@@ -52,7 +52,7 @@ fn options(limit: usize, mirror: bool, one_a_clip: bool) -> SearchOptions {
 /// A clip as it is kept: number, bones, packed rows.
 type NumberedRows = (i64, i64, PyBackedBytes);
 
-/// Unpacks rows, in parallel; what is none is left out.
+/// Unpacks rows, in parallel; damaged ones are left out.
 fn unpacked(clips: &[NumberedRows]) -> Vec<ClipRows> {
     let one = |(id, bones, rows): &NumberedRows| clip_rows(ClipId(*id), *bones, rows);
     clips.par_iter().filter_map(one).collect()

@@ -51,7 +51,7 @@ pub fn run<T: Send>(
 ) -> PyResult<T> {
     let told = JobState::default();
     let (sender, receiver) = sync_channel(1);
-    // Only one thread at a time waits on it; the lock says so to the compiler.
+    // Only one thread at a time waits on it; the lock makes it `Sync`.
     let receiver = Mutex::new(receiver);
     let (result, interrupted) = std::thread::scope(|scope| {
         scope.spawn(|| {

@@ -109,7 +109,7 @@ pub fn training_data(material: &Bound<'_, PyDict>, classes: &[String]) -> PyResu
     Ok(data)
 }
 
-/// A clip as training has it, of nobody that is known.
+/// A clip for training, without a person.
 pub fn train_clip(data: &ClipData, background: &BTreeSet<String>) -> TrainClip {
     TrainClip {
         name: data.clip.name.clone(),

@@ -12,7 +12,7 @@ use crate::errors::value_error;
 /// Options of reading, as the keyword arguments of `morec.read` say.
 ///
 /// # Errors
-/// A value that says nothing: another word for `positions`, an axis that is none, roles that are none.
+/// An invalid value: another word for `positions`, an unknown axis, unknown roles.
 pub fn reader(options: &Bound<'_, PyDict>) -> PyResult<FileReader> {
     let mut reader = FileReader::default();
     let (mut up, mut unit, mut roles) = (None::<String>, None, None);
@@ -54,7 +54,7 @@ fn channels(word: &str) -> PyResult<PositionChannels> {
 /// file or a dictionary of role to joint (`"LKNE+LKNM"` for the middle of two, `None` for nobody).
 ///
 /// # Errors
-/// An axis or a unit that is none, a role that is not known.
+/// An invalid axis or unit, an unknown role.
 pub fn import_options(
     up: Option<&str>,
     unit: Option<f64>,

@@ -103,7 +103,7 @@ fn measured(window: &mut Headless, scene: &'static str, frames: usize) -> FrameT
     }
 }
 
-/// Seconds for which this thread has had a processor, where the system says so; else on the wall.
+/// Seconds for which this thread has had a processor, if the system measures it; otherwise wall time.
 fn processor_secs() -> f64 {
     use std::sync::OnceLock;
     static BEGUN: OnceLock<Instant> = OnceLock::new();

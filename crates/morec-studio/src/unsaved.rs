@@ -66,7 +66,7 @@ pub fn leftovers(root: &Path) -> Vec<Leftover> {
         return Vec::new();
     };
     let folders = entries.filter_map(|entry| Some(entry.ok()?.path()));
-    // Without a lock it is none of ours.
+    // A folder without a lock was made by another program.
     let ours = folders.filter(|path| path.join(LOCK).is_file());
     let mut found: Vec<Leftover> = ours
         .filter_map(|path| leftover(locked(path).ok()?))

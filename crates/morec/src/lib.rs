@@ -12,7 +12,7 @@
 //! ```no_run
 //! # fn main() -> Result<(), morec::Error> {
 //! let takes = morec::files::open_all("clips/")?;                // or morec::Take::from_bvh(&bytes)?
-//! let idle = morec::files::open_all("background/")?;            // motion that is none of the classes
+//! let idle = morec::files::open_all("background/")?;            // motion of no class
 //! let labels = morec::Labels::from_path("labels.tsv")?;
 //! let index = morec::Trainer::new().labels(&labels).background(&idle).train(&takes)?;
 //! index.save("signs.index")?;

@@ -191,7 +191,7 @@ fn may_be_needed(path: &str) -> bool {
                 .any(|known| ending.eq_ignore_ascii_case(known)))
 }
 
-/// True if a file of an archive is read for itself: by its name, or if its content says so.
+/// True if a file of an archive is a clip, by its name or its content.
 fn is_motion(member: &Member) -> bool {
     match format_of_name(&member.path) {
         Some(format) if format.is_skeleton() => false,

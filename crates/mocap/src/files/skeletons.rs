@@ -29,7 +29,7 @@ impl SkeletonKind {
         }
     }
 
-    /// The error of a motion near which there is none.
+    /// The error of a motion without a skeleton near it.
     pub(super) fn missing(self) -> FileErrorKind {
         match self {
             SkeletonKind::Asf => FileErrorKind::NoSkeleton,

@@ -25,7 +25,7 @@ pub(super) const FORMAT: FormatDescriptor = FormatDescriptor {
 const ASSUMED_HZ: f64 = 60.0;
 
 /// Reads the markers of a CSM file, a clip called `name`, or one for each subject if several have a body. `rate_hz` replaces
-/// the rate in the file. The unit is what the body's height tells. O(bytes).
+/// the rate in the file. The unit is inferred from the body's height. O(bytes).
 ///
 /// # Errors
 /// The place and the cause: no `$Order`, no frames below `$Points`, more of markers or frames than `limits` allow.

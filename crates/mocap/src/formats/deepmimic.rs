@@ -100,7 +100,7 @@ pub(super) fn looks_so(head: &[u8]) -> bool {
         && (words.iter().any(|w| contains(w)) || alone())
 }
 
-/// Reads a motion of the humanoid: one clip called `name`. Frames with numbers that are none are interpolated. O(bytes).
+/// Reads a motion of the humanoid: one clip called `name`. Frames with numbers that are not finite are interpolated. O(bytes).
 ///
 /// # Errors
 /// The place and the cause: no JSON, no list of frames, frames of another body, more than `limits` allow.

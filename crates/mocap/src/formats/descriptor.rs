@@ -19,7 +19,7 @@ pub(super) struct FormatDescriptor {
     pub(super) endings: &'static [&'static str],
     /// True of content that shows it.
     pub(super) looks_so: fn(&Head) -> bool,
-    /// The axis that is up, where the specification says so and that lengths are metres.
+    /// The up axis, if the specification states it and that lengths are metres.
     pub(super) up: Option<Axis>,
     /// Reads what is in a file.
     pub(super) read: fn(&FormatInput<'_>) -> Result<Loaded, ParseError>,

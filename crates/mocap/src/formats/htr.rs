@@ -36,7 +36,7 @@ const FRAMES_A_ROW: usize = 16;
 /// are interpolated. O(bytes).
 ///
 /// # Errors
-/// The place and the cause: no segments, a parent that is none, a row that is none, no frames, more than `limits` allow.
+/// The place and the cause: no segments, a parent that does not exist, a row that cannot be read, no frames, more than `limits` allow.
 pub fn read(bytes: &[u8], name: &str, limits: &Limits) -> Result<Loaded, ParseError> {
     let rows = lines(bytes, limits)?;
     let mut htr = HtrFile::default();

@@ -51,7 +51,7 @@ const DEEPEST: usize = 6;
 #[cfg(feature = "files")]
 const MOST_BODIES: usize = 6;
 
-/// True if a document holds bodies of one moment, or says that nobody was there.
+/// True if a document holds bodies of one moment, or an empty list of bodies.
 #[cfg(feature = "files")]
 pub(crate) fn is_one_frame(bytes: &[u8]) -> bool {
     let Ok(mut document) = serde_json::from_slice::<Value>(bytes) else {

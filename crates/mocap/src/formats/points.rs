@@ -396,7 +396,7 @@ pub(super) fn check_size(
     bytes: usize,
     limits: &Limits,
 ) -> Result<(), ParseError> {
-    /// Twice the position while times are made regular, and a rotation that is none.
+    /// Twice the position while times are made regular, and a rotation of identity.
     const BYTES_A_POSITION: usize = 2 * size_of::<Vec3>() + size_of::<Quat>();
     let most = bytes.saturating_mul(4).max(1 << 20);
     let positions = points.saturating_mul(frames);

@@ -31,7 +31,7 @@ const ASSUMED_HZ: f64 = 30.0;
 /// Reads an SMD file: one clip called `name`, 30 frames a second. A bone that a frame leaves out stays as it was. O(bytes).
 ///
 /// # Errors
-/// The place and the cause: no nodes, a node whose parent is none, no times, a line that is no bone's, more than `limits` allow.
+/// The place and the cause: no nodes, a node whose parent does not exist, no times, a line that is no bone's, more than `limits` allow.
 pub fn read(bytes: &[u8], name: &str, limits: &Limits) -> Result<Loaded, ParseError> {
     let rows = lines(bytes, limits)?;
     let rows: Vec<(u64, &str)> = rows

@@ -218,7 +218,7 @@ impl Schedule {
         }
     }
 
-    /// Frames that the file does not have, nor frames near enough to know them.
+    /// Frames that the file does not have and that cannot be interpolated.
     pub(super) fn gaps(&self) -> Vec<Span> {
         let places = self.places.iter().flatten().enumerate();
         let mut gaps: Vec<Span> = Vec::new();

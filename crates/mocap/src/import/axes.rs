@@ -6,7 +6,7 @@ use crate::clip::Clip;
 use crate::math::{Axis, Quat, Vec3, portable, quantile, same_hemisphere};
 use crate::signed_axis::SignedAxis;
 
-/// The axis that the format states, unless the body clearly stands along another; else the one the body tells.
+/// The axis that the format states, unless the body clearly stands along another; else the axis inferred from the body.
 pub(super) fn choose(
     clip: &Clip,
     body: &BodyMeasures,

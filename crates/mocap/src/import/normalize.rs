@@ -1,4 +1,4 @@
-//! From a clip as it was read to one that is ready.
+//! From a clip in its file's units and axes to a take: metres, Y up, roles.
 
 use crate::clip::Clip;
 use crate::formats::bvh::{self, BvhOptions};

@@ -19,7 +19,7 @@ const UNITS: [(&str, f64); 6] = [
     ("mm", 0.001),
 ];
 
-/// The unit that the file or its format states, if a body can be so large; else the one the body tells.
+/// The unit that the file or its format states, if the body's size is plausible in it; else the unit inferred from the body.
 pub(super) fn choose(
     clip: &Clip,
     body: &BodyMeasures,

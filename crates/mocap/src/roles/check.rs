@@ -279,7 +279,7 @@ impl PosedBody<'_> {
     }
 
     /// A joint that begins one of a pair of limbs as long as legs, which are called so or stand where the feet do, and which no
-    /// role is played by. Helper joints that lie on the limbs, hair and skirts are none.
+    /// role is played by. Helper joints that lie on the limbs, hair and skirts do not count.
     fn further_limb(&self, tree: &JointTree) -> Option<&str> {
         const LONG: f64 = 0.6;
         const NEAR: f64 = 0.2;

@@ -1,7 +1,7 @@
 //! Mapping files: who plays what, said by a person.
 //!
 //! Text, one role a line: the role's name, a tab, the joint's name as the clip spells it, blanks and all (the
-//! first of that name). `-` gives the role to nobody. Roles that are not named keep what was found. Empty lines
+//! first of that name). `-` gives the role to no joint. Roles that are not named keep what was found. Empty lines
 //! and lines that begin with `#` are skipped.
 //!
 //! Names between `+` stand for the middle of these joints or markers: `left_knee<TAB>LKNE+LKNM`. Names that differ in

@@ -185,7 +185,7 @@ impl RoleMap {
         self.joints[role.index()]
     }
 
-    /// Gives `role` to `joint`, or to nobody.
+    /// Gives `role` to `joint`, or takes it from all.
     pub fn set(&mut self, role: Role, joint: Option<usize>) {
         self.joints[role.index()] = joint;
     }

@@ -17,7 +17,7 @@ const CERTAIN: f64 = 0.5;
 
 /// Evidence of left and right from the body's shape and poses.
 pub(super) struct SideCues {
-    /// Towards the left, as far as each pose tells: up × forward.
+    /// Towards the left, from each pose: up × forward.
     left: Vec<Vec3>,
     /// The mean cosine between the way from the right hip to the left, by names, and the left by toes and by knees.
     toes: Option<f64>,

@@ -78,7 +78,7 @@ const GLUED: [&str; 29] = [
     "elbow", "wrist", "hand", "finger", "thumb", "upleg", "leg", "bicep", "shank",
 ];
 
-/// Words that say so only as whole words.
+/// More words of the same kind, as whole words only.
 const OTHER: [&str; 52] = [
     "end",
     "nub",

@@ -1,4 +1,4 @@
-//! Curve simplification (thesis, Alg. 1): one curve if it is near enough, else two that meet where it is furthest.
+//! Curve simplification (thesis, Alg. 1): one curve if it is within the thresholds, else two that meet at the largest error.
 
 use super::bezier::{ChannelKind, ChannelValue, CurveSegment};
 use super::fit::{FitSpan, Worst};
@@ -120,7 +120,7 @@ impl<'a> ChannelFit<'a> {
         Ok(())
     }
 
-    /// One key for all frames, if it is near enough to each.
+    /// One key for all frames, if it is within the thresholds of each.
     fn fit_constant(&mut self) -> bool {
         let middle = self.samples.iter().sum::<ChannelValue>() / self.samples.len() as f64;
         let Some(middle) = self.lattice.kind.finish(middle) else {
@@ -215,7 +215,7 @@ impl<'a> ChannelFit<'a> {
         Ok(())
     }
 
-    /// The curve of the lowest degree that is near enough, if a cubic is; else where that is furthest.
+    /// The curve of the lowest degree within the thresholds; if no cubic is, the place of its largest error.
     fn one_curve(
         &mut self,
         from: usize,

@@ -115,7 +115,7 @@ pub extern "C" fn mrStop() -> bool {
 /// Gives the solution so far: the last motions that were recognised since `mrStart`, at most `*nSegments`, in the order
 /// of time. `*nSegments` becomes their number.
 ///
-/// A motion stays in the solution: `number` tells which ones are new. Of more than 16384 the last are kept. If
+/// A motion stays in the solution: `number` shows which are new. Of more than 16384 the last are kept. If
 /// `pSegments` is null, `*nSegments` becomes the number of all that are kept.
 ///
 /// # Safety

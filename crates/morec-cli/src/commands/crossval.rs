@@ -116,7 +116,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     }
     let measures = settings.crossval(&of, &args.material.settings, &StageBar::new())?;
     let (tested, evaluation) = (&measures.tested, &measures.evaluation);
-    // Before anything is printed: whoever stops reading still gets the report.
+    // Before anything is printed: a closed pipe does not lose the report.
     if let Some(path) = &args.report {
         let timelines = timelines(&tested.streams, &tested.truths, &tested.founds)?;
         let about = [

@@ -114,7 +114,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     }
     let (evaluation, timelines) = (&measures.evaluation, &measures.timelines);
     let misses = measures.misses.as_deref().unwrap_or_default();
-    // Before anything is printed: whoever stops reading still gets the report.
+    // Before anything is printed: a closed pipe does not lose the report.
     if let Some(path) = &args.report {
         let named = |path: &Path| path.display().to_string();
         let about = [

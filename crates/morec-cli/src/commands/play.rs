@@ -148,7 +148,7 @@ fn in_terminal(
     let watched = std::io::stdout().is_terminal();
     for (take, (truth, said)) in takes.iter().zip(played) {
         if !watched {
-            // Where nobody watches, what would be seen is said in lines.
+            // Without a terminal, events are printed as lines.
             println!("{}: {:.2} s", take.name(), take.clip.duration_secs());
         }
         let scene = ShownClip {

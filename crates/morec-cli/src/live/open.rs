@@ -41,7 +41,7 @@ pub struct TrackerArgs {
 }
 
 impl TrackerArgs {
-    /// Opens the source at `address` and says so. `index` knows the roles of joints of its own clips.
+    /// Opens the source at `address` and prints what it listens to. `index` has the roles of joints of its training clips.
     pub fn open(&self, address: &Address, index: Option<&MotionIndex>) -> Result<OpenSource> {
         if address.kind == "clip" {
             output::mark_read(Path::new(&address.place));

@@ -90,7 +90,7 @@ impl CountedSink {
         Ok((self.failures == 1).then(|| format!("{}: {error}", self.address)))
     }
 
-    /// True if a record of the events lacks some, `dropped` of them before they came here: whoever reads it later cannot know.
+    /// True if a record of the events lacks some, `dropped` of them before they came here: the record does not show it.
     pub fn is_incomplete(&self, dropped: u64) -> bool {
         self.failures + dropped > 0 && self.address.kind == "json"
     }

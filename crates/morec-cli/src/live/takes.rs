@@ -11,7 +11,7 @@ use morec::live::{Frame, MAX_PERFORMERS, PerformerId, Recording, Rig, SourceEven
 
 use morec_live::OpenSource;
 
-/// A take that is shorter than this is none, seconds.
+/// Shorter takes are discarded, seconds.
 pub const SHORTEST_SECS: f64 = 0.3;
 
 /// Options of takes.

@@ -25,7 +25,7 @@ pub struct Annotation {
 }
 
 impl Annotation {
-    /// A stretch of a clip as people set it, of nobody who is named.
+    /// An accepted stretch of a clip without a person.
     pub(super) fn accepted(clip: &str, class: &str, extent: (f64, f64)) -> Self {
         Self {
             clip: clip.to_owned(),
@@ -112,7 +112,7 @@ impl LabelFormat {
         }
     }
 
-    /// True if a file of this form tells of one clip only.
+    /// True if a file of this form holds labels of one clip only.
     pub fn is_of_one_clip(self) -> bool {
         matches!(self, LabelFormat::Eaf | LabelFormat::Audacity)
     }

@@ -211,7 +211,7 @@ pub(super) fn separator(text: &str) -> char {
         .unwrap_or(',')
 }
 
-/// Records with the line each begins at; blank lines are none.
+/// Records with the line each begins at; blank lines are skipped.
 pub(super) fn records(text: &str, separator: char) -> Result<Vec<(u64, Vec<String>)>, ParseError> {
     let (mut records, mut record, mut cell) = (Vec::new(), Vec::new(), String::new());
     let (mut line, mut begun, mut quoted) = (1, 1, false);

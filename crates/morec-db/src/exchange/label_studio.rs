@@ -171,7 +171,7 @@ fn stretches_of(value: &Value, rate_hz: Option<f64>) -> Result<Vec<(f64, f64)>, 
     Ok(stretches)
 }
 
-/// State of a prediction: rejected if its model version says so, else proposed.
+/// State of a prediction: rejected if its model version is the one that exports write for rejections, else proposed.
 fn state_of(prediction: &Value) -> SampleState {
     match prediction["model_version"].as_str() {
         Some(REJECTED) => SampleState::Rejected,

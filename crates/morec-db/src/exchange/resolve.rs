@@ -13,7 +13,7 @@ use crate::{ClipId, ClipInfo};
 /// Labels run over the end of their clip by so much without a note, seconds: they were drawn by hand.
 const OVER_SECS: f64 = 0.1;
 
-/// Annotations as samples, and those that are none.
+/// Annotations as samples, and annotations that cannot become samples.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ResolvedLabels {
     /// In the order of the annotations.

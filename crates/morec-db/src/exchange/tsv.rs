@@ -90,7 +90,7 @@ pub fn write(annotations: &[Annotation], lengths: &ClipLengths) -> Result<String
         }
         return Ok(out);
     }
-    // Whole clips among stretches: they say so, and when they begin and end for whoever does not know the column.
+    // Whole clips among stretches have a 1 in a column, and their start and stop for programs that do not know it.
     let mixed = annotations.iter().any(|a| a.extent.is_none());
     let column = if mixed { "\twhole_clip" } else { "" };
     out.push_str(&format!(

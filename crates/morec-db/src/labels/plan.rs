@@ -40,7 +40,7 @@ pub enum LabelChange {
     Gone,
 }
 
-/// A change of a sample, as it is afterwards; one that goes, as it was.
+/// A change of a sample, as it is afterwards; a removed sample as it was.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct ChangedLabel {
     /// Kind of change.

@@ -29,7 +29,7 @@ fn sample(row: &Row<'_>) -> rusqlite::Result<DbSample> {
 const SELECT: &str = "SELECT s.id, s.clip, c.name AS clip_name, c.subject, n.name AS class, s.start_secs, s.stop_secs, s.whole_clip, \
      s.state, s.score, s.set_by, s.set_secs, c.rate_hz FROM samples s JOIN clips c ON c.id = s.clip JOIN classes n ON n.id = s.class";
 
-/// The sample of a number, or that there is none.
+/// The sample of a number; an error if it does not exist.
 pub(super) fn find(conn: &Connection, id: SampleId) -> Result<DbSample, DbError> {
     let sql = format!("{SELECT} WHERE s.id = ?1");
     let found = conn.prepare_cached(&sql)?.query_row([id.0], sample);

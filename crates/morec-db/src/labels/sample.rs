@@ -141,7 +141,7 @@ pub const GROUPED_BY: &str = "group";
 pub enum SampleState {
     /// It shows its class.
     Accepted,
-    /// It may show its class; nobody has looked yet.
+    /// Proposed by a program and not judged yet.
     Proposed,
     /// It does not show its class.
     Rejected,

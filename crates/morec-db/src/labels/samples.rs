@@ -171,7 +171,7 @@ impl MotionDb {
         by: &str,
     ) -> Result<(), DbError> {
         self.edit(&format!("move sample {}", id.0), |conn| {
-            // Read where nobody else writes: what another program made of the sample stays.
+            // Read within the transaction: changes of the sample by another program stay.
             let old = find(conn, id)?;
             let sql = "SELECT o.id FROM samples s JOIN samples o ON o.clip = s.clip AND o.class = s.class \
                  WHERE s.id = ?1 AND o.id <> s.id AND o.start_secs = ?2 AND o.stop_secs = ?3";

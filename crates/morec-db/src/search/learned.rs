@@ -1,4 +1,4 @@
-//! A metric learned from labelled samples: what tells their classes apart counts, what varies within them does not.
+//! A metric learned from labelled samples: differences between classes count, variation within them does not.
 //!
 //! Summaries and lengths of accepted samples, their principal components, and linear discriminants of these (Fisher
 //! 1936; Rao 1948) with the covariance within classes shrunk towards a multiple of the identity (Friedman, *Regularized

@@ -1,4 +1,4 @@
-//! Bounds are bounds, and a search that reads few clips gives what one that reads all gives.
+//! Bounds hold, and a search that reads few clips has the hits of a search that reads all.
 
 use morec::features::{BoneSet, FeatureParams, RowLayout, Rows};
 use proptest::prelude::*;

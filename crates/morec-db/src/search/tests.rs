@@ -196,7 +196,7 @@ fn a_learned_metric_tells_classes_of_others_apart() {
     assert!(right.count() >= 5, "{hits:?}");
 }
 
-/// A clip as the example of clips: one that goes on with something else is less like it than one that does not.
+/// A clip as the example: a clip that continues with other motion is less similar than one that does not.
 #[test]
 fn whole_clips_are_compared_with_whole_clips() {
     let (_folder, (_db, rows)) = indexed(2);

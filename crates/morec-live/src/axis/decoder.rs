@@ -54,7 +54,7 @@ pub enum AxisError {
         /// The number that the header declares.
         found: usize,
     },
-    /// A number that is none.
+    /// A word that is not a number.
     #[error("byte {at}: expected a position or an angle, found {found}")]
     Value {
         /// Place of the number.

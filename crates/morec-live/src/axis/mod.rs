@@ -21,7 +21,7 @@
 //! So there are 180 without positions, 354 with; 6 more with a reference. Axes are right-handed, Y up; turned by nothing
 //! a person stands in a T-pose and faces +Z, the left side at +X.
 //!
-//! [`AxisDecoder`] makes frames of bytes, [`AxisReceiver`] poses of frames, [`AxisSender`] bytes of poses, whoever has the
+//! [`AxisDecoder`] makes frames of bytes, [`AxisReceiver`] poses of frames, [`AxisSender`] bytes of poses, without a
 //! connection. [`AxisSource`] is a receiver with one.
 
 mod bones;

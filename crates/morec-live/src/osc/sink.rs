@@ -41,7 +41,7 @@ impl OscSink {
         self.packet.clear();
         write_message(&mut self.packet, address, args);
         match self.socket.send(&self.packet) {
-            // Nobody listens there yet: the system says so of an earlier packet. They may come.
+            // The system reports that an earlier packet had no receiver, which may still start.
             Err(error) if error.kind() == std::io::ErrorKind::ConnectionRefused => {
                 self.socket.send(&self.packet).map(drop).or(Ok(()))
             }

@@ -266,7 +266,7 @@ impl<P: Peer> Taking<'_, P> {
         since_secs.is_some_and(|since_secs| self.now_secs - since_secs < LEARN_SECS)
     }
 
-    /// Learns which bones there are, and says so when it has changed.
+    /// Learns which bones there are, and announces the skeleton when they change.
     fn learn(&mut self) {
         let alive = self.sender.alive(self.now_secs);
         let known = self.sender.rig.as_ref().map_or(0, |(mask, _)| *mask);

@@ -18,7 +18,7 @@ pub enum VmcMessage {
     Root(Vec3, Quat),
     /// `/VMC/Ext/Bone/Pos`: a bone in its parent's frame.
     Bone(usize, Vec3, Quat),
-    /// Something else: cameras, faces, buttons, bones that nobody knows.
+    /// Something else: cameras, faces, buttons, unknown bones.
     Other,
 }
 

@@ -1,7 +1,7 @@
 //! VMC, the protocol in which trackers and avatars tell each other poses: OSC messages over UDP, bone by bone.
 //!
 //! After the specification V3.1 (sh-akira/VirtualMotionCaptureProtocol). [`VmcReceiver`] makes frames of packets,
-//! [`VmcSender`] packets of frames: both take and give bytes, whoever has the socket. [`VmcSource`] is a receiver with a socket.
+//! [`VmcSender`] packets of frames: both work on bytes, without sockets. [`VmcSource`] is a receiver with a socket.
 
 mod assembly;
 mod clock;

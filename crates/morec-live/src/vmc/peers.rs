@@ -1,4 +1,4 @@
-//! Identity of senders, as far as an address tells.
+//! Identity of senders by their addresses.
 
 use core::net::SocketAddr;
 

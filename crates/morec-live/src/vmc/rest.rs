@@ -1,4 +1,4 @@
-//! The pose that avatars stand in when nobody moves them.
+//! The pose of avatars without a tracker.
 
 use morec::features::KeyPose;
 use morec::math::Vec3;

@@ -27,7 +27,7 @@ fn sink() -> (WebSocketSink, SocketAddr) {
     WebSocketSink::listen("127.0.0.1:0".parse().unwrap(), None).unwrap()
 }
 
-/// Waits until something is so; a test that waits for ever is stopped by whoever runs it.
+/// Waits until something is true, without a limit.
 fn until(mut is: impl FnMut() -> bool) {
     while !is() {
         thread::sleep(Duration::from_millis(5));

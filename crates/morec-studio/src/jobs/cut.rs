@@ -39,7 +39,7 @@ pub struct Curves {
     /// The misfit of the thesis's method, forward and backward.
     pub forward: Vec<MisfitSample>,
     pub backward: Vec<MisfitSample>,
-    /// Stretches in which nobody moves; whether each is a T-pose.
+    /// Still stretches; whether each is a T-pose.
     pub still: Vec<(f64, f64, bool)>,
     /// Repetitions between kernel cuts: where each begins and ends.
     pub cycles: Vec<Vec<f64>>,

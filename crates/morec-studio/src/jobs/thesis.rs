@@ -51,7 +51,7 @@ pub enum TreeNodeView {
     Branch(Boundary),
 }
 
-/// A branch: its sides, and the plane in which it tells them apart.
+/// A branch: its sides, and the plane in which it separates them.
 #[derive(Debug)]
 pub struct Boundary {
     pub children: [usize; 2],

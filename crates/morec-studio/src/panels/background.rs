@@ -1,4 +1,4 @@
-//! Clips that are marked as background, motion that is none of the classes: the mark of chosen clips, the list for training.
+//! Clips that are marked as background: the mark of chosen clips, the list for training.
 
 use egui::{
     Align, Checkbox, Layout, Response, RichText, ScrollArea, TextWrapMode, Ui, Vec2, WidgetInfo,

@@ -1,4 +1,4 @@
-//! Companions of the performer: where they stand, and the buttons that say so.
+//! Companions of the performer, and the buttons that place them.
 
 use egui::Ui;
 use morec::kinematics::WorldPose;

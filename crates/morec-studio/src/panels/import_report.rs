@@ -77,7 +77,7 @@ fn beside(ui: &mut Ui, report: &ImportSummary, out: Out) {
     });
 }
 
-/// What was imported is motion that is none of the classes.
+/// The imported clips are background.
 fn as_background(ui: &mut Ui, state: &State, report: &ImportSummary, out: Out) {
     let Some(store) = &state.store else { return };
     let clips = store.snapshot.clips.iter();

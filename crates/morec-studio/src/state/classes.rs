@@ -205,7 +205,7 @@ impl Classes {
 /// Beginning of the names of classes that a key has made.
 const FREE_NAME: &str = "gesture ";
 
-/// True of names that nobody has given.
+/// True of names that keys gave.
 pub fn is_free_name(name: &str) -> bool {
     let number = name.strip_prefix(FREE_NAME);
     number.is_some_and(|n| n.parse::<u32>().is_ok())

@@ -273,7 +273,7 @@ pub enum ClassCommand {
         from: String,
         into: String,
     },
-    /// What a class shows is none of the classes.
+    /// Makes a class background.
     IsBackground(String),
     Remove(String),
     /// The key of a class goes down, or up.
@@ -315,7 +315,7 @@ pub enum ClassCommand {
     Adding(String),
     /// The first letters of the class that shall have the key Q; `None` ends choosing.
     Choosing(Option<String>),
-    /// A class has the place of a key, from 0, and whoever had it has its own.
+    /// A class gets the place of a key, from 0; the class that had it gets the other place.
     GiveKey {
         class: String,
         place: usize,

@@ -1,4 +1,4 @@
-//! Cuts of the clip that is shown: dragged into place, added, removed. What a person cut is kept as such.
+//! Cuts of the clip that is shown: dragged into place, added, removed. Cuts by hand are kept apart from automatic ones.
 
 /// Commands for cuts; moments are seconds of the clip.
 #[derive(Debug, Clone, PartialEq)]

@@ -64,7 +64,7 @@ impl From<&Camera> for CameraLayout {
 }
 
 impl CameraLayout {
-    /// The camera; `None` if a number is none that a camera can have.
+    /// The camera; `None` if a number is not valid for a camera.
     fn camera(&self, follow: bool) -> Option<Camera> {
         let all = [self.yaw, self.pitch, self.distance].into_iter();
         let finite = all.chain(self.target).all(f64::is_finite);

@@ -62,7 +62,7 @@ pub enum ShelfCommand {
         set: usize,
         ends: (f64, f64),
     },
-    /// An instance is none of its set.
+    /// An instance was removed from its set.
     ThrowOut {
         set: usize,
         of: Stretch,

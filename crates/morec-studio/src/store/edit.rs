@@ -63,7 +63,7 @@ pub enum Edit {
         clips: Vec<ClipId>,
         update: ClipUpdate,
     },
-    /// Clips are motion that is none of the classes, or no longer.
+    /// Marks clips as background, or no longer.
     Background {
         clips: Vec<ClipId>,
         on: bool,

@@ -205,7 +205,7 @@ fn the_most_doubtful_proposal_is_shown_first_and_the_next_after_each_answer() {
         state: Judged::Proposed,
         score: Some(score),
     };
-    // Neither the first in time nor the likeliest is the one that tells most.
+    // The most informative proposal is neither the first in time nor the likeliest.
     let proposals = [(1.0, 0.97), (3.0, 0.12), (5.0, 0.55), (7.0, 0.75)].map(proposal);
     db.add_samples(&proposals, "test").unwrap();
     drop(db);

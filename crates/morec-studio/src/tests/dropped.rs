@@ -72,7 +72,7 @@ fn a_drop_onto_an_example_that_was_changed_goes_into_it() {
     assert_eq!(person.clips().len(), before + 1);
 }
 
-/// Two clips and two files that are none.
+/// Two clips and two files that are no clips.
 fn with_refused(folder: &Path) -> Vec<PathBuf> {
     let mut files: Vec<PathBuf> = clips_of(folder).into_iter().take(2).collect();
     for name in ["broken.bvh", "empty.bvh"] {

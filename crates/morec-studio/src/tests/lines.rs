@@ -45,7 +45,7 @@ fn commands(line: &str) -> Vec<Vec<String>> {
     commands.filter(|words| !words.is_empty()).collect()
 }
 
-/// Panics if a line that is shown is none of those that the command's tests parse.
+/// Panics if a shown line is missing from the lines that the command's tests parse.
 pub fn check(line: &str) {
     static KNOWN: OnceLock<BTreeSet<Vec<String>>> = OnceLock::new();
     let known = KNOWN.get_or_init(|| {

@@ -100,7 +100,7 @@ pub enum GrowError {
 /// Grows the tree over the classes of `samples` (at least two classes): they are parted in two (Alg. 6), machines are
 /// trained for both sides (Alg. 8), and each side of more than one class goes on likewise (Alg. 7).
 ///
-/// `background` vectors are motion that is none of the classes; only cross-validated widths look at them, at each
+/// `background` vectors are motion of no class; only cross-validated widths look at them, at each
 /// branch at those that the branches above let pass. The outcome depends on the arguments alone, seed included.
 ///
 /// # Errors

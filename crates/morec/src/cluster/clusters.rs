@@ -38,7 +38,7 @@ pub(super) fn numbered(numbers: impl Iterator<Item = usize>) -> Clusters {
     }
 }
 
-/// Clusters of `items` items: whoever is linked, over however many others, is together. O(items² ) links asked for.
+/// Clusters of `items` items: the connected components of the links. O(items² ) links asked for.
 pub fn connected(items: usize, linked: impl Fn(usize, usize) -> bool) -> Clusters {
     const NONE: usize = usize::MAX;
     let mut of = vec![NONE; items];

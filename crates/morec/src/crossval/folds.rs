@@ -15,7 +15,7 @@ pub enum FoldBy {
     },
     /// One clip after the other.
     Clip,
-    /// One person after the other; a clip of nobody known counts as a person.
+    /// One person after the other; a clip without a person counts as one.
     Person,
     /// Nothing is left out: each person teaches alone and is tested in other clips, see
     /// [`CrossvalData::tests`](super::CrossvalData::tests).
@@ -56,7 +56,7 @@ fn own(samples: &[Sample], people: &BTreeMap<String, String>) -> Vec<Fold> {
     let fold = |person: String| {
         let of_person = |clip: &str| person_of(clip) == person;
         let taught = (0..samples.len()).filter(|&i| of_person(&samples[i].clip));
-        // A clip of nobody known is background for everybody.
+        // A clip without a person is background in every fold.
         let others = people
             .iter()
             .filter(|(clip, of)| **of != person && clip != of);

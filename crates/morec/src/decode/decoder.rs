@@ -285,7 +285,7 @@ impl Decoder {
         (tick - reach).max(0)..=(tick + reach).min(self.ticks - 1)
     }
 
-    /// The candidate of a class at `tick` and its score, if its distance is near enough, and no larger than any
+    /// The candidate of a class at `tick` and its score, if its distance passes the threshold, and is no larger than any
     /// distance that counts nearby.
     fn gated(&self, tick: i64, class: usize) -> Option<(Candidate, f64)> {
         let ClassDistance { distance, age, .. } = self.near(tick, class);

@@ -28,7 +28,7 @@ pub struct DecodeParams {
     /// Without it a quarter of the misses in half splits.
     #[serde(default)]
     pub overlap_share: f32,
-    /// A detection waits up to this many ticks while another class's match that encloses it is near enough and still
+    /// A detection waits up to this many ticks while another class's match that encloses it passes the threshold and still
     /// coming nearer: a short motion may only be the end of a longer one. Under [`CandidatePolicy::Verify`] nothing waits.
     ///
     /// 3 gives the same.

@@ -130,7 +130,7 @@ fn a_short_motion_waits_for_the_longer_one_that_it_ends() {
     };
     assert_eq!(reports(&short_inside_long(0.2), &params), [(1, 5, 22, 22)]);
     assert_eq!(reports(&short_inside_long(0.2), &once), [(0, 15, 21, 21)]);
-    // The longer one is not near enough: nothing waits.
+    // The longer one does not pass the threshold: nothing waits.
     assert_eq!(reports(&short_inside_long(3.0), &params), [(0, 15, 21, 21)]);
 }
 

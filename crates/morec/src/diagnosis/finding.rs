@@ -90,7 +90,7 @@ pub enum Finding {
         /// Parts of the body that are concerned.
         roles: RoleSet,
     },
-    /// The size of the body is none in any common unit of length.
+    /// The size of the body is not a person's in any common unit of length.
     UnknownUnit {
         /// Length of a leg, in the stream's unit.
         leg: f64,

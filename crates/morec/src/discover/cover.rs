@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BinaryHeap};
 use super::candidates::MovingStretch;
 use super::neighbours::Neighbours;
 
-/// Sets that explain less are none.
+/// Sets that explain less are left out.
 const LEAST_GAIN_SECS: f64 = 0.3;
 const MOST_SETS: usize = 400;
 /// A candidate that shares more than this share of the shorter with a member of a set is used up.
@@ -46,7 +46,7 @@ struct Cover<'a> {
     free: Vec<bool>,
 }
 
-/// Sets of candidates, each led by the one that its members are neighbours of. Greedy: gains only fall, so the first of the heap that was
+/// Sets of candidates: a candidate and its neighbours. Greedy: gains only fall, so the first of the heap that was
 /// counted lately is the best (lazy evaluation; Minoux, *Accelerated greedy algorithms for maximizing submodular set functions*, 1978).
 pub(super) fn cover(
     stretches: &[MovingStretch],

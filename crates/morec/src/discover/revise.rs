@@ -117,7 +117,7 @@ fn mean_of_nearest(mut distances: Vec<f32>) -> f32 {
 }
 
 /// The sets made anew: of the candidates that are clearly nearest to one set, in each clip those that do not overlap and explain most. A set
-/// with fewer than two instances is none.
+/// with fewer than two instances is dropped.
 pub(super) fn revise(
     sets: &[Vec<usize>],
     stretches: &[MovingStretch],

@@ -38,7 +38,7 @@ impl PartialOrd for Join {
 }
 
 /// Groups of parts: average support of pairs of different clips, joined from the best down to `least`. Votes for what is `cap` or farther do
-/// not count. Parts of one set begin joined if `joined` says so. Members of each group, in order.
+/// not count. Parts of one set begin joined if `joined` is true. Members of each group, in order.
 pub(super) fn vote(
     parts: &[ClipPart],
     shapes: &ShapeTable,

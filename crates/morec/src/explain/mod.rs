@@ -274,7 +274,7 @@ impl<'a> ComparedStream<'a> {
         unlike.then_some(Reason::GoesOnUnlike { share: own, nearer })
     }
 
-    /// The sample would have been near enough under the wider gate, which was closed.
+    /// The sample would have passed the relaxed gate, which was closed.
     fn unlike(&self, ticks: &Range<usize>, class: ClassId) -> Option<Reason> {
         let gate = self.model.stranger.as_ref()?;
         let (_, near) = self.best(ticks, |t| self.trace.wide(t, class))?;
@@ -324,7 +324,7 @@ impl<'a> ComparedStream<'a> {
             .min_by(|a, b| a.1.comparison.distance.total_cmp(&b.1.comparison.distance))
     }
 
-    /// No match that moves is near enough: it stands still, or it is too far.
+    /// No match is both moving and within the threshold.
     fn not_near(
         &self,
         ticks: &Range<usize>,

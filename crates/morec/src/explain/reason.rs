@@ -32,7 +32,7 @@ pub enum Reason {
         /// Shares at or above this are not reported.
         most: f32,
     },
-    /// It is near enough for a performer unlike the teacher, but what was recognised before did not show such a one.
+    /// It would pass the gate for a performer unlike the training subjects, but earlier reports of this performer had small distances.
     Unlike {
         /// Distance of the nearest template, without the difference of stance.
         distance: f32,
@@ -98,7 +98,7 @@ pub enum Reason {
         #[serde(flatten)]
         span: TimeSpan,
     },
-    /// It was near enough; its best match ends outside the sample.
+    /// It passed the threshold; its best match ends outside the sample.
     Elsewhere,
 }
 

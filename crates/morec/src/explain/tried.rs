@@ -8,7 +8,7 @@ use crate::live::{Detection, Model, RecognizerCache};
 use crate::roles::RoleMap;
 use crate::templates::{OperatingPoint, TemplateModel};
 
-/// For each of `sought` in a clip the least noted rate, from the one that is wanted at least, at which it is reported; none where none
+/// For each of `sought` in a clip the smallest noted rate, no smaller than the wanted one, at which it is reported; none where no rate
 /// is wanted or helps. O(rates) recognitions of the clip, none if nothing is wanted.
 pub(super) fn least_that_help(
     model: &TemplateModel,

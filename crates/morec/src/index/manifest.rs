@@ -88,7 +88,7 @@ pub struct LookWords {
 /// Held poses without their tables.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct HeldWords {
-    /// Poses that are farther than this from those of a class are none of it.
+    /// Poses farther than this from those of a class do not belong to it.
     pub reach: f32,
     /// Ticks for which a pose must be held.
     pub least_ticks: usize,

@@ -93,7 +93,7 @@ impl Model {
         changed.map(Into::into).ok_or(SensitivityError::Fixed)
     }
 
-    /// The model for the performer that is expected: anyone, the person who taught, or whoever it is, as trained.
+    /// The model for the expected performer: anyone, the training subject, or auto as trained.
     ///
     /// # Errors
     /// Anyone is expected, and the model has no gate for that: three people or more taught it, an older version trained it, or

@@ -67,7 +67,7 @@ pub struct Label {
     pub class: String,
     /// When it happens.
     pub extent: Extent,
-    /// The person who moves, where the table says so.
+    /// The person who moves, if the table names one.
     pub person: Option<String>,
     /// The row's line in its file, from 1.
     pub line: u64,

@@ -96,7 +96,7 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// A warning for each column that is none of `known`.
+    /// A warning for each column that is not in `known`.
     pub fn unknown_columns(&self, known: &[&str]) -> Vec<Warning> {
         self.header
             .iter()

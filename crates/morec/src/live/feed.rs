@@ -110,12 +110,12 @@ impl FeedSender {
         }
     }
 
-    /// Says that frames of `actor` from now on are poses of `rig`. Waits for room if there is none: never dropped.
+    /// Announces that the next frames of `actor` are poses of `rig`. Waits while the queue is full, so it is never dropped.
     pub fn set_rig(&mut self, actor: PerformerId, rig: &Arc<Rig>) {
         self.push(QueueItem::Rig(actor, rig.clone()));
     }
 
-    /// Says that `actor` has stopped for now. Waits for room if there is none.
+    /// Announces that `actor` has stopped for now. Waits while the queue is full.
     pub fn end_performer(&mut self, actor: PerformerId) {
         self.push(QueueItem::Gone(actor));
     }

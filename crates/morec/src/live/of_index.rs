@@ -9,7 +9,7 @@ use crate::roles::{Role, RoleMap};
 use super::start::check_shown;
 use super::{Model, Recognizer, StartError};
 
-/// A shorter stream tells nothing of the kind of performer that it shows.
+/// A shorter stream does not show the kind of performer reliably.
 const SHOWN_SECS: f64 = 0.9;
 /// A joint that was not seen for so long is not sent.
 const MISSING_SECS: f64 = 2.0;

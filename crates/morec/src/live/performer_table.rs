@@ -106,7 +106,7 @@ impl<K: PartialEq> PerformerTable<K> {
         present.map(|place| &place.key)
     }
 
-    /// Lets go whoever has been silent for more than `silence_secs`; calls `gone` for each.
+    /// Removes performers that have been silent for more than `silence_secs`; calls `gone` for each.
     pub fn leave_silent(
         &mut self,
         now_secs: f64,

@@ -54,7 +54,7 @@ pub struct SourceCounts {
 /// A source of poses, asked from a thread of its own.
 ///
 /// A source survives whatever its other end does: silence, rubbish, a new skeleton, an end and a new beginning. It
-/// says so in [`SourceEvent`] and in its counts, and goes on.
+/// reports it in [`SourceEvent`] and in its counts, and goes on.
 pub trait Source: Send {
     /// The next thing it has; waits for it a little (at most some ten milliseconds, so that a session can be
     /// stopped). `frame` may hold an older frame's values and is filled in only for [`SourceEvent::Frame`].

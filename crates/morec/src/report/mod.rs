@@ -41,9 +41,9 @@ pub struct Report<'a> {
     pub timelines: &'a [Timeline],
     /// Training data of the classes; empty if unknown.
     pub training: &'a [TrainedClass],
-    /// Samples that were missed, and why; empty if nobody looked.
+    /// Samples that were missed, and why; empty if that was not computed.
     pub misses: &'a [Miss],
-    /// How well motions were performed that were recognised rightly; empty if nobody looked.
+    /// How well correctly recognised motions were performed; empty if that was not computed.
     pub performances: &'a [Performance],
     /// The measures at other rates of false alarms a minute, ascending; may be empty.
     pub sensitivities: &'a [(f64, Evaluation)],

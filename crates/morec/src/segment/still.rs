@@ -1,4 +1,4 @@
-//! Stretches in which nobody moves, and those of them that are a T-pose.
+//! Still stretches, and T-poses among them.
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! Gestures of everyday life, which are none of anybody's classes: what a recogniser of gestures meets most often by mistake.
+//! Gestures of everyday life that belong to no class, such as scratching: what is most often mistaken for a gesture.
 
 use super::actor::Actor;
 use super::timeline::{HAND, LimbSide, SPINE, WRIST};

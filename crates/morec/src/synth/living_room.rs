@@ -33,7 +33,7 @@ pub struct LivingRoom {
 }
 
 /// Every class of `classes` (names of [`MotionKind::Gesture`] motions) `repetitions` times by person `number`, in random
-/// order, with at least four seconds of idling before each. The person stands as they like: nobody returns to one pose.
+/// order, with at least four seconds of idling before each. The person does not return to one pose.
 /// The same arguments give the same take on every platform.
 pub fn living_room(
     seed: u64,

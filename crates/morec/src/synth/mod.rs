@@ -1,7 +1,7 @@
 //! Synthetic people performing scripted motions: a stand-in for a motion-capture studio.
 //!
 //! For the demo, the documentation, tests and benchmarks, and as background: [`everyday`] motion from which a
-//! first index learns what is none of its classes. Nothing here imitates a particular recording, and no figure
+//! first index learns motion of no class. Nothing here imitates a particular recording, and no figure
 //! measured on it says anything about accuracy on real people.
 //!
 //! How it is made, from the outside in: a [`Script`] or [`database`] lets an actor perform named motions; a

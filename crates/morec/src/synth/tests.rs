@@ -1,4 +1,4 @@
-//! Properties of every motion, whoever performs it.
+//! Properties of every motion, for any synthetic person.
 
 use std::collections::BTreeMap;
 

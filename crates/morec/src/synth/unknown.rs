@@ -1,4 +1,4 @@
-//! Motions between gestures that are none of them.
+//! Motions between gestures that belong to no class.
 
 use super::actor::Actor;
 use super::gait::{self, Gait};

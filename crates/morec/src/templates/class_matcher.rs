@@ -137,7 +137,7 @@ impl ClassMatcher {
         self.negative
     }
 
-    /// The class whose beginning is nearest at the last tick, which must be looked at, if one is near enough by `params` under this threshold.
+    /// The class whose beginning is nearest at the last tick, which must be looked at, if one is within the bounds of `params` under this threshold.
     /// O(template rows), no allocation; changes nothing.
     pub fn underway(&self, params: &EarlyDetectionParams, threshold: f32) -> Option<OngoingMatch> {
         let (mut best, mut other) = (None::<OngoingMatch>, FAR);

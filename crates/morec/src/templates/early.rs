@@ -3,7 +3,7 @@
 use crate::classes::ClassId;
 use crate::decode::Repetitions;
 
-/// When a beginning is near enough to be reported. Tentative: none of this has a say in detections.
+/// Bounds of beginnings for tentative events. They do not influence detections.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EarlyDetectionParams {
     /// A match must have come through this share of its template.

@@ -319,7 +319,7 @@ impl TemplateEngine {
         self.recent.pushed
     }
 
-    /// The class whose beginning is nearest at the last tick, if one is near enough by `params`. O(template rows),
+    /// The class whose beginning is nearest at the last tick, if one is within the bounds of `params`. O(template rows),
     /// no allocation; changes nothing. None on matches from elsewhere.
     pub fn underway(&self, params: &EarlyDetectionParams) -> Option<OngoingMatch> {
         let farthest = params.reach * self.threshold;

@@ -20,12 +20,12 @@ const WINDOW: usize = 9;
 /// A pose that is lost for no more ticks than this goes on.
 const PAUSE: usize = 6;
 
-/// Poses of held classes and of what is none of them, before the metric.
+/// Poses of held classes and of anything else, before the metric.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HeldPoses {
     /// The poses: directions of rows, `3 b` values.
     pub poses: ReferenceRows,
-    /// Poses that are farther than this from those of a class are none of it.
+    /// Poses farther than this from those of a class do not belong to it.
     pub reach: f32,
     /// Ticks for which a pose must be held.
     pub least_ticks: usize,

@@ -63,7 +63,7 @@ struct Found {
     normalized: Vec<f32>,
 }
 
-/// Noise up to this share of the typical spread is none: fast motion leaves as much.
+/// Noise up to this share of the typical spread counts as none: fast motion leaves as much.
 const LEAST_NOISE: f32 = 0.2;
 
 /// A template's match, held against a body at rest and normalised.

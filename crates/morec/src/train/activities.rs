@@ -17,9 +17,9 @@ use super::set::{StreamKind, TrainSample, TrainSet, TrainStream, evenly};
 const WINDOW_SECS: f64 = 2.5;
 /// Windows of anything else at most, of made everyday motion and of all other sources each.
 const MOST_OTHERS: usize = 500;
-/// Fewer windows of anything else say little of what is none of the classes.
+/// Fewer windows of anything else describe motion of no class badly.
 const LEAST_OTHERS: usize = 50;
-/// What nobody named as background and lies nearer to a class than this share of the class's own windows is probably the class.
+/// Unlabelled windows nearer to a class than this share of the class's own windows probably show the class.
 const OWN_SHARE: f64 = 0.9;
 
 /// The activities of `samples`; `None` where there is none, and nothing to tell them from. O(windows · statistics²).

@@ -99,7 +99,7 @@ impl SampleRivals {
 }
 
 /// A template is its class's medoid if the samples of the class are nearest to it. Other templates of a class are compared with a sample
-/// if the medoid is nearer than this many times what is near enough.
+/// if the medoid is nearer than this many times the threshold.
 const MEDOID_REACH: f32 = 2.5;
 
 struct ClassTemplates {
@@ -172,7 +172,7 @@ impl TrainingContext<'_> {
         Ok(pairs(count, &rivals, threshold, &self.params.decode))
     }
 
-    /// The samples of a stream, but for those of copies, which nobody showed, beside other templates of their classes.
+    /// The samples of a stream, except copies, beside other templates of their classes.
     fn own_classes(
         &self,
         (samples, classes): (&[TrainSample], &[ClassTemplates]),

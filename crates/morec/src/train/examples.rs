@@ -113,7 +113,7 @@ pub struct CandidateFinder<'a> {
 }
 
 impl<'a> CandidateFinder<'a> {
-    /// Candidates where `threshold` is near enough.
+    /// Candidates within `threshold`.
     pub fn new(set: &'a TrainSet, threshold: f32, params: &TrainParams) -> Self {
         Self {
             set,
@@ -190,7 +190,7 @@ impl<'a> CandidateFinder<'a> {
         })
     }
 
-    /// True if a stretch that is none of the class's samples may be held against the class.
+    /// True if a stretch outside the class's samples may be a negative example of it.
     fn is_background(&self, stream: &TrainStream, ticks: &Range<usize>, distance: f32) -> bool {
         let on_other_class = stream.overlaps_known(ticks, TOUCHES);
         let suspicious = stream.source == StreamKind::Labelled && distance < self.suspicious;

@@ -37,7 +37,7 @@ pub struct TrainClip {
 }
 
 impl From<Take> for TrainClip {
-    /// A labelled clip of nobody known.
+    /// A labelled clip without a person.
     fn from(take: Take) -> Self {
         Self {
             name: take.clip.name.clone(),
@@ -57,7 +57,7 @@ pub struct LabelSet<'a> {
     pub samples: &'a [Sample],
     /// Samples held back: to be learned neither as a class nor as background.
     pub held_back: &'a [Sample],
-    /// The classes to learn, in order; labels of others say that a stretch is none of these.
+    /// The classes to learn, in order; labels of other classes make a stretch background.
     pub classes: &'a [String],
     /// True if unlabelled parts of labelled clips are background.
     pub unlabelled_is_background: bool,

@@ -1,4 +1,4 @@
-//! The operating point: how near is near enough, from a wanted rate of false alarms.
+//! The operating point: the threshold for a rate of false alarms.
 
 use std::ops::Range;
 
@@ -24,7 +24,7 @@ pub struct AlarmCurve {
 impl AlarmCurve {
     /// Events of all background and everyday streams: local minima of the nearest template's distance, none
     /// overlapping a nearer one by more than half, where no negative of another person or clip is nearer. Unlabelled
-    /// parts of labelled clips do not count: what comes near there may be a sample that nobody labelled.
+    /// parts of labelled clips do not count: what comes near there may be an unlabelled sample.
     ///
     /// `nearest` is each stream's nearest template at every tick, `negatives` its nearest negative of another group.
     /// O(ticks + events²).

@@ -49,7 +49,7 @@ impl Default for TrainOptions {
 }
 
 impl TrainOptions {
-    /// What the options say of motions that are none of `classes`, in words.
+    /// An error if an option names a class that is not in `classes`.
     pub(super) fn check_names(&self, classes: &[String]) -> Result<(), String> {
         let kinds = self.params.kinds.keys();
         let mut named = kinds.chain(&self.one_sided);

@@ -30,7 +30,7 @@ pub struct TrainParams {
     /// duration: 8 and 8, 7 and 9, 7 and 9, 6 and 9; half splits of 17 referee classes 0.937 / 0.938 with 0.55,
     /// 0.938 / 0.939 with 0.60; sessions by others alike.
     pub faster_duration: f64,
-    /// People that must show a class for copies of it: whoever teaches alone performs at the speed that was taught.
+    /// People that must show a class for copies of it: a single training subject performs at the speed of the samples.
     ///
     /// 1: sessions of the same person 0.840, calibration 0.128; 2: 0.844 and 0.121; both with `decode.rest_gate`
     /// 0.62 and one copy.
@@ -59,7 +59,7 @@ pub struct TrainParams {
     /// Stretches nearer than this to a template may become negatives.
     pub negative_below: f64,
     /// Unlabelled stretches of labelled clips nearer than this times the threshold are left alone: they are
-    /// probably samples that nobody labelled.
+    /// probably unlabelled samples.
     pub suspicious_below: f64,
     /// Negatives kept at most.
     ///
@@ -162,7 +162,7 @@ pub struct StrangerParams {
     ///
     /// With a gate that is always open, the prototype's events of 20 pairs of people before a Kinect at 0.60, 0.70,
     /// 0.80, 0.90 without a discount: F1 0.854, 0.923, 0.931, 0.926; same person's sessions fall from 0.855 to
-    /// 0.768 at 0.70, so it is closed for whoever performs like the teacher.
+    /// 0.768 at 0.70, so it is closed for performers like the training subject.
     pub rest_gate: f32,
     /// A candidate is refused if another class is nearer than this share of its distance.
     ///

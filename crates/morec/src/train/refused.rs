@@ -53,7 +53,7 @@ pub fn refuse(
     Ok(())
 }
 
-/// Segments of what is reported in background clips, whoever performs, the likeliest first.
+/// Segments that are reported in background clips, the likeliest first.
 fn reported(
     model: &TemplateModel,
     set: &TrainSet,

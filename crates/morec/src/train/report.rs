@@ -108,7 +108,7 @@ fn outlier_note(
     })
 }
 
-/// A note about classes that were named activities and are none.
+/// A note about classes that were named as activities and cannot be.
 fn no_activity_note(trained: &TrainedTemplates, params: &TrainParams) -> Option<String> {
     let activities = trained.model.activities.as_ref();
     let is_none = |name: &str| {

@@ -51,7 +51,7 @@ pub struct TrainedTemplates {
 }
 
 /// `params` with the spread of the usual template among `samples`, where rows are not a body's. Thresholds are then at most that
-/// spread, unless another bound was chosen: a hand is near to many gestures that nobody taught.
+/// spread, unless another bound was chosen: a hand is near to many gestures of no class.
 fn of_profile(
     params: &TrainParams,
     bones: BoneSet,

@@ -22,7 +22,7 @@ const SHOWN: usize = 10;
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct AmcOptions {
     /// Frames a second; `None` takes a hint in the name (`HDM_dg_01_120`, `walk_60hz`) or
-    /// [`DEFAULT_RATE_HZ`], and says so.
+    /// [`DEFAULT_RATE_HZ`], with a warning.
     pub rate_hz: Option<f64>,
 }
 

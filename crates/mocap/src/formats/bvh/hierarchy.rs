@@ -324,7 +324,7 @@ impl<'t> Parser<'_, 't> {
         Ok(())
     }
 
-    /// Appends channel names as far as they go; returns what on the same line is none (and no keyword).
+    /// Appends channel names as far as they go; returns the first word of the line that is neither a channel nor a keyword.
     fn channel_names(&mut self) -> Result<Option<&'t [u8]>, ParseError> {
         loop {
             // The names may go on over the end of the line, so only the next token says whether there is one more.

@@ -216,7 +216,7 @@ impl MotionTable<'_> {
         Ok(())
     }
 
-    /// One frame a line; lines that are none are counted and remembered.
+    /// One frame a line; other lines are counted and remembered.
     fn by_line(
         mut self,
         text: &mut dyn TableText,

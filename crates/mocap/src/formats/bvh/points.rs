@@ -5,7 +5,7 @@ use crate::math::{Quat, Vec3};
 
 /// Name of that root; it marks the others as points.
 const ROOT: &str = "points";
-/// Rotations that are none, as far as printed angles tell.
+/// Rotations below the precision of printed angles count as none.
 const NO_TURN_RAD: f64 = 1e-6;
 
 /// The clip with its points under one root.

@@ -10,7 +10,7 @@ use crate::formats::ParseError;
 pub(super) enum MotionLine {
     /// Numbers only.
     Numbers,
-    /// Numbers and something that is none.
+    /// Numbers and a word that is not a number.
     Spoilt(String),
 }
 

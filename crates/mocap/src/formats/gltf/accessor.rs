@@ -76,7 +76,7 @@ impl<'a> Buffers<'a> {
         (self.numbers.saturating_mul(size_of::<f64>())).saturating_add(self.beside_bytes)
     }
 
-    /// All numbers of accessor `number`; integers become −1..1 or 0..1 if the file or `normalize` says so.
+    /// All numbers of accessor `number`; integers become −1..1 or 0..1 if the file or `normalize` asks for it.
     pub(super) fn numbers(
         &mut self,
         number: usize,
@@ -263,7 +263,7 @@ impl<'a> Buffers<'a> {
                 .map_err(|error| wrong(error.to_string()));
         }
         let file = self.file_of(number).unwrap_or_default();
-        // Files elsewhere are none of the scene's business.
+        // Only files beside the scene are read.
         let outside = file.starts_with(['/', '\\']) || file.contains(':') || file.contains("..");
         let bytes = match outside {
             true => Err(io::Error::from(io::ErrorKind::NotFound)),

@@ -204,7 +204,7 @@ impl GltfChannel {
         }
         let (a, b) = (self.value(a), self.value(b));
         if self.path == TargetPath::Rotation {
-            // A key of zeros is none.
+            // A key of zeros is no rotation.
             local.rotation = match (rotation(a), rotation(b)) {
                 (Some(a), Some(b)) => slerp(&a, &b, t),
                 (a, b) => a.or(b).unwrap_or(local.rotation),

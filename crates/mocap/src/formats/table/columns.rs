@@ -188,7 +188,7 @@ fn header_rows(rows: &[TableLine]) -> Option<usize> {
     (first > 0).then_some(first)
 }
 
-/// A number, or that there is none.
+/// A number or a gap.
 pub(super) fn is_value(cell: &str) -> bool {
     number(cell, Decimal::Either).is_some() || is_nan(cell)
 }

@@ -413,7 +413,7 @@ fn readings_of_sensors_are_no_positions() {
         let error = read(text.as_bytes(), "x", None, &Limits::default()).unwrap_err();
         assert!(error.at == Place::Line(1), "{error}");
     }
-    // A fourth number that makes no rotation is none of ours.
+    // Four numbers that are no rotation are left out.
     let sure = limbs.to_owned() + &rows("0.9,1,2,3,0.9,4,5,6");
     assert_eq!(open(&sure).clips[0].skeleton.len(), 2);
     let both =

@@ -1,6 +1,6 @@
 //! Vicon's export as text: sections one below the other, each with a row for its title (`Trajectories`, `Devices`, `Model Outputs`),
 //! its rate, the names, the axes and the units, then its frames. Trajectories hold markers; segments of a solved skeleton
-//! serve where there are none.
+//! are read where there are no trajectories.
 
 use super::layout::{ColumnLayout, TableLine};
 use crate::formats::cells::{Decimal, number};

@@ -1,4 +1,4 @@
-//! What columns hold besides positions: words and units that say so.
+//! Words and units of columns that hold no positions.
 
 use super::layout::TableLine;
 use crate::formats::cells::is_among;

@@ -1,4 +1,4 @@
-//! Bodies that are none.
+//! Skeletons that are no bodies.
 
 use super::super::{find, find_moving};
 use super::*;

@@ -274,7 +274,7 @@ fn changes(db: &MotionDb, done: &Labelled) -> Result<TextTable> {
 }
 
 fn undo(db: &mut MotionDb, json: bool) -> Result<ExitCode> {
-    // The history holds changes of every kind: whoever asks here means labels.
+    // The history holds changes of every kind; this command undoes changes of labels only.
     if let Some(last) = db.history()?.into_iter().find(|step| !step.undone) {
         let kinds = ["samples", "classes"];
         if last

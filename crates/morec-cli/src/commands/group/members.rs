@@ -94,7 +94,7 @@ impl GroupList {
         Ok(groups)
     }
 
-    /// Prints the groups as a table, or as JSON if `args` say so.
+    /// Prints the groups as a table, or as JSON with `--json`.
     pub fn print(&self, args: &Args) -> Result<()> {
         match args.json {
             true => print_json(self),

@@ -1,4 +1,4 @@
-//! Cuts of the clip that is shown: dragged into place, added, removed. What a person cut is kept as such.
+//! Cuts of the clip that is shown: dragged into place, added, removed. Cuts by hand are kept apart from automatic ones.
 
 use morec_db::{ClipId, Segment, SegmentKind};
 

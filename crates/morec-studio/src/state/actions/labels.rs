@@ -15,7 +15,7 @@ use crate::stretch::Stretch;
 impl State {
     /// Sends an edit to the database, and says which command would do it.
     pub(in crate::state) fn edit(&mut self, edit: Edit) {
-        // Another action's command would mislead: without one of its own there is none.
+        // Another action's command would mislead: an action without a command shows none.
         let line = self.line_of(&edit);
         self.show_line(line);
         if let Some(store) = &mut self.store {

@@ -10,7 +10,7 @@ use crate::store::{Edit, Snapshot};
 
 impl State {
     /// The clips whose roles change with those of the clip that is shown: those with as many joints and the same roles until
-    /// now are of the same rig, whoever performs.
+    /// now are of the same rig.
     pub fn clips_of_roles(&self) -> Vec<ClipId> {
         let (Some(store), Some(clip)) = (&self.store, self.shown_clip()) else {
             return Vec::new();

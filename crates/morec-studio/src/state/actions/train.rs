@@ -229,7 +229,7 @@ impl State {
         }
     }
 
-    /// Reads an index of the database for use; says so if it cannot.
+    /// Reads an index of the database for use; a failure is shown.
     fn load_index(&mut self, name: &str) -> bool {
         let Some(store) = &self.store else {
             return false;

@@ -12,7 +12,7 @@ const STILL: f32 = 0.12;
 const SHARE: f32 = 0.15;
 /// A rest in which a motion has ended, seconds.
 const REST_SECS: f64 = 0.35;
-/// A motion that is shorter is none, a longer one is cut, seconds.
+/// Shorter motions are ignored, longer ones are cut, seconds.
 const LENGTH_SECS: (f64, f64) = (0.3, 5.0);
 
 /// Speeds are taken over so long: from frame to frame a tracker's noise alone is as fast as a hand.

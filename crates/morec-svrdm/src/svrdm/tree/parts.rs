@@ -25,7 +25,7 @@ pub enum Node {
     Branch(Box<Branch>),
 }
 
-/// A node that tells two macro-classes apart and rejects what is neither (thesis, Alg. 8).
+/// A node that separates two macro-classes and rejects what is neither (thesis, Alg. 8).
 ///
 /// A vector `x` is taken to the plane of the two centroids in feature space, `x̂ = L⁻¹ [k₁(x), k₂(x)]`, where `k_j` is
 /// the mean of `K(a, x)` over the exemplars of side `j` (Eq. 3.40; both parts are means over `i`, as in 3.39). There

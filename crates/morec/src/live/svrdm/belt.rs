@@ -48,7 +48,7 @@ impl<T> RingSender<T> {
 
 impl<T> Drop for RingSender<T> {
     fn drop(&mut self) {
-        // First the end, then the call, so that whoever wakes sees it.
+        // First the end, then the call, so that the woken thread sees it.
         self.ring = None;
         self.waker.wake();
     }

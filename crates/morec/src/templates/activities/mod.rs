@@ -21,7 +21,7 @@ pub(crate) use windows::STEP_TICKS;
 #[cfg(feature = "train")]
 pub(crate) use windows::windows_of;
 
-/// An activity of fewer windows than this is none.
+/// Shorter activities are not reported, in windows.
 const LEAST_WINDOWS: usize = 8;
 /// Shares of others' distance for other rates of false alarms follow the rate with this exponent: on motion of other clips, 1.2 times as
 /// wide in squared distance raised five times as many reports.
@@ -42,7 +42,7 @@ pub struct Activities {
 }
 
 impl Activities {
-    /// An activity of fewer ticks than this is none.
+    /// Shorter activities are not reported, in ticks.
     pub const LEAST_TICKS: usize = LEAST_WINDOWS * STEP_TICKS;
 
     /// Longest window, in ticks.

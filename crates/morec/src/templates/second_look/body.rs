@@ -1,7 +1,7 @@
 //! Rows of the second look, made of feature rows.
 //!
 //! Feature rows hold bone directions in the heading frame. With the proportions of an average body (Winter, *Biomechanics and Motor
-//! Control of Human Movement*, 2009, Fig. 4.1) they place hands, elbows, feet and knees, whoever performs. A row has
+//! Control of Human Movement*, 2009, Fig. 4.1) they place hands, elbows, feet and knees, in any performer. A row has
 //! [`LOOK_COLUMNS`](super::LOOK_COLUMNS) values:
 //!
 //! | columns | hold |

@@ -222,7 +222,7 @@ impl LookDecoder {
         self.report(true);
     }
 
-    /// Takes a match that ends with `tick`, if it is near enough.
+    /// Takes a match that ends with `tick`, if it is within `reach` and long enough.
     fn open_match(&mut self, near: ClassDistance, tick: i64) {
         if near.distance >= self.reach || near.age < MIN_AGE_TICKS || self.open.len() == MOST_OPEN {
             return;

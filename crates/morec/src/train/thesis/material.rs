@@ -15,7 +15,7 @@ use crate::train::{LabelSet, StreamKind, TrainClip, TrainError};
 use super::SvrdmOptions;
 use super::sample::{ThesisSample, described};
 
-/// A stream that holds stretches which are none of the classes.
+/// A stream that holds stretches of no class.
 #[derive(Debug, Clone)]
 pub struct Background {
     /// Pose rows, `frames × D`.

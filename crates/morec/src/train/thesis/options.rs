@@ -103,7 +103,7 @@ impl SvrdmTrainParams {
         }
     }
 
-    /// The same method, made to accept what it has not seen and still to reject what is none of the classes: kernels
+    /// The same method, made to accept what it has not seen and still to reject motion of no class: kernels
     /// as wide as most distances between samples of a side; vectors of four directions about the segment's own mean as
     /// Eq. 3.37 scales them, their signs by what they have in common; samples compared by whole rows, which is what
     /// rejects; thresholds estimated.

@@ -2,7 +2,7 @@
 //!
 //! The thesis trains with `T = 1` and recognises with a `T` of 0.92 that was chosen by hand. Here `T` is as low as it may
 //! be without samples that were left out of training being taken for another class, and a second threshold, on the confidence of what the tree let pass, is
-//! as high as motion asks for that is none of the classes.
+//! high enough to reject motion of no class.
 
 use std::sync::Arc;
 
