@@ -182,7 +182,7 @@ fn print(result: &Reproduction) {
         table.row(first.into_iter().chain(p.stages.iter().map(stage)));
     }
     print!("{table}");
-    println!("\nA sample's way down the tree (Fig. 5.2)");
+    println!("\nThe path of a sample down the tree (Fig. 5.2)");
     for c in result.classification.iter().filter(|c| !c.complement) {
         println!(
             "{}, seed {}: {}",

@@ -16,9 +16,8 @@ pub(super) fn push_sensitivity(out: &mut String, sensitivities: &[(f64, Evaluati
         return;
     }
     out.push_str(
-        "<h2>Sensitivity</h2>\n<p class=\"small\">What <code>--sensitivity</code> would have found. The rate is that of \
-         false alarms a minute in the background motion of training; events are right if their middle lies within a \
-         sample.</p>\n",
+        "<h2>Sensitivity</h2>\n<p class=\"small\">Results at other values of <code>--sensitivity</code>, the false alarms a minute in the \
+         background motion of training. An event is right if its middle lies within a sample.</p>\n",
     );
     let line = |value: fn(&Evaluation) -> Option<f64>| {
         let points = sensitivities
@@ -59,8 +58,8 @@ pub(super) fn push_reliability(out: &mut String, reliability: &Reliability) {
     };
     let counted: usize = reliability.bins.iter().map(|b| b.count).sum();
     out.push_str(&format!(
-        "<h2>What scores are worth</h2>\n<p class=\"small\">{counted} detections in {SCORE_BINS} bins by score. On the \
-         diagonal, a score is the share of right detections; the mean difference from it is {error:.3}.</p>\n"
+        "<h2>Reliability of scores</h2>\n<p class=\"small\">{counted} detections in {SCORE_BINS} bins by score. On the \
+         diagonal, the score equals the share of right detections; the mean difference is {error:.3}.</p>\n"
     ));
     let used = || reliability.bins.iter().filter(|b| b.count > 0);
     let chart = Chart::new("Share of right detections at each score")
@@ -81,7 +80,7 @@ pub(super) fn push_perturbed(
     if perturbed.is_empty() {
         return;
     }
-    out.push_str("<h2>Worse captures</h2>\n<p class=\"small\">The same clips, made worse in one way each.</p>\n");
+    out.push_str("<h2>Worse captures</h2>\n<p class=\"small\">Copies of the clips, each worse in one way.</p>\n");
     push_perturbed_curves(out, clean, perturbed);
     out.push_str(
         "<div class=\"wide\"><table>\n<tr><th scope=\"col\">copy</th><th>thesis accuracy</th><th>F1</th><th>F1 of \

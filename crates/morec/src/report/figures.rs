@@ -59,7 +59,7 @@ pub(super) fn push(out: &mut String, e: &Evaluation) {
     card(out, "Samples recognised (P_C)", Figure(c.p_c), &detail);
     let t = &e.thesis;
     let counts = format!(
-        "{} right, {} wrong, {} missed, {} rightly left alone",
+        "{} right, {} wrong, {} missed, {} correctly not reported",
         t.true_positives, t.false_positives, t.false_negatives, t.true_negatives
     );
     card(out, "Thesis accuracy", Figure(t.accuracy), &counts);
@@ -112,8 +112,8 @@ fn push_overlap_table(out: &mut String, e: &Evaluation) {
     }
     let b = &e.boundaries;
     out.push_str(&format!(
-        "</table></div>\n<p class=\"small\">Boundaries of the {} detections matched at {MEASURED_OVERLAP}: starts are off by {} \
-         (median; bias {}), stops by {} (bias {}). Positive is late.</p>\n",
+        "</table></div>\n<p class=\"small\">Boundaries of the {} detections matched at {MEASURED_OVERLAP}: starts differ by {} \
+         (median; bias {}), stops by {} (bias {}). A positive bias is late.</p>\n",
         b.count,
         secs(b.start_median_abs_secs, false),
         secs(b.start_median_secs, true),

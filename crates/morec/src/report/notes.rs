@@ -62,7 +62,7 @@ pub fn learning_notes(evaluation: &Evaluation, training: &[TrainedClass]) -> Vec
         (
             0,
             format!(
-                "{} is trained but has no sample here: nothing is known of it.",
+                "{} is trained but has no sample here, so it is not measured.",
                 t.class
             ),
         )
@@ -115,14 +115,14 @@ fn notes_on_class(class: &ClassFigures, notes: &mut Vec<(usize, String)>) {
     if class.false_alarms.count > 0 {
         let alarms = class.false_alarms.count;
         let text = format!(
-            "{name} is seen where nothing is labelled, {}: more background, or labels, would tell.",
+            "{name} is detected where nothing is labelled, {}: add labels or background there.",
             times(alarms)
         );
         notes.push((alarms, text));
     }
     if class.unknown_detections > 0 {
         let text = format!(
-            "{name} is seen in unknown motion {}.",
+            "{name} is detected in unknown motion {}.",
             times(class.unknown_detections)
         );
         notes.push((class.unknown_detections, text));
@@ -130,7 +130,7 @@ fn notes_on_class(class: &ClassFigures, notes: &mut Vec<(usize, String)>) {
     if class.samples == 0 && class.detections > 0 {
         notes.push((
             class.detections,
-            format!("{name} is found but labelled nowhere in these clips."),
+            format!("{name} is detected but not labelled in these clips."),
         ));
     }
 }

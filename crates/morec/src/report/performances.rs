@@ -21,9 +21,9 @@ pub(super) fn push(out: &mut String, performances: &[Performance]) {
         return;
     }
     out.push_str(
-        "<h2>How well motions were performed</h2>\n<p class=\"small\">Each motion that was recognised rightly beside the nearest \
-         sample of its class: the mean angle between its bones and the sample's, at the sample's pace. 0° is the sample itself. The \
-         motion that is farthest off comes first.</p>\n",
+        "<h2>How well motions were performed</h2>\n<p class=\"small\">Each correctly recognised motion is compared with the nearest \
+         sample of its class: the mean angle between their bones, aligned in time. The largest angle \
+         comes first.</p>\n",
     );
     let mut sorted: Vec<&Performance> = performances.iter().collect();
     sorted.sort_by(|a, b| b.deviation.off_degrees.total_cmp(&a.deviation.off_degrees));

@@ -9,9 +9,9 @@ const STRONGEST: f64 = 0.6;
 
 pub(super) fn push_confusion(out: &mut String, confusion: &Confusion) {
     out.push_str(
-        "<h2>What was taken for what</h2>
-<p class=\"small\">Rows: what is labelled. Columns: what was found. Green \
-         is right, red is wrong; the stronger, the larger its share of the row.</p>
+        "<h2>Confusion matrix</h2>
+<p class=\"small\">Rows: labelled class. Columns: detected class. Green \
+         is right, red is wrong; the darker, the larger the share of the row.</p>
 <div class=\"wide\"><table \
          class=\"heat\">
 <tr><td></td>",

@@ -312,9 +312,9 @@ fn notes_name_what_to_teach() {
             "hands_up needs more people: 2 samples of 1 person.",
             "hands_up: 3 of 4 samples missed.",
             "hands_up is mistaken for wave once.",
-            "kick is seen in unknown motion once.",
-            "wave is found but labelled nowhere in these clips.",
-            "bow is trained but has no sample here: nothing is known of it.",
+            "kick is detected in unknown motion once.",
+            "wave is detected but not labelled in these clips.",
+            "bow is trained but has no sample here, so it is not measured.",
         ]
     );
     let perfect = Evaluation::of(&infos, &truths[4..], &founds[1..2]).unwrap();

@@ -65,9 +65,9 @@ fn push_legend(out: &mut String, palette: &Palette) {
         ));
     }
     out.push_str(
-        "</p>\n<p class=\"small\">Above: what is labelled (<b>○</b> missed, <b>✗</b> taken for another class). Below: what was \
-         found (<b>✗</b> wrong class, <b>!</b> false alarm, <b>~</b> right class but badly placed or twice; the small tick \
-         is the moment of the report). The empty ground is not labelled.</p>\n",
+        "</p>\n<p class=\"small\">Above: labels (<b>○</b> missed, <b>✗</b> detected as another class). Below: \
+         detections (<b>✗</b> wrong class, <b>!</b> false alarm, <b>~</b> right class but badly placed or double; the small tick \
+         is the time of the report).</p>\n",
     );
 }
 

@@ -302,7 +302,7 @@ fn draw(
     let half = if complement { ", the other half" } else { "" };
     let map = confusion(
         study,
-        format!("{name}{half}: what the tree says (rows) of what is labelled (columns)"),
+        format!("{name}{half}: class by the tree (rows) and labelled class (columns)"),
         tally,
     );
     let file = if complement {

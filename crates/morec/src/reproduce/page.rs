@@ -13,7 +13,7 @@ pub fn page(result: &Reproduction, about: &[(String, String)]) -> String {
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
          <meta name=\"color-scheme\" content=\"light dark\">\n\
          <title>Reproduction</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n\
-         <h1>The evaluation of 2009, and today's</h1>\n<dl class=\"about\">\n"
+         <h1>The evaluation of 2009, reproduced</h1>\n<dl class=\"about\">\n"
     );
     for (name, value) in about {
         out.push_str(&format!(
@@ -24,8 +24,8 @@ pub fn page(result: &Reproduction, about: &[(String, String)]) -> String {
     }
     out.push_str(
         "</dl>\n<p>Bucur, <i>Efficient Motion Capture Database Indexing on the Cell Processor</i>, Trinity College Dublin \
-         2009, chapter 5. The thesis had other clips, other labels and 11 classes; figures can be compared in kind, \
-         not to the digit. <b>Faithful</b> keeps every parameter of the thesis, <b>tuned</b> changes some of them \
+         2009, chapter 5. The thesis had other clips, other labels and 11 classes, so figures agree in \
+         size at best. <b>Faithful</b> keeps every parameter of the thesis, <b>tuned</b> changes some of them \
          (docs/parameters.md).</p>\n",
     );
     push_classes(&mut out, result);
@@ -41,8 +41,8 @@ pub fn page(result: &Reproduction, about: &[(String, String)]) -> String {
 
 fn push_classes(out: &mut String, result: &Reproduction) {
     out.push_str(
-        "<h2>Classes (Table 5.1)</h2>\n<p>The thesis's middle length is the mean of the shortest and the longest, ours the \
-         median.</p>\n<div class=\"wide\"><table>\n<tr><th></th><th>class</th><th>shortest, s</th><th>middle, s</th>\
+        "<h2>Classes (Table 5.1)</h2>\n<p>The middle length is the mean of the shortest and the longest in the thesis, here \
+         the median.</p>\n<div class=\"wide\"><table>\n<tr><th></th><th>class</th><th>shortest, s</th><th>middle, s</th>\
          <th>longest, s</th><th>samples</th><th>people</th></tr>\n",
     );
     let mut row = |of: &str, class: &str, [a, b, c]: [f64; 3], samples: usize, people: usize| {
@@ -64,8 +64,8 @@ fn push_classes(out: &mut String, result: &Reproduction) {
 
 fn push_performance(out: &mut String, result: &Reproduction) {
     out.push_str(
-        "<h2>Performance (Table 5.8)</h2>\n<p>The thesis ran each stage on a processor of its own and printed what its code \
-         and data take and clocks per instruction; here one thread runs all stages, and the table says what each takes of a \
+        "<h2>Performance (Table 5.8)</h2>\n<p>The thesis ran each stage on a processor of its own and printed the size of its \
+         code and data and its clocks per instruction. Here one thread runs all stages: the table has the time of each for a \
          row at the model's rate, and the bytes that it reads and writes.</p>\n<div class=\"wide\"><table>\n\
          <tr><th></th><th>stage</th><th>KB</th><th>clocks per instruction</th><th>µs a row</th><th>share</th></tr>\n",
     );
@@ -103,8 +103,8 @@ fn push_performance(out: &mut String, result: &Reproduction) {
 
 fn push_segmentation(out: &mut String, result: &Reproduction) {
     out.push_str(
-        "<h2>Segmentation (§5.1)</h2>\n<p>The thesis says that repeated motions are not taken apart and that \
-         transitions stay inside segments. So it is: a segment of its own has a sample that shares more than half of \
+        "<h2>Segmentation (§5.1)</h2>\n<p>As the thesis states, repeated motions are not separated, and \
+         transitions stay inside segments. A sample has a segment of its own if they share more than half of \
          the longer of the two.</p>\n<div class=\"wide\"><table>\n<tr><th>clip</th><th>length</th><th>samples</th>\
          <th>cuts</th><th>samples with a segment of their own</th></tr>\n",
     );
@@ -121,8 +121,8 @@ fn push_segmentation(out: &mut String, result: &Reproduction) {
 
 fn push_clustering(out: &mut String, result: &Reproduction) {
     out.push_str(
-        "<h2>Clusters by kWAS (§5.2)</h2>\n<p>Centred: on the database's mean and reduced to 16 dimensions, as §4.2 \
-         says. As they are: with the mean pose in; the printed numbers of clusters look like this.</p>\n\
+        "<h2>Clusters by kWAS (§5.2)</h2>\n<p>Centred: on the database's mean and reduced to 16 dimensions, as in \
+         §4.2. As they are: with the mean pose, which gives numbers of clusters like those printed.</p>\n\
          <div class=\"wide\"><table>\n<tr><th></th><th>τ</th><th>samples</th><th>clusters</th><th>TP</th><th>FP</th>\
          <th>FN</th><th>TN</th><th>Rand</th><th>adjusted</th></tr>\n",
     );
@@ -178,10 +178,10 @@ fn push_cells(out: &mut String, name: &str, first: &[String], counts: &[u64], la
 
 fn push_classification(out: &mut String, result: &Reproduction) {
     out.push_str(
-        "<h2>Cut-out samples (§5.3)</h2>\n<p>Half of each class trains. The thesis counts the samples that trained \
-         among those it classifies; the samples that did not are what matters. In the last columns a sample \
-         must also be as like its class as the recogniser asks of confidence (Eq. 4.5 without the length, or what \
-         stands for it).</p>\n<div class=\"wide\"><table>\n\
+        "<h2>Cut-out samples (§5.3)</h2>\n<p>Half of each class trains. The thesis also classifies the samples that trained; \
+         the unseen ones show how good it is. In the last columns a sample \
+         must also reach the confidence that the recogniser requires (Eq. 4.5 without the length, or its \
+         replacement).</p>\n<div class=\"wide\"><table>\n\
          <tr><th></th><th>seed</th><th>half</th><th>trained</th><th>T</th><th>all: P_C</th><th>P_E</th><th>P_R</th>\
          <th>unseen: P_C</th><th>P_E</th><th>P_R</th><th>alike, all: P_C / P_E</th><th>unseen: P_C / P_E</th>\
          <th>index</th></tr>\n",
@@ -225,7 +225,7 @@ fn push_classification(out: &mut String, result: &Reproduction) {
         .filter(|c| !c.path.is_empty() && !c.complement)
     {
         out.push_str(&format!(
-            "<p>{}, seed {}: a sample's way down the tree (Fig. 5.2):</p>\n<ol>\n",
+            "<p>{}, seed {}: the path of a sample down the tree (Fig. 5.2):</p>\n<ol>\n",
             c.setting.name(),
             c.seed
         ));
@@ -241,8 +241,8 @@ fn push_classification(out: &mut String, result: &Reproduction) {
 
 fn push_streams(out: &mut String, result: &Reproduction) {
     out.push_str(
-        "<h2>Streams (§5.4)</h2>\n<p>Accuracy as the thesis counts it lets a long detection match a short sample; F1 at \
-         half overlap, one to one, is strict.</p>\n<div class=\"wide\"><table>\n<tr><th></th><th>seed</th><th>TP</th>\
+        "<h2>Streams (§5.4)</h2>\n<p>In the thesis's accuracy a long detection can match a short sample; F1 at \
+         half overlap, one to one, is stricter.</p>\n<div class=\"wide\"><table>\n<tr><th></th><th>seed</th><th>TP</th>\
          <th>FP</th><th>FN</th><th>TN</th><th>accuracy</th><th>F1</th><th>false alarms a minute, unknown motion</th>\
          <th>delay</th></tr>\n",
     );

@@ -98,10 +98,7 @@ fn one(study: &Study<'_>, clip: &TrainClip) -> Result<(Segmented, Picture), Repr
     .lane("cut", cuts)
     .svg();
     let name = format!("segmentation_{}", clip.name);
-    let caption = format!(
-        "{}: what is labelled, and where it was cut (Fig. 5.1)",
-        clip.name
-    );
+    let caption = format!("{}: labels and cuts (Fig. 5.1)", clip.name);
     let alone = samples.iter().filter(has_its_own).count();
     let segmented = Segmented {
         clip: clip.name.clone(),

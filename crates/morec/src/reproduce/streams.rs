@@ -82,7 +82,7 @@ fn timeline_picture(study: &Study<'_>, setting: Setting, line: &Timeline) -> Pic
         kind: kind(class),
     };
     let (name, clip) = (setting.name(), &line.stream.clip);
-    let title = format!("{clip}, {name}: what is labelled and what was recognised");
+    let title = format!("{clip}, {name}: labels and detections");
     let svg = LaneChart::new(title, study.classes.to_vec(), line.stream.duration_secs)
         .lane(
             "labelled",

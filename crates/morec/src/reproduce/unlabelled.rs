@@ -139,8 +139,8 @@ fn measured(
 /// The table of the page.
 pub(super) fn push(out: &mut String, chains: &[UnlabelledChain]) {
     out.push_str(
-        "<h2>From clips to groups without a label</h2>\n<p>The thesis cuts clips and groups what lies between cuts; it calls repeated motions of great \
-         importance and has nothing for them (ch. 6). Beside it, sets of repetitions (docs/guide/discover.md). Rand indices are of the samples with a segment of \
+        "<h2>From clips to groups without a label</h2>\n<p>The thesis cuts clips and groups the segments between cuts; it has no method for repeated \
+         motions, which it calls important (ch. 6). For comparison: sets of repetitions (docs/guide/discover.md). Rand indices are over samples with a segment of \
          their own.</p>\n<div class=\"wide\"><table>\n<tr><th></th><th>segments</th><th>groups</th><th>samples</th>\
          <th>with a segment of their own</th><th>Rand</th><th>adjusted</th></tr>\n",
     );
