@@ -65,7 +65,7 @@ enum MorecStatus
      */
     MOREC_STATUS_NULL_POINTER = 1,
     /**
-     * A handle that is none: never was one, of another kind, or destroyed.
+     * An invalid handle: never given, of another kind, or destroyed.
      */
     MOREC_STATUS_BAD_HANDLE = 2,
     /**
@@ -73,7 +73,7 @@ enum MorecStatus
      */
     MOREC_STATUS_INVALID_VALUE = 3,
     /**
-     * There is not enough room for the answer; what it takes is said where the function says so.
+     * There is not enough room for the answer; the function's documentation says where the room needed is returned.
      */
     MOREC_STATUS_BUFFER_TOO_SMALL = 4,
     /**
@@ -576,7 +576,7 @@ typedef struct MorecFrame {
      */
     int32_t space;
     /**
-     * 0.
+     * Must be 0.
      */
     uint32_t reserved;
 } MorecFrame;
@@ -751,7 +751,7 @@ bool mrStop(void);
  * Gives the solution so far: the last motions that were recognised since `mrStart`, at most `*nSegments`, in the order
  * of time. `*nSegments` becomes their number.
  *
- * A motion stays in the solution: `number` tells which ones are new. Of more than 16384 the last are kept. If
+ * A motion stays in the solution: `number` shows which are new. Of more than 16384 the last are kept. If
  * `pSegments` is null, `*nSegments` becomes the number of all that are kept.
  *
  * # Safety
@@ -895,7 +895,7 @@ const char *morec_status_text(int32_t status);
 const char *morec_version(void);
 
 /**
- * The name of a `MorecRole` or a point of a hand or of a custom skeleton, as in `left_forearm`, `right_index_tip` and `point_1`; null for a number that is none. The text stays for ever.
+ * The name of a `MorecRole` or a point of a hand or of a custom skeleton, as in `left_forearm`, `right_index_tip` and `point_1`; null for a number without a name. The text stays for ever.
  */
 const char *morec_role_name(int32_t role);
 

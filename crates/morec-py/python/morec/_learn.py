@@ -114,7 +114,7 @@ def train(
     svrdm : {"tuned", "faithful"}
         The parameters of the method svrdm.
     unlabelled : {"background", "ignore"}
-        What the unlabelled parts of labelled clips are: motion that is none of the classes, or nothing to go by.
+        Meaning of the unlabelled parts of labelled clips: motion of no class, or unknown.
     everyday : {"auto", "always", "never"}
         Whether synthetic everyday motion is background too (not with method svrdm); auto: if background holds less than a
         minute.

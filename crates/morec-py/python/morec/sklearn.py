@@ -117,7 +117,7 @@ class MotionClassifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
         return shares
 
     def predict(self, X: Any) -> npt.NDArray[Any]:
-        """The nearest class of each sample; with ``reject``, `rejected` for what is none of the classes."""
+        """The nearest class of each sample; with ``reject``, `rejected` for samples of no class."""
         check_is_fitted(self)
         rows = self.index_.classify(self._clips(X))
         names = dict(zip(self.index_.class_names, self.classes_))
