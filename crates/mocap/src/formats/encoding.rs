@@ -26,6 +26,7 @@ impl Encoding {
         }
     }
 
+    /// As warnings call it.
     pub fn name(self) -> &'static str {
         match self {
             Self::Utf8 => "UTF-8",

@@ -28,6 +28,7 @@ impl Default for SketchLanes {
 }
 
 impl SketchLanes {
+    /// 0 in every lane, for sums to begin with.
     pub const ZERO: Self = Self([0.0; LANES]);
 }
 

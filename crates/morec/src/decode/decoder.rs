@@ -75,6 +75,7 @@ pub struct Decoder {
 /// [`CandidatePolicy::Verify`], where 0 and less refuse it.
 #[derive(Debug, Clone, Copy)]
 pub struct ScoredCandidate {
+    /// Class, stretch and distance.
     pub candidate: Candidate,
     /// Its score, above 0 and to 1.
     pub score: f64,

@@ -13,11 +13,13 @@ pub(super) type Perform = fn(&mut Actor);
 /// A person on stage. Motions are scheduled from [`Actor::now_secs`] on and move it forward.
 #[derive(Debug, Clone)]
 pub struct Actor {
+    /// Habits and proportions.
     pub person: Person,
     /// Lengths of the person's body.
     pub body: SyntheticBody,
     /// Chance, for what varies from one performance to the next.
     pub rng: Rng,
+    /// Angles over time, as scheduled so far.
     pub timeline: PoseTimeline,
     /// When the next motion starts.
     pub now_secs: f64,

@@ -50,6 +50,7 @@ impl SyntheticBody {
         }
     }
 
+    /// Joints with the lengths of this body, metres.
     pub fn skeleton(&self) -> &Skeleton {
         &self.skeleton
     }

@@ -25,6 +25,7 @@ pub struct TrainingContext<'a> {
     pub set: &'a TrainSet,
     /// Of the rows.
     pub metric: &'a Metric,
+    /// Parameters of the training that compares.
     pub params: &'a TrainParams,
     /// Listener.
     pub progress: &'a dyn Progress,

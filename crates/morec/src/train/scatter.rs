@@ -116,6 +116,7 @@ pub fn within_groups<G: Ord + Copy>(rows: &Rows, groups: &[G]) -> DMatrix<f64> {
     covariance(std::iter::once(&centred), rows.dim())
 }
 
+/// The mean of the rows of each group; `groups` has a value for each row.
 pub fn means_of_groups<G: Ord + Copy>(rows: &Rows, groups: &[G]) -> BTreeMap<G, Vec<f32>> {
     let mut means = BTreeMap::<G, (Vec<f32>, f32)>::new();
     for (row, group) in rows.iter().zip(groups) {

@@ -68,6 +68,7 @@ pub struct Asf {
     pub length_unit: f64,
     /// True if its angles, and those of motions that do not say otherwise, are in degrees.
     pub degrees: bool,
+    /// Position, orientation and channels of the root.
     pub root: Root,
     /// The bones that hang on the root, parents first.
     pub bones: Vec<AsfBone>,

@@ -27,6 +27,7 @@ pub(super) struct BvhHierarchy {
     pub lines: Vec<u64>,
     /// For each joint, its columns.
     pub columns: Vec<Range<usize>>,
+    /// What each column of a frame moves, in the order of the file.
     pub channels: Vec<Channel>,
     /// First joint of each root, in order.
     pub roots: Vec<usize>,

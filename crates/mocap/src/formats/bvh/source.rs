@@ -7,6 +7,7 @@ use crate::formats::{ParseError, Place};
 
 /// The text of a motion table, in pieces of whole lines.
 pub(super) trait TableText {
+    /// Length in bytes.
     fn bytes(&self) -> usize;
     /// Back to its start.
     fn rewind(&mut self) -> Result<(), ParseError>;
