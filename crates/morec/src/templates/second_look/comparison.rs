@@ -1,31 +1,24 @@
 //! One comparison of a segment, from end to end, with every taught sample.
 
+use std::sync::Arc;
+
 use multiversion::multiversion;
 
 use crate::classes::ClassId;
-use crate::features::Rows;
 use crate::math::portable;
 use crate::templates::Metric;
 
-use super::LOOK_COLUMNS;
+use super::bounds::{CoarseBasis, CoarseRows, TOGETHER, least_costs};
+use super::mapped::{
+    MappedSegments, divisor, mapped_rows, mean_of, median_of, noise_of, spread_of, squared,
+};
 use super::model::SecondLook;
-use super::segment::SEGMENT_ROWS;
+use super::segment::{BAND, PADDED, SEGMENT, SEGMENT_ROWS};
 
-/// Rows off the diagonal that the alignment may go.
-const BAND: usize = 6;
-/// Exponent by which the spread of both segments normalises their distance.
-const EXPONENT: f32 = 0.85;
-/// Least share of the typical spread that normalises: segments that hardly move must not be near everything.
-const LEAST_SPREAD: f32 = 0.05;
 /// Of the atlas, the distance that counts is that of its third nearest stretch.
 pub const NEAREST_OF_ATLAS: usize = 3;
 /// Distances below this are as good as none.
 const LEAST_DISTANCE: f32 = 1e-3;
-/// Values of a row, padded to whole lanes.
-const LANES: usize = 8;
-const PADDED: usize = LOOK_COLUMNS.next_multiple_of(LANES);
-const SEGMENT: usize = SEGMENT_ROWS * PADDED;
-
 /// What a segment is, and how surely.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Judged {
@@ -33,17 +26,6 @@ pub struct Judged {
     pub class: ClassId,
     /// `ln(s_T / d₁)`, `ln(c₃ / d₁)`, or their mean: see [`SecondLook`].
     pub score: f32,
-}
-
-/// Segments after the metric, each with its spread and its noise.
-#[derive(Debug, Clone, Default)]
-struct MappedSegments {
-    /// [`SEGMENT`] values each.
-    values: Vec<f32>,
-    spreads: Vec<f32>,
-    noises: Vec<f32>,
-    /// [`PADDED`] values each.
-    means: Vec<f32>,
 }
 
 /// A model laid out for comparing. Nothing is allocated after construction.
@@ -54,6 +36,7 @@ pub struct Comparison {
     samples: MappedSegments,
     atlas: MappedSegments,
     typical_spread: f32,
+    least_divisor: f32,
     scale: f32,
     has_scale: bool,
     /// Scores from it down need not be exact where the atlas counts.
@@ -62,7 +45,9 @@ pub struct Comparison {
     farthest: f32,
     mapped: Vec<f32>,
     segment: Vec<f32>,
+    basis: Arc<CoarseBasis>,
     /// Of the segment.
+    coarse: Box<CoarseRows>,
     noise: f32,
     mean: [f32; PADDED],
     /// Segments by the distance of their means, which is room for the samples and for the atlas.
@@ -73,11 +58,17 @@ impl Comparison {
     /// Maps the segments of `model`. O(samples · d²).
     pub fn new(model: &SecondLook) -> Self {
         let metric = Metric::new(&model.ridged, &model.total);
-        let samples = MappedSegments::mapped(&metric, &model.segments);
-        let atlas = MappedSegments::mapped(&metric, &model.atlas);
+        let samples = mapped_rows(&metric, &model.segments);
+        let basis = CoarseBasis::of(&samples);
+        let mut samples = MappedSegments::of(samples, &basis);
+        let mut atlas = MappedSegments::of(mapped_rows(&metric, &model.atlas), &basis);
+        let typical_spread = median_of(&mut samples.spreads.clone()).max(1e-6);
+        samples.set_tangents(typical_spread);
+        atlas.set_tangents(typical_spread);
         Self {
             classes: model.classes.clone(),
-            typical_spread: median_of(&mut samples.spreads.clone()).max(1e-6),
+            typical_spread,
+            least_divisor: divisor(0.0),
             order: Vec::with_capacity(samples.spreads.len().max(atlas.spreads.len())),
             mean: [0.0; PADDED],
             atlas,
@@ -88,6 +79,8 @@ impl Comparison {
             farthest: f32::MAX,
             mapped: vec![0.0; SEGMENT_ROWS * metric.dim()],
             segment: vec![0.0; SEGMENT],
+            coarse: Box::new(basis.rows(&[])),
+            basis: Arc::new(basis),
             noise: 0.0,
             metric,
         }
@@ -123,15 +116,22 @@ impl Comparison {
     ) -> Option<Judged> {
         let spread = self.map(segment);
         let mut best: Option<(f32, ClassId)> = None;
-        self.samples.sort_by_mean(&self.mean, &mut self.order);
-        let order = self.order.iter().map(|(_, sample)| *sample);
-        for sample in order.filter(|sample| counts(*sample)) {
-            let most = best.map_or(self.farthest, |(distance, _)| distance.min(self.farthest));
-            let distance = self.distance(&self.samples, sample, spread, most);
-            if best.is_none() || distance < most {
-                best = Some((distance, self.classes[sample]));
-            }
-        }
+        let farthest = self.farthest;
+        let mut order = std::mem::take(&mut self.order);
+        let classes = &self.classes;
+        self.search(
+            &self.samples,
+            (spread, farthest),
+            counts,
+            &mut order,
+            |sample, distance| {
+                if best.is_none_or(|(nearest, _)| distance < nearest.min(farthest)) {
+                    best = Some((distance, classes[sample]));
+                }
+                best.map_or(farthest, |(nearest, _)| nearest.min(farthest))
+            },
+        );
+        self.order = order;
         let (nearest, class) = best?;
         let score = self.score(spread, nearest);
         Some(Judged { class, score })
@@ -162,20 +162,25 @@ impl Comparison {
             false => self.bound,
         };
         let refused = nearest * portable::exp(f64::from(least)) as f32;
-        self.atlas.sort_by_mean(&self.mean, &mut self.order);
-        for (_, stretch) in &self.order {
-            let most = found[NEAREST_OF_ATLAS - 1];
-            let distance = self.distance(&self.atlas, *stretch, spread, most);
-            if distance < most {
-                found[NEAREST_OF_ATLAS - 1] = distance;
-                found.sort_unstable_by(f32::total_cmp);
-                // As near to so much other motion it is refused, whatever the rest is at.
-                let third = found[NEAREST_OF_ATLAS - 1];
-                if third < f32::MAX && third <= refused {
-                    break;
+        let mut order = std::mem::take(&mut self.order);
+        self.search(
+            &self.atlas,
+            (spread, f32::MAX),
+            |_| true,
+            &mut order,
+            |_, distance| {
+                if distance < found[NEAREST_OF_ATLAS - 1] {
+                    found[NEAREST_OF_ATLAS - 1] = distance;
+                    found.sort_unstable_by(f32::total_cmp);
                 }
-            }
-        }
+                // As near to so much other motion it is refused, whatever the rest is at.
+                match found[NEAREST_OF_ATLAS - 1] {
+                    third if third < f32::MAX && third <= refused => f32::MIN,
+                    third => third,
+                }
+            },
+        );
+        self.order = order;
         let against = |of: f32| portable::ln(f64::from(of / nearest)) as f32;
         let other = against(found[NEAREST_OF_ATLAS - 1].max(LEAST_DISTANCE));
         match self.has_scale {
@@ -186,9 +191,15 @@ impl Comparison {
 
     /// Distances of a segment to every sample, in their order.
     pub fn distances(&mut self, segment: &[f32]) -> Vec<f32> {
+        let all: Vec<usize> = (0..self.samples.spreads.len()).collect();
+        self.distances_to(segment, &all)
+    }
+
+    /// Distances of a segment to some samples.
+    pub fn distances_to(&mut self, segment: &[f32], samples: &[usize]) -> Vec<f32> {
         let spread = self.map(segment);
-        let distance = |sample| self.distance(&self.samples, sample, spread, f32::MAX);
-        (0..self.samples.spreads.len()).map(distance).collect()
+        let distance = |sample: &usize| self.distance(&self.samples, *sample, spread, f32::MAX);
+        samples.iter().map(distance).collect()
     }
 
     /// Takes a segment through the metric; gives its spread.
@@ -204,7 +215,59 @@ impl Comparison {
         }
         self.noise = noise_of(&self.segment);
         self.mean = mean_of(&self.segment);
+        *self.coarse = self.basis.rows(&self.segment);
         spread_of(&self.segment)
+    }
+
+    /// Gives `take` the segments of `of` that `counts` admits and their distances: those of the nearest means first, then each that its bound
+    /// does not keep out. `take` returns the distance from which on none is asked for, at first `most`; below zero, the search ends.
+    fn search(
+        &self,
+        of: &MappedSegments,
+        (spread, mut most): (f32, f32),
+        counts: impl Fn(usize) -> bool,
+        order: &mut Vec<(f32, usize)>,
+        mut take: impl FnMut(usize, f32) -> f32,
+    ) {
+        of.nearest_means(&self.mean, &counts, order);
+        for (_, place) in order.iter() {
+            if most < 0.0 {
+                return;
+            }
+            most = take(*place, self.distance(of, *place, spread, most));
+        }
+        for (block, coarse) in of.coarse.iter().enumerate() {
+            if most < 0.0 {
+                return;
+            }
+            let first = block * TOGETHER;
+            let limits = std::array::from_fn(|lane| self.limit(of, first + lane, spread, most));
+            let costs = least_costs(coarse, &self.coarse, &limits);
+            for lane in (0..TOGETHER).filter(|lane| costs[*lane] < limits[*lane]) {
+                let place = first + lane;
+                let is_left = counts(place) && !order.iter().any(|(_, looked)| *looked == place);
+                if is_left {
+                    most = take(place, self.distance(of, place, spread, most));
+                }
+            }
+        }
+    }
+
+    /// Costs from it on say that a distance is `most` or more; below every cost where there is no segment.
+    fn limit(&self, of: &MappedSegments, place: usize, spread: f32, most: f32) -> f32 {
+        let (Some(noise), Some((at_own, slope))) = (of.noises.get(place), of.tangents.get(place))
+        else {
+            return f32::MIN;
+        };
+        let noise = (self.noise - noise).max(0.0);
+        let moved = (spread - noise).max(0.0);
+        let divisor = (at_own + slope * (moved - of.spreads[place])).max(self.least_divisor);
+        Self::cost_of(most * divisor, noise) * ROUNDING
+    }
+
+    /// The cost of an alignment whose mean, less the noise, is `mean`.
+    fn cost_of(mean: f32, noise: f32) -> f32 {
+        (mean + noise).min(mean / (1.0 - NOISE_SHARE)).min(f32::MAX) * PATH_WEIGHT
     }
 
     /// `D / max(0.05, (V_T + V_S) / 2 V₀)^0.85`, or anything from `most` on if it is not below. What the segment has of noise beyond the
@@ -213,40 +276,20 @@ impl Comparison {
         let noise = (self.noise - of.noises[place]).max(0.0);
         let moved = (spread - noise).max(0.0);
         let spreads = (of.spreads[place] + moved) / (2.0 * self.typical_spread);
-        let norm = portable::powf(f64::from(spreads.max(LEAST_SPREAD)), f64::from(EXPONENT)) as f32;
+        let norm = divisor(spreads);
         let taught = &of.values[place * SEGMENT..][..SEGMENT];
         // From here on it is not below `most` when the noise is taken off.
-        let least = most * norm;
-        let limit = (least + noise).min(least / (1.0 - NOISE_SHARE));
-        let plain = warped(taught, &self.segment, limit.min(f32::MAX) * PATH_WEIGHT) / PATH_WEIGHT;
+        let plain = warped(taught, &self.segment, Self::cost_of(most * norm, noise)) / PATH_WEIGHT;
         (plain - noise.min(NOISE_SHARE * plain)) / norm
     }
 }
 
+/// The bound and the cost are rounded differently: by less than this.
+const ROUNDING: f32 = 1.001;
 /// Sum of the weights along an alignment.
 const PATH_WEIGHT: f32 = (2 * SEGMENT_ROWS) as f32;
 /// At most this share of a distance is taken for noise.
 const NOISE_SHARE: f32 = 0.5;
-/// What noise of variance 1 leaves in the squared fourth difference of rows: the squares of 1 −4 6 −4 1.
-const NOISE_GAIN: f32 = 70.0;
-
-/// The squared distance that noise adds to a row: the median of the squared fourth differences, in which motion of a few hertz
-/// vanishes (Rice, *Bandwidth choice for nonparametric regression*, 1984).
-fn noise_of(segment: &[f32]) -> f32 {
-    let rows = || segment.chunks_exact(PADDED);
-    let mut squares = [0.0f32; SEGMENT_ROWS - 4];
-    let rows = [0, 1, 2, 3, 4].map(|skipped| rows().skip(skipped));
-    let [a, b, c, d, e] = rows;
-    let windows = a.zip(b).zip(c.zip(d)).zip(e);
-    for (square, (((a, b), (c, d)), e)) in squares.iter_mut().zip(windows) {
-        for k in 0..PADDED {
-            let difference = a[k] - 4.0 * b[k] + 6.0 * c[k] - 4.0 * d[k] + e[k];
-            *square += difference * difference / NOISE_GAIN;
-        }
-    }
-    median_of(&mut squares)
-}
-
 /// Samples that the scale is measured on at most.
 const MEASURED: usize = 96;
 
@@ -259,11 +302,12 @@ impl SecondLook {
         let count = self.classes.len();
         for k in 0..count.min(MEASURED) {
             let sample = k * count / count.min(MEASURED);
-            let distances = comparison.distances(self.segment(sample));
+            let spread = comparison.map(self.segment(sample));
             let mut nearest = std::collections::BTreeMap::<ClassId, f32>::new();
-            for (class, distance) in self.classes.iter().zip(distances) {
+            for (place, class) in self.classes.iter().enumerate() {
                 if *class != self.classes[sample] {
                     let least = nearest.entry(*class).or_insert(f32::MAX);
+                    let distance = comparison.distance(&comparison.samples, place, spread, *least);
                     *least = least.min(distance);
                 }
             }
@@ -274,71 +318,6 @@ impl SecondLook {
         }
         median_of(&mut medians)
     }
-}
-
-impl MappedSegments {
-    fn mapped(metric: &Metric, rows: &Rows) -> Self {
-        let dim = metric.dim();
-        let mapped = metric.apply_all(rows);
-        let mut values = vec![0.0; rows.len() * PADDED];
-        for (row, out) in mapped.iter().zip(values.chunks_exact_mut(PADDED)) {
-            out[..dim].copy_from_slice(row);
-        }
-        let spreads = values.chunks_exact(SEGMENT).map(spread_of).collect();
-        let noises = values.chunks_exact(SEGMENT).map(noise_of).collect();
-        let means = values.chunks_exact(SEGMENT).flat_map(mean_of).collect();
-        Self {
-            values,
-            spreads,
-            noises,
-            means,
-        }
-    }
-
-    /// Writes the places of all segments to `order`, the one whose mean is the nearest to `mean` first: the nearest segments come early, and
-    /// most others are given up after a few rows.
-    fn sort_by_mean(&self, mean: &[f32; PADDED], order: &mut Vec<(f32, usize)>) {
-        let means = self.means.chunks_exact(PADDED).enumerate();
-        order.clear();
-        order.extend(means.map(|(place, of)| (squared(of, mean), place)));
-        order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    }
-}
-
-/// The median, between two of an even number; 0 of none.
-pub fn median_of(values: &mut [f32]) -> f32 {
-    values.sort_by(f32::total_cmp);
-    match values.len() {
-        0 => 0.0,
-        n if n % 2 == 1 => values[n / 2],
-        n => (values[n / 2 - 1] + values[n / 2]) / 2.0,
-    }
-}
-
-/// Mean of a segment's rows.
-fn mean_of(segment: &[f32]) -> [f32; PADDED] {
-    let mut mean = [0.0; PADDED];
-    for row in segment.chunks_exact(PADDED) {
-        for (mean, value) in mean.iter_mut().zip(row) {
-            *mean += value / SEGMENT_ROWS as f32;
-        }
-    }
-    mean
-}
-
-/// Mean squared distance of a segment's rows from their mean.
-fn spread_of(segment: &[f32]) -> f32 {
-    let mut mean = [0.0f64; PADDED];
-    let mut square = 0.0f64;
-    for row in segment.chunks_exact(PADDED) {
-        for (mean, value) in mean.iter_mut().zip(row) {
-            *mean += f64::from(*value);
-            square += f64::from(*value) * f64::from(*value);
-        }
-    }
-    let rows = SEGMENT_ROWS as f64;
-    let mean = mean.iter().map(|m| (m / rows) * (m / rows));
-    (square / rows - mean.sum::<f64>()).max(0.0) as f32
 }
 
 /// Cost of the cheapest path that aligns all rows of both segments: steps that go on in both count twice, in one of them once (Sakoe and
@@ -374,19 +353,6 @@ fn warped(a: &[f32], b: &[f32], limit: f32) -> f32 {
         before = here;
     }
     before[BAND + 1]
-}
-
-#[inline(always)]
-fn squared(a: &[f32], b: &[f32]) -> f32 {
-    let mut sums = [0.0f32; LANES];
-    let (a, _) = a.as_chunks::<LANES>();
-    let (b, _) = b.as_chunks::<LANES>();
-    for (a, b) in a.iter().zip(b) {
-        let apart: [f32; LANES] = std::array::from_fn(|lane| a[lane] - b[lane]);
-        sums = std::array::from_fn(|lane| sums[lane] + apart[lane] * apart[lane]);
-    }
-    let [a, b, c, d, e, f, g, h] = sums;
-    ((a + e) + (c + g)) + ((b + f) + (d + h))
 }
 
 /// The cost of aligning rows of one value each.

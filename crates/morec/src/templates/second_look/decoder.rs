@@ -7,8 +7,9 @@ use crate::templates::{Calibration, PerformerKind, TemplateModel};
 
 use super::LOOK_COLUMNS;
 use super::body::BodyTrack;
-use super::comparison::{Comparison, Judged, median_of};
+use super::comparison::{Comparison, Judged};
 use super::extent::LookExtent;
+use super::mapped::median_of;
 use super::segment::{GrownExtent, LONG, SEGMENT_ROWS, SHORT, grow, write_segment};
 
 /// Share of the shorter of two extents beyond which only the better one is reported.

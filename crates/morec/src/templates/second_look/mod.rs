@@ -6,9 +6,11 @@
 //! rows that are compared follow from feature rows alone ([`BodyTrack`]): stored clips, databases and live streams give the same.
 
 mod body;
+mod bounds;
 mod comparison;
 mod decoder;
 mod extent;
+mod mapped;
 mod model;
 mod segment;
 #[cfg(test)]

@@ -10,6 +10,14 @@ use super::{LOOK_COLUMNS, body};
 
 /// Rows of a segment, whatever its length.
 pub const SEGMENT_ROWS: usize = 32;
+/// Numbers that vector instructions take together.
+pub const LANES: usize = 8;
+/// Values of a row, padded to whole lanes.
+pub const PADDED: usize = LOOK_COLUMNS.next_multiple_of(LANES);
+/// Values of a segment of such rows.
+pub const SEGMENT: usize = SEGMENT_ROWS * PADDED;
+/// Rows off the diagonal that an alignment may go.
+pub const BAND: usize = 6;
 /// Ticks that growing inwards leaves of an extent.
 const SHORTEST_TICKS: i64 = 8;
 /// Columns of the places, of which half of the segment's mean is taken off: what remains is where the motion is performed.

@@ -7,20 +7,35 @@ use crate::math::{Axis, Vec3};
 use crate::roles::Role;
 
 use super::body::BodyTrack;
+use super::bounds::{CoarseBasis, TOGETHER, least_costs};
 use super::comparison::warped_rows;
 use super::extent::LookExtent;
-use super::segment::{GrownExtent, LONG, SEGMENT_ROWS, SHORT, grow, sample_span};
+use super::segment::{
+    BAND, GrownExtent, LONG, PADDED, SEGMENT, SEGMENT_ROWS, SHORT, grow, sample_span,
+};
 use super::{LOOK_COLUMNS, segment_of};
 
 /// The recurrence as written, over a table of its own.
 fn slow(a: &[f64], b: &[f64], band: usize) -> f64 {
-    let n = a.len();
+    slow_by(a.len(), band, |i, j| (a[i] - b[j]).powi(2))
+}
+
+/// The same of rows of `width` values.
+fn slow_of(width: usize, a: &[f32], b: &[f32]) -> f64 {
+    slow_by(SEGMENT_ROWS, BAND, |i, j| {
+        let rows = a[i * width..][..width].iter().zip(&b[j * width..][..width]);
+        rows.map(|(a, b)| (f64::from(*a) - f64::from(*b)).powi(2))
+            .sum()
+    })
+}
+
+fn slow_by(n: usize, band: usize, cost: impl Fn(usize, usize) -> f64) -> f64 {
     let mut table = vec![vec![f64::INFINITY; n + 1]; n + 1];
     table[0][0] = 0.0;
     for i in 0..n {
         for j in 0..n {
             if i.abs_diff(j) <= band {
-                let cost = (a[i] - b[j]).powi(2);
+                let cost = cost(i, j);
                 let both = table[i][j] + 2.0 * cost;
                 table[i + 1][j + 1] = both.min(table[i][j + 1] + cost).min(table[i + 1][j] + cost);
             }
@@ -38,6 +53,46 @@ proptest! {
     fn the_alignment_is_the_cheapest_within_the_band(a in values(), b in values()) {
         let (fast, expected) = (warped_rows(&a, &b), slow(&a, &b, 6));
         prop_assert!((f64::from(fast) - expected).abs() < 1e-3 * (1.0 + expected), "{fast} {expected}");
+    }
+}
+
+proptest! {
+    #[test]
+    fn bounds_are_no_larger_than_costs(
+        segments in prop::collection::vec(prop::collection::vec(-3.0f32..3.0, SEGMENT), 2..11),
+        limit in 1.0f32..40_000.0,
+    ) {
+        let basis = CoarseBasis::of(&segments.concat());
+        let rows = basis.rows(&segments[0]);
+        let blocks = basis.blocks(&segments.concat());
+        let all = |limit: f32| -> Vec<f32> {
+            let costs = |block| least_costs(block, &rows, &[limit; TOGETHER]);
+            blocks.iter().flat_map(costs).collect()
+        };
+        let (bounds, limited) = (all(f32::INFINITY), all(limit));
+        for ((segment, bound), limited) in segments.iter().zip(bounds).zip(limited) {
+            let cost = slow_of(PADDED, segment, &segments[0]);
+            prop_assert!(f64::from(bound) <= cost * 1.001, "{} {}", bound, cost);
+            let is_kept = bound < limit && limited == bound || bound >= limit && limited >= limit;
+            prop_assert!(is_kept, "{} {} {}", bound, limited, limit);
+        }
+    }
+
+    #[test]
+    fn bounds_of_rows_of_few_values_are_costs(a in values(), b in values()) {
+        let rows = |values: &[f64]| {
+            let mut rows = vec![0.0f32; SEGMENT];
+            for (row, value) in rows.chunks_exact_mut(PADDED).zip(values) {
+                row[3] = *value as f32;
+            }
+            rows
+        };
+        let (a, b) = (rows(&a), rows(&b));
+        let basis = CoarseBasis::of(&[a.clone(), b.clone()].concat());
+        let blocks = basis.blocks(&a);
+        let [bound, ..] = least_costs(&blocks[0], &basis.rows(&b), &[f32::INFINITY; TOGETHER]);
+        let cost = slow_of(PADDED, &a, &b);
+        prop_assert!((f64::from(bound) - cost).abs() < 1e-3 * (1.0 + cost), "{} {}", bound, cost);
     }
 }
 

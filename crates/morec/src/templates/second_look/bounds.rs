@@ -1,0 +1,139 @@
+//! A lower bound of what aligning two segments costs: most samples are not near, and need no alignment.
+
+use multiversion::multiversion;
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
+
+use super::segment::{BAND, PADDED, SEGMENT, SEGMENT_ROWS};
+
+/// Directions that the bound looks at; on Kinect actions they hold .54 of a distance from the nearest sample.
+const DIRECTIONS: usize = 16;
+/// Rows that the directions are found from at most.
+const ROWS_OF_BASIS: usize = 1024;
+/// Cells of a row's band.
+const CELLS: usize = 2 * BAND + 1;
+/// Of places without a row. Squares of it can be summed.
+const FAR_VALUE: f32 = 1e18;
+/// Segments that are bounded together.
+pub const TOGETHER: usize = 8;
+
+/// The same value of [`TOGETHER`] segments.
+type Lanes = [f32; TOGETHER];
+/// The rows of [`TOGETHER`] segments in those directions; what is left of the last ones is zero.
+pub type CoarseBlock = [[Lanes; DIRECTIONS]; SEGMENT_ROWS];
+/// Rows of one segment in those directions, with [`BAND`] places before and behind them that are far from every row.
+pub type CoarseRows = [[f32; DIRECTIONS]; SEGMENT_ROWS + 2 * BAND];
+
+/// The directions in which rows of segments vary most: principal components.
+#[derive(Debug)]
+pub struct CoarseBasis {
+    /// Of each value of a row its part in every direction.
+    parts: Vec<[f32; DIRECTIONS]>,
+}
+
+impl CoarseBasis {
+    /// Of segments after the metric. O(d³).
+    pub fn of(segments: &[f32]) -> Self {
+        let step = (segments.len() / PADDED).div_ceil(ROWS_OF_BASIS).max(1);
+        let rows = segments.chunks_exact(PADDED).step_by(step);
+        let values =
+            |row: &[f32]| DVector::from_iterator(PADDED, row.iter().map(|v| f64::from(*v)));
+        let rows: Vec<DVector<f64>> = rows.map(values).collect();
+        let mean = rows.iter().sum::<DVector<f64>>() / rows.len().max(1) as f64;
+        let mut scatter = DMatrix::zeros(PADDED, PADDED);
+        for row in &rows {
+            let apart = row - &mean;
+            scatter.ger(1.0, &apart, &apart, 1.0);
+        }
+        let eigen = SymmetricEigen::new(scatter);
+        let mut order: Vec<usize> = (0..PADDED).collect();
+        order.sort_by(|a, b| eigen.eigenvalues[*b].total_cmp(&eigen.eigenvalues[*a]));
+        let part = |i: usize, k: usize| eigen.eigenvectors[(i, order[k])] as f32;
+        Self {
+            parts: (0..PADDED)
+                .map(|i| std::array::from_fn(|k| part(i, k)))
+                .collect(),
+        }
+    }
+
+    /// The parts of a segment's rows.
+    pub fn rows(&self, segment: &[f32]) -> CoarseRows {
+        let mut rows = [[FAR_VALUE; DIRECTIONS]; SEGMENT_ROWS + 2 * BAND];
+        for (row, out) in segment.chunks_exact(PADDED).zip(&mut rows[BAND..]) {
+            *out = [0.0; DIRECTIONS];
+            for (value, parts) in row.iter().zip(&self.parts) {
+                for (out, part) in out.iter_mut().zip(parts) {
+                    *out += value * part;
+                }
+            }
+        }
+        rows
+    }
+
+    /// The parts of the rows of all segments, [`TOGETHER`] in a block.
+    pub fn blocks(&self, segments: &[f32]) -> Vec<CoarseBlock> {
+        let of_block = |segments: &[f32]| {
+            let mut block = [[[0.0; TOGETHER]; DIRECTIONS]; SEGMENT_ROWS];
+            for (lane, segment) in segments.chunks_exact(SEGMENT).enumerate() {
+                for (row, out) in self.rows(segment)[BAND..].iter().zip(&mut block) {
+                    for (value, lanes) in row.iter().zip(out) {
+                        lanes[lane] = *value;
+                    }
+                }
+            }
+            block
+        };
+        segments.chunks(TOGETHER * SEGMENT).map(of_block).collect()
+    }
+}
+
+/// What aligning each segment of a block with the one of `rows` costs in those directions alone, within the band, but for rounding. The
+/// recurrence is that of the comparison itself. Infinite for all if each is at its limit or above it.
+#[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
+pub fn least_costs(block: &CoarseBlock, rows: &CoarseRows, limits: &Lanes) -> Lanes {
+    const OUTSIDE: Lanes = [f32::INFINITY; TOGETHER];
+    // Of the row before, at place `j - i + BAND`; the place behind them stays infinite.
+    let mut before = [OUTSIDE; CELLS + 1];
+    for (i, values) in block.iter().enumerate() {
+        let mut costs = [[0.0; TOGETHER]; CELLS];
+        for (k, values) in values.iter().enumerate() {
+            for (cell, costs) in costs.iter_mut().enumerate() {
+                let other = rows[i + cell][k];
+                for lane in 0..TOGETHER {
+                    let apart = values[lane] - other;
+                    costs[lane] += apart * apart;
+                }
+            }
+        }
+        let (mut reached, mut least) = (OUTSIDE, OUTSIDE);
+        for cell in 0..CELLS {
+            for lane in 0..TOGETHER {
+                let cost = costs[cell][lane];
+                let behind = smaller(
+                    before[cell][lane] + 2.0 * cost,
+                    before[cell + 1][lane] + cost,
+                );
+                let total = match (i, cell) {
+                    (0, BAND) => 2.0 * cost,
+                    _ => smaller(behind, reached[lane] + cost),
+                };
+                reached[lane] = total;
+                least[lane] = smaller(least[lane], total);
+                before[cell][lane] = total;
+            }
+        }
+        if least
+            .iter()
+            .zip(limits)
+            .all(|(least, limit)| least >= limit)
+        {
+            return OUTSIDE;
+        }
+    }
+    before[BAND]
+}
+
+/// The smaller one: of numbers as `f32::min`, in a single instruction.
+#[inline(always)]
+fn smaller(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
