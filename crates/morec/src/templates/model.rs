@@ -266,13 +266,18 @@ impl TemplateModel {
 
     /// Distances from here on change nothing that the model reports, of classes and of negatives. A distance below its threshold is held
     /// against rivals, negatives, the tick before, and as far as [`separation`](crate::decode::Candidate::separation) tells apart;
-    /// a verifier's evidence looks further.
+    /// a verifier's evidence looks further, and a second look has a reach of its own.
     pub fn reach(&self) -> f32 {
+        if let Some(look) = &self.look {
+            return 1.01 * look.reach;
+        }
+        if let Some(look) = &self.look {
+            return 1.01 * look.reach;
+        }
         let wide = self.stranger.iter();
         let thresholds = (self.class_thresholds.iter().copied())
             .chain(wide.clone().map(|gate| gate.threshold))
-            .chain(self.verifier.iter().map(|v| v.reach))
-            .chain(self.look.iter().map(|look| look.reach));
+            .chain(self.verifier.iter().map(|v| v.reach));
         let threshold = thresholds.fold(self.threshold, f32::max);
         let decode = &self.decode;
         let factor = (wide.map(|gate| gate.rival_share))
