@@ -22,6 +22,7 @@ mod params;
 mod recipe;
 mod refused;
 mod report;
+mod representatives;
 mod ridge;
 mod scatter;
 mod second_look;

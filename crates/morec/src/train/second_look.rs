@@ -73,14 +73,23 @@ pub struct OwnSample {
     pub score: f32,
 }
 
-/// Learns from the segments of `samples`, of a body. [`set_bound`] sets the bound. Beside it, samples judged among the
-/// others. `None` where there is nothing to scale the score by.
+/// What [`learn`] gives.
+pub struct LearnedLook {
+    /// Its bound is that of few classes until [`set_bound`].
+    pub look: SecondLook,
+    /// Samples judged among the others.
+    pub own: Vec<OwnSample>,
+    /// The segments of the samples within their labels: places in the second look.
+    pub segments: Vec<usize>,
+}
+
+/// Learns from the segments of `samples`, of a body. `None` where there is nothing to scale the score by.
 pub fn learn(
     set: &TrainSet,
     samples: &[TrainSample],
     bones: BoneSet,
     params: &TrainParams,
-) -> Option<(SecondLook, Vec<OwnSample>)> {
+) -> Option<LearnedLook> {
     if samples.is_empty() {
         return None;
     }
@@ -130,19 +139,24 @@ pub fn learn(
         return None;
     }
     let places: Vec<usize> = all().map(|(place, _, _)| place).collect();
-    let own = among_others(&look, &places);
+    let segments: Vec<usize> = (0..places.len())
+        .filter(|k| *k == 0 || places[*k] != places[*k - 1])
+        .collect();
+    let own = among_others(&look, &places, &segments);
     let mut scores: Vec<f32> = own.iter().map(|s| s.score).collect();
     scores.sort_by(f32::total_cmp);
     look.own_score = scores.get(scores.len() / 2).copied().unwrap_or(0.0);
-    Some((look, own))
+    Some(LearnedLook {
+        look,
+        own,
+        segments,
+    })
 }
 
-/// The first segment of each sample judged among those of the others; `places` are the segments' samples. O(samples² · rows · band · d).
-fn among_others(look: &SecondLook, places: &[usize]) -> Vec<OwnSample> {
-    let firsts: Vec<usize> = (0..places.len())
-        .filter(|k| *k == 0 || places[*k] != places[*k - 1])
-        .collect();
-    let chosen: Vec<usize> = evenly(&firsts, MOST_JUDGED).copied().collect();
+/// The first segment of each sample judged among those of the others; `places` are the segments' samples, `firsts` the first of each.
+/// O(samples² · rows · band · d).
+fn among_others(look: &SecondLook, places: &[usize], firsts: &[usize]) -> Vec<OwnSample> {
+    let chosen: Vec<usize> = evenly(firsts, MOST_JUDGED).copied().collect();
     let comparison = Comparison::new(look);
     let judge = |comparison: &mut Comparison, segment: &usize| {
         let others = |k: usize| places[k] != places[*segment];

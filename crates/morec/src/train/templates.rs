@@ -24,8 +24,9 @@ use super::mining::{NearMiss, NearestByGate, TrainGates, hard_negatives, smalles
 use super::operating::{AlarmCurve, CAP_EXPONENT};
 use super::params::TrainParams;
 use super::refused;
+use super::representatives::representatives;
 use super::scatter::{covariance, ridged, within_class};
-use super::second_look::{self, HeldOutAlarms, OwnSample};
+use super::second_look::{self, HeldOutAlarms, LearnedLook, OwnSample};
 use super::set::{StreamKind, TrainSample, TrainSet, TrainStream};
 use super::thresholds;
 use super::trim::motion_span;
@@ -79,9 +80,10 @@ fn of_profile(
 ///
 /// 1. metric from how samples of one class by different people differ;
 /// 2. classes of held signs and of activities get models of their own;
-/// 3. other samples that move, and faster copies, are templates, up to a limit for each class;
-/// 4. negatives from background that comes near, thresholds from a rate of false alarms on background;
-/// 5. a verifier or the second look, where the data allow.
+/// 3. where whole motions are judged, the second look learns all samples, and the templates are their representatives; elsewhere all samples
+///    that move, and faster copies, are templates, up to a limit for each class;
+/// 4. thresholds from a rate of false alarms on background, and negatives from background that comes near, where there is no second look;
+/// 5. a verifier, where the data allow.
 ///
 /// # Errors
 /// No sample, more classes than an index numbers, a model whose parts do not fit together, or `progress` cancels.
@@ -115,8 +117,6 @@ pub fn train(
     let samples = samples.into_iter().filter(has_templates).collect();
     let (samples, quiet) = moving(samples, &metric, params);
     let mut samples = templates_of(samples, set.classes.len(), params.max_templates);
-    // Faster copies come behind them.
-    let taught = samples.len();
     let params = &of_profile(params, bones, &samples, &metric);
     let step = TrainingContext {
         set,
@@ -125,14 +125,22 @@ pub fn train(
         progress,
     };
     let plain = MatchGate::plain(params.decode.rest_gate);
-    samples.extend(step.faster_copies(&samples, bones, plain)?);
     let verified = verified_gate(&classes, &samples, params);
     let verified = verified.filter(|_| params.verify);
     let verifies = verified.is_some() && verifier::has_background(set, params);
-    // The second look needs no gate of its own for strangers.
     let judges_whole = params.judge_whole
         && Profile::of(bones) == Profile::Body
-        && second_look::are_apart(set, &samples[..taught], bones, params);
+        && second_look::are_apart(set, &samples, bones, params);
+    // What goes on is compared, too, and reported by its windows.
+    let judged = [samples.as_slice(), &going_on].concat();
+    let learn = || second_look::learn(set, &judged, bones, params);
+    let mut learned = (judges_whole && !verifies).then(learn).flatten();
+    match &learned {
+        // Templates find where to look, and samples are compared there.
+        Some(learned) => samples = step.representatives(learned, samples),
+        None => samples.extend(step.faster_copies(&samples, bones, plain)?),
+    }
+    // The second look needs no gate of its own for strangers.
     let wide = wide_gate(set, &samples, params).filter(|_| !verifies && !judges_whole);
     let gates = TrainGates { plain, wide };
     let gate_of_verifier = verified.filter(|_| verifies).map(MatchGate::plain);
@@ -141,13 +149,14 @@ pub fn train(
     let matches = step.templates(&samples, gates, (gate_of_verifier, farthest))?;
     let near: Vec<&NearestByGate> = matches.iter().map(|m| &m.all).collect();
     let near_enough = step.operating(&near, None, |near| &near.plain);
-    let negatives = negatives_of(
-        set,
-        bones,
-        (&samples, &matches),
-        near_enough.threshold,
-        params,
-    );
+    // What comes near is refused by the comparison of whole motions.
+    let negatives = match &learned {
+        Some(_) => Vec::new(),
+        None => {
+            let threshold = near_enough.threshold;
+            negatives_of(set, bones, (&samples, &matches), threshold, params)
+        }
+    };
     let rows: Vec<Rows> = negatives.iter().map(|n| negative_rows(set, n)).collect();
     let all = TrainGates {
         plain: MatchGate::plain(0.0),
@@ -173,15 +182,10 @@ pub fn train(
             verifier = step.verifier(&matches, &near_negatives, threshold);
         }
     }
-    let learned = match verifier {
-        None if judges_whole => {
-            // What goes on is compared, too, and reported by its windows.
-            let judged = [&samples[..taught], &going_on].concat();
-            second_look::learn(set, &judged, bones, params)
-        }
-        _ => None,
-    };
-    let (look, own) = learned.map_or((None, Vec::new()), |(look, own)| (Some(look), own));
+    if verifies && verifier.is_none() && judges_whole {
+        learned = learn();
+    }
+    let (look, own) = learned.map_or((None, Vec::new()), |l| (Some(l.look), l.own));
     let alike = match verifier.is_none() && look.is_none() {
         true => step.alike(&samples, plain, threshold)?,
         false => Vec::new(),
@@ -264,6 +268,23 @@ struct Operating {
 }
 
 impl TrainingContext<'_> {
+    /// The samples that stand for their class, those that were mirrored apart from those that were shown.
+    fn representatives(
+        &self,
+        learned: &LearnedLook,
+        samples: Vec<TrainSample>,
+    ) -> Vec<TrainSample> {
+        let most = match self.params.representatives {
+            0 => samples.len(),
+            most => most,
+        };
+        let group = |s: &TrainSample| (s.class, self.set.streams[s.stream].is_copy);
+        let groups: Vec<_> = samples.iter().map(group).collect();
+        let segments = &learned.segments[..samples.len()];
+        let chosen = representatives(&learned.look, segments, &groups, most);
+        chosen.into_iter().map(|k| samples[k].clone()).collect()
+    }
+
     /// Bound of the threshold at a rate of false alarms. It moves with the rate, or it would be all there is where no
     /// background comes near.
     fn most_at(&self, rate: f64) -> f64 {
