@@ -74,12 +74,9 @@ pub fn unzip(
     wanted: &dyn Fn(&str) -> bool,
     most: usize,
 ) -> Result<Vec<Member>, ParseError> {
-    let fail = |error: zip::result::ZipError| {
-        ParseError::new(Place::File, "a whole zip archive", error.to_string())
-    };
     let refuse =
         |expected: String, found: String| Err(ParseError::new(Place::File, expected, found));
-    let mut archive = zip::ZipArchive::new(Cursor::new(bytes)).map_err(fail)?;
+    let mut archive = zip::ZipArchive::new(Cursor::new(bytes)).map_err(no_archive)?;
     if archive.len() > MOST_MEMBERS {
         let expected = format!("at most {MOST_MEMBERS} files in an archive");
         return refuse(expected, archive.len().to_string());
@@ -87,14 +84,14 @@ pub fn unzip(
     let (mut left, mut packed) = (most, 0u64);
     let mut members = Vec::new();
     for number in 0..archive.len() {
-        let file = archive.by_index(number).map_err(fail)?;
+        let file = archive.by_index(number).map_err(no_archive)?;
         // Files that lie on the same bytes are more than the archive can hold side by side.
         packed = packed.saturating_add(file.compressed_size());
         if packed > bytes.len() as u64 {
             let expected = "files side by side in a zip archive".to_owned();
             return refuse(expected, "files that lie on the same bytes".to_owned());
         }
-        let path = file.name().replace('\\', "/");
+        let path = file.name().map_err(no_archive)?.replace('\\', "/");
         if file.is_dir() || !wanted(&path) {
             continue;
         }
@@ -112,14 +109,20 @@ pub fn unzip(
     Ok(members)
 }
 
+fn no_archive(error: zip::result::ZipError) -> ParseError {
+    ParseError::new(Place::File, "a whole zip archive", error.to_string())
+}
+
 /// The paths in a zip archive, without unpacking anything.
 ///
 /// # Errors
 /// Bytes that are no zip archive.
 pub fn zip_paths(bytes: &[u8]) -> Result<Vec<String>, ParseError> {
-    let archive = zip::ZipArchive::new(Cursor::new(bytes))
-        .map_err(|error| ParseError::new(Place::File, "a whole zip archive", error.to_string()))?;
-    Ok(archive.file_names().map(str::to_owned).collect())
+    let archive = zip::ZipArchive::new(Cursor::new(bytes)).map_err(no_archive)?;
+    let paths = archive.file_names();
+    paths
+        .map(|path| Ok(path.map_err(no_archive)?.into_owned()))
+        .collect()
 }
 
 /// Text in UTF-16, with a byte order mark or beginning with ASCII letters, as UTF-8; other bytes as they are.
