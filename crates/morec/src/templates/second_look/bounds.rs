@@ -134,6 +134,6 @@ pub fn least_costs(block: &CoarseBlock, rows: &CoarseRows, limits: &Lanes) -> La
 
 /// The smaller one: of numbers as `f32::min`, in a single instruction.
 #[inline(always)]
-fn smaller(a: f32, b: f32) -> f32 {
+pub fn smaller(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }

@@ -8,12 +8,12 @@ use crate::classes::ClassId;
 use crate::math::portable;
 use crate::templates::Metric;
 
-use super::bounds::{CoarseBasis, CoarseRows, TOGETHER, least_costs};
+use super::bounds::{CoarseBasis, CoarseRows, TOGETHER, least_costs, smaller};
 use super::mapped::{
-    MappedSegments, divisor, mapped_rows, mean_of, median_of, noise_of, spread_of, squared,
+    MappedSegments, divisor, mapped_rows, mean_of, median_of, noise_of, spread_of, squares, sum,
 };
 use super::model::SecondLook;
-use super::segment::{BAND, PADDED, SEGMENT, SEGMENT_ROWS};
+use super::segment::{BAND, LANES, PADDED, SEGMENT, SEGMENT_ROWS};
 
 /// Of the atlas, the distance that counts is that of its third nearest stretch.
 pub const NEAREST_OF_ATLAS: usize = 3;
@@ -324,35 +324,38 @@ impl SecondLook {
 /// Chiba 1978, symmetric weights), within [`BAND`] rows of the diagonal. `f32::MAX` where every path costs `limit` or more.
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 fn warped(a: &[f32], b: &[f32], limit: f32) -> f32 {
-    const WIDTH: usize = 2 * BAND + 1;
-    const OUTSIDE: f32 = f32::MAX;
-    // Of the row before, at place `j - i + BAND`; one more on each side stays outside.
-    let mut before = [OUTSIDE; WIDTH + 2];
+    const CELLS: usize = 2 * BAND + 1;
+    const OUTSIDE: f32 = f32::INFINITY;
+    // Of the row before, at place `j - i + BAND`; the place behind them stays outside.
+    let mut before = [OUTSIDE; CELLS + 1];
     for i in 0..SEGMENT_ROWS {
-        let mut here = [OUTSIDE; WIDTH + 2];
         let row = &a[i * PADDED..][..PADDED];
-        let mut least = OUTSIDE;
-        for k in 0..WIDTH {
-            let Some(j) = (i + k).checked_sub(BAND).filter(|j| *j < SEGMENT_ROWS) else {
-                continue;
+        let cells = BAND.saturating_sub(i)..CELLS.min(SEGMENT_ROWS + BAND - i);
+        let others = b[(i + cells.start - BAND) * PADDED..].chunks_exact(PADDED);
+        // Summed apart from the sums of lanes: together they are compiled to half the lanes.
+        let mut lanes = [[0.0; LANES]; CELLS];
+        for (lanes, other) in lanes[cells.clone()].iter_mut().zip(others) {
+            *lanes = squares(row, other);
+        }
+        let mut costs = [OUTSIDE; CELLS];
+        for (cost, lanes) in costs[cells.clone()].iter_mut().zip(&lanes[cells]) {
+            *cost = sum(*lanes);
+        }
+        let (mut reached, mut least) = (OUTSIDE, OUTSIDE);
+        for (k, cost) in costs.into_iter().enumerate() {
+            let both = smaller(before[k] + 2.0 * cost, before[k + 1] + cost);
+            reached = match (i, k) {
+                (0, BAND) => 2.0 * cost,
+                _ => smaller(both, reached + cost),
             };
-            let cost = squared(row, &b[j * PADDED..][..PADDED]);
-            let total = match (i, j) {
-                (0, 0) => 2.0 * cost,
-                _ => {
-                    let both = before[k + 1] + 2.0 * cost;
-                    both.min(before[k + 2] + cost).min(here[k] + cost)
-                }
-            };
-            here[k + 1] = total;
-            least = least.min(total);
+            least = smaller(least, reached);
+            before[k] = reached;
         }
         if least >= limit {
-            return OUTSIDE;
+            return f32::MAX;
         }
-        before = here;
     }
-    before[BAND + 1]
+    before[BAND]
 }
 
 /// The cost of aligning rows of one value each.

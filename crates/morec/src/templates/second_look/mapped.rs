@@ -137,16 +137,29 @@ pub fn divisor(share: f32) -> f32 {
     portable::powf(f64::from(share.max(LEAST_SPREAD)), f64::from(EXPONENT)) as f32
 }
 
-#[inline(always)]
+/// The squared distance of two rows.
 pub fn squared(a: &[f32], b: &[f32]) -> f32 {
+    sum(squares(a, b))
+}
+
+/// Of every lane the sum of the squared differences of two rows.
+#[inline(always)]
+pub fn squares(a: &[f32], b: &[f32]) -> [f32; LANES] {
     let mut sums = [0.0f32; LANES];
     let (a, _) = a.as_chunks::<LANES>();
     let (b, _) = b.as_chunks::<LANES>();
     for (a, b) in a.iter().zip(b) {
-        let apart: [f32; LANES] = std::array::from_fn(|lane| a[lane] - b[lane]);
-        sums = std::array::from_fn(|lane| sums[lane] + apart[lane] * apart[lane]);
+        for lane in 0..LANES {
+            let apart = a[lane] - b[lane];
+            sums[lane] += apart * apart;
+        }
     }
-    let [a, b, c, d, e, f, g, h] = sums;
+    sums
+}
+
+/// The sum of all lanes.
+#[inline(always)]
+pub fn sum([a, b, c, d, e, f, g, h]: [f32; LANES]) -> f32 {
     ((a + e) + (c + g)) + ((b + f) + (d + h))
 }
 
