@@ -17,9 +17,9 @@ const FAR_VALUE: f32 = 1e18;
 pub const TOGETHER: usize = 8;
 
 /// The same value of [`TOGETHER`] segments.
-type Lanes = [f32; TOGETHER];
+type SegmentLanes = [f32; TOGETHER];
 /// The rows of [`TOGETHER`] segments in those directions; what is left of the last ones is zero.
-pub type CoarseBlock = [[Lanes; DIRECTIONS]; SEGMENT_ROWS];
+pub type CoarseBlock = [[SegmentLanes; DIRECTIONS]; SEGMENT_ROWS];
 /// Rows of one segment in those directions, with [`BAND`] places before and behind them that are far from every row.
 pub type CoarseRows = [[f32; DIRECTIONS]; SEGMENT_ROWS + 2 * BAND];
 
@@ -89,8 +89,8 @@ impl CoarseBasis {
 /// What aligning each segment of a block with the one of `rows` costs in those directions alone, within the band, but for rounding. The
 /// recurrence is that of the comparison itself. Infinite for all if each is at its limit or above it.
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
-pub fn least_costs(block: &CoarseBlock, rows: &CoarseRows, limits: &Lanes) -> Lanes {
-    const OUTSIDE: Lanes = [f32::INFINITY; TOGETHER];
+pub fn least_costs(block: &CoarseBlock, rows: &CoarseRows, limits: &SegmentLanes) -> SegmentLanes {
+    const OUTSIDE: SegmentLanes = [f32::INFINITY; TOGETHER];
     // Of the row before, at place `j - i + BAND`; the place behind them stays infinite.
     let mut before = [OUTSIDE; CELLS + 1];
     for (i, values) in block.iter().enumerate() {
