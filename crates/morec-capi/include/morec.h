@@ -39,6 +39,11 @@
 #define MOREC_EACH_REPETITION 8
 
 /**
+ * Say how far from the nearest sample each gesture that ends, and each repetition that is an event, was.
+ */
+#define MOREC_DEVIATION 16
+
+/**
  * Number of parts of the body; they are numbered from 0.
  */
 #define MOREC_ROLE_COUNT 18
@@ -524,7 +529,7 @@ typedef struct MorecOptions {
      */
     uint32_t roles;
     /**
-     * `MOREC_TENTATIVE`, `MOREC_EACH_REPETITION`, and one of `MOREC_PERFORMER_ANYONE` and `MOREC_PERFORMER_TEACHER`; or 0.
+     * `MOREC_TENTATIVE`, `MOREC_EACH_REPETITION`, `MOREC_DEVIATION`, and one of `MOREC_PERFORMER_ANYONE` and `MOREC_PERFORMER_TEACHER`; or 0.
      */
     uint32_t flags;
     /**
@@ -635,6 +640,23 @@ typedef struct MorecEvent {
      * Duration of one, as it was last.
      */
     double period_secs;
+    /**
+     * With `MOREC_DEVIATION`: mean angle between its bones and those of the nearest sample, degrees; -1 where nothing is compared. (Not in
+     * the first version.)
+     */
+    double off_degrees;
+    /**
+     * Its duration over the sample's.
+     */
+    double pace;
+    /**
+     * Number of the bone that is farthest off: see `morec_bone_name`.
+     */
+    uint32_t worst_bone;
+    /**
+     * The largest angle of that bone, degrees.
+     */
+    double worst_degrees;
 } MorecEvent;
 
 /**
@@ -758,6 +780,17 @@ bool mrStop(void);
  * `pSegments` is null or has room for `*nSegments`; `nSegments` is null or may be read and written.
  */
 bool mrQueryMotionSegments(struct MotionSeg *pSegments, int *nSegments);
+
+/**
+ * Writes the name of a bone (`MorecEvent.worst_bone`), such as `left_forearm`, with a zero at the end.
+ *
+ * `*needed`, if `needed` is not null, becomes the number of bytes that takes, with the zero. If `size` is less, the
+ * characters that fit are written with a zero, and the status is `MOREC_STATUS_BUFFER_TOO_SMALL`.
+ *
+ * # Safety
+ * `buffer` is null or may be written to for `size` bytes; `needed` is null or may be written to.
+ */
+MorecStatus morec_bone_name(uint32_t bone, char *buffer, size_t size, size_t *needed);
 
 /**
  * Loads an index from a file that `morec train` wrote. `path` is UTF-8.

@@ -7,7 +7,7 @@ use morec::roles::Role;
 
 use crate::handles::{self, MorecRecognizer};
 use crate::memory::{self, Versioned};
-use crate::status::{CallError, MorecStatus, guard};
+use crate::status::{MorecStatus, guard};
 
 /// Something that is wrong with a stream, or worth knowing of it: one bit each, the same in every release.
 #[repr(u32)]
@@ -187,18 +187,7 @@ pub unsafe extern "C" fn morec_recognizer_diagnosis_text(
 ) -> MorecStatus {
     guard(|| {
         let text = handles::find(recognizer)?.findings()?.join("\n");
-        if !needed.is_null() {
-            // SAFETY: as promised to this function.
-            unsafe { memory::put(needed, text.len() + 1, "needed") }?;
-        }
         // SAFETY: as promised to this function.
-        if unsafe { memory::write_text(buffer, size, &text) }? {
-            return Ok(());
-        }
-        let text = format!(
-            "the text takes {} bytes, the buffer has {size}",
-            text.len() + 1
-        );
-        Err(CallError::new(MorecStatus::BufferTooSmall, text))
+        unsafe { memory::give_text((buffer, size), needed, &text) }
     })
 }

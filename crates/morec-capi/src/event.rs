@@ -1,6 +1,12 @@
 //! Events as C sees them.
 
+use std::ffi::c_char;
+
+use morec::features::ALL_BONES;
 use morec::live::{Event, Phase};
+
+use crate::memory;
+use crate::status::{CallError, MorecStatus, guard};
 
 /// Phase of a motion.
 #[repr(i32)]
@@ -49,6 +55,15 @@ pub struct MorecEvent {
     pub repetitions: u32,
     /// Duration of one, as it was last.
     pub period_secs: f64,
+    /// With `MOREC_DEVIATION`: mean angle between its bones and those of the nearest sample, degrees; -1 where nothing is compared. (Not in
+    /// the first version.)
+    pub off_degrees: f64,
+    /// Its duration over the sample's.
+    pub pace: f64,
+    /// Number of the bone that is farthest off: see `morec_bone_name`.
+    pub worst_bone: u32,
+    /// The largest angle of that bone, degrees.
+    pub worst_degrees: f64,
 }
 
 impl MorecEvent {
@@ -78,6 +93,41 @@ impl From<&Event> for MorecEvent {
             wall_secs: event.wall_secs,
             repetitions: event.repetitions.map_or(0, |r| r.count),
             period_secs: event.repetitions.map_or(0.0, |r| r.period_secs),
+            off_degrees: event.deviation.map_or(-1.0, |d| d.off_degrees),
+            pace: event.deviation.map_or(0.0, |d| d.pace),
+            worst_bone: event.deviation.map_or(0, |d| number_of(d.worst_bone)),
+            worst_degrees: event.deviation.map_or(0.0, |d| d.worst_degrees),
         }
     }
+}
+
+fn number_of(bone: &str) -> u32 {
+    let at = ALL_BONES.iter().position(|known| known.name == bone);
+    at.unwrap_or(0) as u32
+}
+
+/// Writes the name of a bone (`MorecEvent.worst_bone`), such as `left_forearm`, with a zero at the end.
+///
+/// `*needed`, if `needed` is not null, becomes the number of bytes that takes, with the zero. If `size` is less, the
+/// characters that fit are written with a zero, and the status is `MOREC_STATUS_BUFFER_TOO_SMALL`.
+///
+/// # Safety
+/// `buffer` is null or may be written to for `size` bytes; `needed` is null or may be written to.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn morec_bone_name(
+    bone: u32,
+    buffer: *mut c_char,
+    size: usize,
+    needed: *mut usize,
+) -> MorecStatus {
+    guard(|| {
+        let bone = ALL_BONES.get(bone as usize).ok_or_else(|| {
+            CallError::invalid(format!(
+                "bone {bone}: there are {}, numbered from 0",
+                ALL_BONES.len()
+            ))
+        })?;
+        // SAFETY: as promised to this function.
+        unsafe { memory::give_text((buffer, size), needed, bone.name) }
+    })
 }

@@ -168,18 +168,7 @@ pub unsafe extern "C" fn morec_index_class_name(
         })?;
         // A zero inside would end the name early for every reader of it.
         let name = class.name.replace('\0', " ");
-        if !needed.is_null() {
-            // SAFETY: as promised to this function.
-            unsafe { memory::put(needed, name.len() + 1, "needed") }?;
-        }
         // SAFETY: as promised to this function.
-        if unsafe { memory::write_text(buffer, size, &name) }? {
-            return Ok(());
-        }
-        let text = format!(
-            "the name takes {} bytes, the buffer has {size}",
-            name.len() + 1
-        );
-        Err(CallError::new(MorecStatus::BufferTooSmall, text))
+        unsafe { memory::give_text((buffer, size), needed, &name) }
     })
 }

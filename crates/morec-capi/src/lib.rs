@@ -40,7 +40,7 @@ pub use eight::{
     MotionSeg, mrInit, mrIsDataSourceDepleted, mrQueryMotionSegments, mrSetDataSource,
     mrSetDataSourceSpeed, mrStart, mrStop, mrStopDataSource, mrTerminate,
 };
-pub use event::{MorecEvent, MorecPhase};
+pub use event::{MorecEvent, MorecPhase, morec_bone_name};
 pub use frame::{MorecFrame, MorecSpace};
 pub use handles::{MorecIndex, MorecRecognizer};
 pub use index::{
@@ -48,8 +48,8 @@ pub use index::{
     morec_index_from_memory, morec_index_load,
 };
 pub use recognizer::{
-    MOREC_EACH_REPETITION, MOREC_PERFORMER_ANYONE, MOREC_PERFORMER_TEACHER, MOREC_TENTATIVE,
-    MorecOptions, MorecStats, morec_recognizer_create, morec_recognizer_destroy,
+    MOREC_DEVIATION, MOREC_EACH_REPETITION, MOREC_PERFORMER_ANYONE, MOREC_PERFORMER_TEACHER,
+    MOREC_TENTATIVE, MorecOptions, MorecStats, morec_recognizer_create, morec_recognizer_destroy,
     morec_recognizer_finish, morec_recognizer_joint_of_role, morec_recognizer_poll,
     morec_recognizer_push, morec_recognizer_reset, morec_recognizer_stats,
 };

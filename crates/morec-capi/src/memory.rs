@@ -260,3 +260,28 @@ pub(crate) unsafe fn write_text(
     }
     Ok(fits == text.len())
 }
+
+/// Writes `text` with a zero at the end into `buffer`, and how many bytes that takes into `*needed`, if that is not null.
+///
+/// # Errors
+/// `MOREC_STATUS_BUFFER_TOO_SMALL`: what fits was written.
+///
+/// # Safety
+/// `buffer` is null or may be written to for `size` bytes; `needed` is null or may be written to.
+pub(crate) unsafe fn give_text(
+    (buffer, size): (*mut c_char, usize),
+    needed: *mut usize,
+    text: &str,
+) -> Result<(), CallError> {
+    let bytes = text.len() + 1;
+    if !needed.is_null() {
+        // SAFETY: as promised to this function.
+        unsafe { put(needed, bytes, "needed") }?;
+    }
+    // SAFETY: as promised to this function.
+    if unsafe { write_text(buffer, size, text) }? {
+        return Ok(());
+    }
+    let text = format!("the text takes {bytes} bytes, the buffer has {size}");
+    Err(CallError::new(MorecStatus::BufferTooSmall, text))
+}

@@ -27,6 +27,9 @@ pub const MOREC_PERFORMER_TEACHER: u32 = 4;
 /// Each repetition of an activity is an event of its own.
 pub const MOREC_EACH_REPETITION: u32 = 8;
 
+/// Say how far from the nearest sample each gesture that ends, and each repetition that is an event, was.
+pub const MOREC_DEVIATION: u32 = 16;
+
 /// Options of a recogniser.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
@@ -41,7 +44,7 @@ pub struct MorecOptions {
     pub skeleton: *const MorecSkeleton,
     /// For a stream of roles: bit `r` for each `MorecRole` `r` that it shows; 0 for all.
     pub roles: u32,
-    /// `MOREC_TENTATIVE`, `MOREC_EACH_REPETITION`, and one of `MOREC_PERFORMER_ANYONE` and `MOREC_PERFORMER_TEACHER`; or 0.
+    /// `MOREC_TENTATIVE`, `MOREC_EACH_REPETITION`, `MOREC_DEVIATION`, and one of `MOREC_PERFORMER_ANYONE` and `MOREC_PERFORMER_TEACHER`; or 0.
     pub flags: u32,
     /// Events that can wait to be polled, 128 to 1048576; 0 for 256. Memory is taken for as many.
     pub event_capacity: usize,
@@ -128,8 +131,11 @@ pub unsafe extern "C" fn morec_recognizer_create(
 
 /// The options that C says by numbers and flags.
 fn stream_options(c: &MorecOptions) -> Result<StreamOptions, CallError> {
-    let known =
-        MOREC_TENTATIVE | MOREC_EACH_REPETITION | MOREC_PERFORMER_ANYONE | MOREC_PERFORMER_TEACHER;
+    let known = MOREC_TENTATIVE
+        | MOREC_EACH_REPETITION
+        | MOREC_DEVIATION
+        | MOREC_PERFORMER_ANYONE
+        | MOREC_PERFORMER_TEACHER;
     if c.flags & !known != 0 {
         return Err(CallError::invalid(format!(
             "flags is {:#x}, which this release does not know",
@@ -151,6 +157,7 @@ fn stream_options(c: &MorecOptions) -> Result<StreamOptions, CallError> {
         performer,
         tentative: c.flags & MOREC_TENTATIVE != 0,
         each_repetition: c.flags & MOREC_EACH_REPETITION != 0,
+        deviation: c.flags & MOREC_DEVIATION != 0,
         refractory_secs: c.refractory_secs,
         ..StreamOptions::default()
     })

@@ -16,6 +16,14 @@ impl Rows {
         }
     }
 
+    /// An empty table with room for `rows` rows of `dim` values.
+    pub fn with_room(dim: usize, rows: usize) -> Self {
+        Self {
+            dim,
+            data: Vec::with_capacity(dim * rows),
+        }
+    }
+
     /// A table from its values, row after row; surplus values at the end are dropped.
     pub fn from_values(dim: usize, mut data: Vec<f32>) -> Self {
         data.truncate(data.len().checked_div(dim).unwrap_or(0) * dim);
@@ -61,6 +69,11 @@ impl Rows {
     /// All values, row after row, without a copy.
     pub fn into_values(self) -> Vec<f32> {
         self.data
+    }
+
+    /// Removes all rows; their room stays.
+    pub fn clear(&mut self) {
+        self.data.clear();
     }
 
     /// Adds a row; it must have `dim` values.

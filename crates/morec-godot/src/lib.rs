@@ -60,6 +60,9 @@ pub struct RecognizerNode {
     /// Also signal each repetition of an activity: `motion_repeated`.
     #[export]
     each_repetition: bool,
+    /// Say in `motion_event` how far from the nearest sample a motion was: off_degrees, pace, worst_bone, worst_degrees.
+    #[export]
+    deviation: bool,
     /// A motion of the same class that ends less than this after the one before it is not signalled, seconds.
     #[export]
     refractory_secs: f64,
@@ -77,7 +80,8 @@ pub struct RecognizerNode {
 #[godot_api]
 impl RecognizerNode {
     /// Any event: a dictionary of phase (`start`, `update`, `repetition`, `cancel`, `end`), class, score, progress, start_secs, stop_secs,
-    /// reported_secs, wall_secs, actor, motion, sequence, repetitions and period_secs (0 where nothing is counted).
+    /// reported_secs, wall_secs, actor, motion, sequence, repetitions and period_secs (0 where nothing is counted), off_degrees (-1 where nothing is
+    /// compared), pace, worst_bone and worst_degrees.
     #[signal]
     fn motion_event(event: VarDictionary);
 
@@ -149,6 +153,7 @@ impl RecognizerNode {
             },
             tentative: self.tentative,
             each_repetition: self.each_repetition,
+            deviation: self.deviation,
             refractory_secs: self.refractory_secs,
             roles: roles.map_err(|error| format!("roles: {error}"))?,
             // The engine's.
@@ -227,7 +232,7 @@ impl INode for RecognizerNode {
 
 /// An event with all that is known of it.
 fn dictionary(name: &GString, event: &Event) -> VarDictionary {
-    let repeated = event.repetitions;
+    let (repeated, deviation) = (event.repetitions, event.deviation);
     vdict! {
         "phase" => event.phase.name(),
         "class" => name,
@@ -242,6 +247,10 @@ fn dictionary(name: &GString, event: &Event) -> VarDictionary {
         "sequence" => event.sequence as i64,
         "repetitions" => repeated.map_or(0, |r| i64::from(r.count)),
         "period_secs" => repeated.map_or(0.0, |r| r.period_secs),
+        "off_degrees" => deviation.map_or(-1.0, |d| d.off_degrees),
+        "pace" => deviation.map_or(0.0, |d| d.pace),
+        "worst_bone" => deviation.map_or("", |d| d.worst_bone),
+        "worst_degrees" => deviation.map_or(0.0, |d| d.worst_degrees),
     }
 }
 

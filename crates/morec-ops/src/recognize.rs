@@ -66,6 +66,12 @@ pub struct StreamSettings {
     /// Make each repetition of an activity an event of its own
     #[arg(long)]
     pub each_repetition: bool,
+    /// Say how far from the nearest sample each motion was performed
+    ///
+    /// The mean angle, the pace, and the bone that differs most: of gestures, and with --each-repetition of each
+    /// repetition of an activity. Not of held signs and the method of 2009.
+    #[arg(long)]
+    pub deviation: bool,
     /// Minimum seconds between two events of a class
     #[arg(long = "refractory", value_name = "SECS", default_value = "0")]
     pub refractory_secs: f64,
@@ -78,6 +84,7 @@ impl StreamSettings {
         StreamOptions {
             tentative: self.tentative,
             each_repetition: self.each_repetition,
+            deviation: self.deviation,
             refractory_secs: self.refractory_secs,
             ..self.recognition.options()
         }

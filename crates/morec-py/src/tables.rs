@@ -81,6 +81,11 @@ pub fn event<'py>(py: Python<'py>, model: &Model, event: &Event) -> PyResult<Bou
     row.set_item("sequence", event.sequence)?;
     row.set_item("wall_secs", event.wall_secs)?;
     set_repetitions(&row, event.repetitions)?;
+    let deviation = event.deviation;
+    row.set_item("off_degrees", deviation.map(|d| d.off_degrees))?;
+    row.set_item("pace", deviation.map(|d| d.pace))?;
+    row.set_item("worst_bone", deviation.map(|d| d.worst_bone))?;
+    row.set_item("worst_degrees", deviation.map(|d| d.worst_degrees))?;
     Ok(row)
 }
 

@@ -51,6 +51,8 @@ export interface RecognizerOptions {
   tentative?: boolean;
   /** Make each repetition of an activity an event of its own, of the phase `repetition`. False by default. */
   each_repetition?: boolean;
+  /** Say how far from the nearest sample each gesture that ends, and each such repetition, was. False by default. */
+  deviation?: boolean;
   /** A motion of the same class that ends less than this after the one before it is not reported, seconds. 0 by default. */
   refractory_secs?: number;
   /** Points that play parts of the body, where names do not tell: `{ left_hand: "LWrist", hips: "LHip+RHip", neck: null }`. */
@@ -91,6 +93,11 @@ export interface Classification {
 export interface MotionEvent extends Detection {
   /** `end` is final; the others say what seems to be under way. */
   phase: "start" | "update" | "repetition" | "cancel" | "end";
+  /** With `deviation`: the mean angle off the nearest sample, the duration over its, and the bone that is farthest off with its largest angle. */
+  off_degrees?: number;
+  pace?: number;
+  worst_bone?: string;
+  worst_degrees?: number;
   /** A motion's start, updates and end share its number. */
   motion: number;
   /** Number of the event, from 1. */

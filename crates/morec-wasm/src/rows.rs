@@ -3,6 +3,7 @@
 use morec::TimeSpan;
 use morec::decode::Repetitions;
 use morec::live::{Detection, Event, Model};
+use morec::templates::Deviation;
 use serde::Serialize;
 
 /// A detection; times in seconds.
@@ -45,6 +46,8 @@ pub struct EventRow<'a> {
     wall_secs: f64,
     #[serde(flatten)]
     repetitions: Option<Repetitions>,
+    #[serde(flatten)]
+    deviation: Option<Deviation>,
 }
 
 impl<'a> EventRow<'a> {
@@ -62,6 +65,7 @@ impl<'a> EventRow<'a> {
             reported_secs: event.reported_secs,
             wall_secs: event.wall_secs,
             repetitions: event.repetitions,
+            deviation: event.deviation,
         }
     }
 }

@@ -103,6 +103,8 @@ fn activities_and_their_counts_take_no_memory() {
 fn events_take_no_memory(model: &Arc<morec::templates::TemplateModel>, poses: &[made::Timed]) {
     let options = EventOptions {
         tentative: true,
+        each_repetition: true,
+        deviation: true,
         ..EventOptions::default()
     };
     let mut performer = Performer::new(model, PerformerId(0), &options);

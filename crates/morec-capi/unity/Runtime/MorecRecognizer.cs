@@ -25,6 +25,12 @@ namespace Morec
         public uint repetitions;
         /// <summary>Duration of one repetition, as it was last.</summary>
         public double periodSecs;
+        /// <summary>With Deviation: mean angle off the nearest sample, degrees; -1 where nothing is compared.</summary>
+        public double offDegrees;
+        /// <summary>Duration over the sample's, and the largest angle of the bone that is farthest off.</summary>
+        public double pace, worstDegrees;
+        /// <summary>Number of that bone: see morec_bone_name.</summary>
+        public uint worstBone;
     }
 
     [Serializable]
@@ -47,6 +53,8 @@ namespace Morec
         public bool tentative;
         [Tooltip("Also report each repetition of an activity: onRepetition.")]
         public bool eachRepetition;
+        [Tooltip("Say how far from the nearest sample each gesture that ends, and each repetition, was.")]
+        public bool deviation;
         [Tooltip("A motion of the same class that ends less than this after the one before it is not reported, seconds.")]
         [Min(0)] public float refractorySecs;
         [Tooltip("Final: every motion ends once, and nothing is taken back.")]
@@ -88,7 +96,7 @@ namespace Morec
             var options = new StreamOptions
             {
                 leftHanded = true, sensitivity = sensitivity, performer = performer, tentative = tentative,
-                eachRepetition = eachRepetition, refractorySecs = refractorySecs,
+                eachRepetition = eachRepetition, deviation = deviation, refractorySecs = refractorySecs,
             };
             try
             {
@@ -146,6 +154,7 @@ namespace Morec
                 name = opened.ClassName(e.class_id), number = e.motion, score = e.score, progress = e.progress,
                 startSecs = e.start_secs, stopSecs = e.stop_secs, reportedSecs = e.reported_secs, wallSecs = e.wall_secs,
                 sequence = e.sequence, repetitions = e.repetitions, periodSecs = e.period_secs,
+                offDegrees = e.off_degrees, pace = e.pace, worstBone = e.worst_bone, worstDegrees = e.worst_degrees,
             };
             switch ((MorecPhase)e.phase)
             {

@@ -19,6 +19,8 @@ namespace Morec
         public bool tentative;
         /// <summary>Each repetition of an activity is an event of its own.</summary>
         public bool eachRepetition;
+        /// <summary>Say how far from the nearest sample each gesture that ends, and each such repetition, was.</summary>
+        public bool deviation;
         /// <summary>A motion of the same class that ends less than this after the one before it is not reported, seconds.</summary>
         public double refractorySecs;
 
@@ -26,7 +28,8 @@ namespace Morec
         {
             get
             {
-                var flags = (tentative ? Native.MOREC_TENTATIVE : 0) | (eachRepetition ? Native.MOREC_EACH_REPETITION : 0);
+                var flags = (tentative ? Native.MOREC_TENTATIVE : 0) | (eachRepetition ? Native.MOREC_EACH_REPETITION : 0)
+                    | (deviation ? Native.MOREC_DEVIATION : 0);
                 if (performer == Performer.Anyone) flags |= Native.MOREC_PERFORMER_ANYONE;
                 if (performer == Performer.Teacher) flags |= Native.MOREC_PERFORMER_TEACHER;
                 return (uint)flags;

@@ -165,6 +165,10 @@ namespace Morec
         public double wall_secs;
         public uint repetitions;
         public double period_secs;
+        public double off_degrees;
+        public double pace;
+        public uint worst_bone;
+        public double worst_degrees;
     }
 
     [StructLayout(LayoutKind.Sequential)]
@@ -191,12 +195,15 @@ namespace Morec
         public const int MOREC_PERFORMER_ANYONE = 2;
         public const int MOREC_PERFORMER_TEACHER = 4;
         public const int MOREC_EACH_REPETITION = 8;
+        public const int MOREC_DEVIATION = 16;
         public const int MOREC_ROLE_COUNT = 18;
         public const int MOREC_POINT_COUNT = 85;
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern MorecStatus morec_recognizer_diagnosis(IntPtr recognizer, ref MorecDiagnosis diagnosis);
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern MorecStatus morec_recognizer_diagnosis_text(IntPtr recognizer, byte[] buffer, UIntPtr size, out UIntPtr needed);
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        public static extern MorecStatus morec_bone_name(uint bone, byte[] buffer, UIntPtr size, out UIntPtr needed);
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern MorecStatus morec_index_load(byte[] path, out IntPtr index);
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]

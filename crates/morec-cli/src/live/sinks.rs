@@ -42,6 +42,13 @@ impl Sink for Terminal {
             (Phase::Repetition, Some(r)) => format!("  repetition {}", r.count),
             _ => return Ok(()),
         };
+        let off = e.deviation.map_or_else(String::new, |d| {
+            let (off, pace, worst) = (d.off_degrees, d.pace, d.worst_degrees);
+            format!(
+                "  {off:.0}° off, {}: {worst:.0}°, {pace:.2} × the time",
+                d.worst_bone
+            )
+        });
         let performer = match e.actor.0 {
             0 => String::new(),
             number => format!("  (performer {number})"),
@@ -49,7 +56,7 @@ impl Sink for Terminal {
         let mut out = crate::console::stdout();
         writeln!(
             out,
-            "{:9.2} to {:7.2} s  {:20} {:.2}  reported {:.2} s after its end{repeated}{performer}",
+            "{:9.2} to {:7.2} s  {:20} {:.2}  reported {:.2} s after its end{repeated}{off}{performer}",
             e.span.start_secs,
             e.span.stop_secs,
             event.class,

@@ -12,6 +12,8 @@ use crate::{Address, LiveError, NamedEvent, Sink};
 /// - `/morec/event s s f f f i`: class, phase (start, update, cancel, end), score, start and stop (seconds of the
 ///   stream), actor; after these, for who wants more: progress (f), motion number and sequence number (i), of an activity
 ///   its repetitions so far (i) and the seconds of one (f), 0 where nothing is counted.
+/// - `/morec/deviation s i i f f s f`, where the event has one: class, performer, motion, degrees off the nearest sample, pace, worst bone and its
+///   degrees;
 /// - `/VMC/Thru/morec/event s f`, for ends only: class and score; it passes through a chain of VMC programs.
 pub struct OscSink {
     socket: UdpSocket,
@@ -67,6 +69,18 @@ impl Sink for OscSink {
             Arg::Float(e.repetitions.map_or(0.0, |r| r.period_secs as f32)),
         ];
         self.send("/morec/event", &args)?;
+        if let Some(deviation) = e.deviation {
+            let args = [
+                Arg::Text(event.class),
+                Arg::Int(e.actor.0.into()),
+                Arg::Int(e.motion as i32),
+                Arg::Float(deviation.off_degrees as f32),
+                Arg::Float(deviation.pace as f32),
+                Arg::Text(deviation.worst_bone),
+                Arg::Float(deviation.worst_degrees as f32),
+            ];
+            self.send("/morec/deviation", &args)?;
+        }
         if event.is_final() {
             self.send("/VMC/Thru/morec/event", &[args[0], args[2]])?;
         }

@@ -44,6 +44,8 @@ class listen:
         Also what seems to be under way: events of the phases start, update and cancel.
     each_repetition : bool
         Also an event of the phase repetition, with its start and stop, for each repetition of an activity.
+    deviation : bool
+        Say how far from the nearest sample each gesture that ends, and each such repetition, was.
     refractory_secs : float
         A motion of the same class that ends less than this after the one before it is not reported.
     timeout : float, optional
@@ -54,7 +56,8 @@ class listen:
     dict
         phase ("end", or a tentative one), class, start_secs, stop_secs, score, progress, reported_secs, actor, motion,
         sequence, wall_secs (seconds since 1970 at the arrival of the frame that settled it), and of an activity that repeats
-        repetitions so far and period_secs (None where nothing is counted).
+        repetitions so far and period_secs (None where nothing is counted). With `deviation` also off_degrees (mean angle
+        off the nearest sample), pace (duration over its), worst_bone and worst_degrees; None where nothing is compared.
 
         score: Probability that the motion is right, 0 to 1: a just accepted one has 0.05 to 0.44, by the kind of index.
         Of held poses and of indexes without calibration (svrdm, older ones) it is the closeness to a sample instead. Of
@@ -85,6 +88,7 @@ class listen:
         performer: Literal["auto", "teacher", "anyone"] = "auto",
         tentative: bool = False,
         each_repetition: bool = False,
+        deviation: bool = False,
         refractory_secs: float = 0.0,
         timeout: float | None = None,
     ) -> None:
@@ -94,6 +98,7 @@ class listen:
             "performer": performer,
             "tentative": tentative,
             "each_repetition": each_repetition,
+            "deviation": deviation,
             "refractory_secs": refractory_secs,
         }
         self._session = _morec.LiveSession(address, index, actors, mirror, options)

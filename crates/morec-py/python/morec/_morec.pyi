@@ -210,6 +210,7 @@ class Index:
         performer: Literal["auto", "teacher", "anyone"] = "auto",
         tentative: bool = False,
         each_repetition: bool = False,
+        deviation: bool = False,
         refractory_secs: float = 0.0,
     ) -> Recognizer:
         """A recogniser for a live stream of joint positions.
@@ -231,6 +232,8 @@ class Index:
             Also what seems to be under way: events of the phases start, update and cancel.
         each_repetition : bool
             Also an event of the phase repetition, with its start and stop, for each repetition of an activity.
+        deviation : bool
+            Say how far from the nearest sample each gesture that ends, and each such repetition, was.
         refractory_secs : float
             A motion of the same class that ends less than this after the one before it is not reported.
 

@@ -24,6 +24,7 @@ mod label_files;
 mod leave;
 mod library;
 mod live;
+mod live_deviation;
 mod live_line;
 mod matrix;
 mod moments;

@@ -2,7 +2,7 @@
 
 use egui::{ProgressBar, RichText, ScrollArea, Ui, WidgetType};
 
-use super::{Out, label, widgets};
+use super::{Out, label, live_deviation, widgets};
 use crate::format;
 use crate::state::{Command, LiveCommand, State, TrainCommand};
 use crate::theme::Colours;
@@ -113,6 +113,7 @@ pub fn recognised(ui: &mut Ui, state: &State, out: Out) {
             ui.label(RichText::new("…").color(c.muted));
         }
     }
+    live_deviation::show(ui, state);
     if run.seen.is_empty() {
         return;
     }

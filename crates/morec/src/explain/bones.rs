@@ -1,7 +1,7 @@
 //! Bones whose directions differ from those of a template.
 
 use crate::features::{ALL_BONES, Rows};
-use crate::train::align;
+use crate::templates::{align, angle_at};
 
 use super::reason::BoneOff;
 use crate::features::BoneSet;
@@ -33,23 +33,4 @@ pub(super) fn farthest(template: &Rows, stretch: &Rows, bones: BoneSet) -> Vec<B
     off.sort_by(|a, b| b.degrees.total_cmp(&a.degrees));
     off.truncate(MOST);
     off
-}
-
-/// Angle between the directions of the bone in `slot` in row `i` of `a` and row `j` of `b`, degrees.
-pub(super) fn angle_at(a: &Rows, i: usize, b: &Rows, j: usize, slot: usize) -> f64 {
-    let at = |rows: &Rows, i: usize| {
-        let row = &rows.row(i)[3 * slot..3 * slot + 3];
-        [f64::from(row[0]), f64::from(row[1]), f64::from(row[2])]
-    };
-    angle(at(a, i), at(b, j)).to_degrees()
-}
-
-fn angle(a: [f64; 3], b: [f64; 3]) -> f64 {
-    let dot = |a: &[f64; 3], b: &[f64; 3]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let lengths = (dot(&a, &a) * dot(&b, &b)).sqrt();
-    if lengths > 1e-12 {
-        (dot(&a, &b) / lengths).clamp(-1.0, 1.0).acos()
-    } else {
-        0.0
-    }
 }

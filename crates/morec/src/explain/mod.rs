@@ -30,7 +30,8 @@ use crate::templates::{
 };
 use crate::train::overlap_share;
 
-pub use deviation::{BoneDeviation, MotionDeviation, Performance, deviation, deviation_from};
+pub use crate::templates::{BoneDeviation, MotionDeviation, deviation_from};
+pub use deviation::{Performance, deviation};
 pub use reason::{BoneOff, Reason};
 
 /// A sample that was not reported.

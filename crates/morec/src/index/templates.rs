@@ -101,6 +101,7 @@ pub(super) fn tensors(model: &TemplateModel) -> BTreeMap<String, Tensor> {
     }
     if let Some(activities) = &model.activities {
         tensors.extend(reference_tensors("activities", &activities.windows));
+        tensors.extend(repetition_tensors(activities, dim));
     }
     tensors
 }
@@ -120,6 +121,27 @@ fn reference_tensors(name: &str, reference: &ReferenceRows) -> [(String, Tensor)
         (format!("{name}.ridged"), Tensor::of_f32(ridged.packed())),
         (format!("{name}.total"), Tensor::of_f32(total.packed())),
     ]
+}
+
+/// Repetitions of activities, if any are kept.
+fn repetition_tensors(activities: &Activities, dim: usize) -> Vec<(String, Tensor)> {
+    let Activities {
+        repetitions, step, ..
+    } = activities;
+    if repetitions.is_empty() {
+        return Vec::new();
+    }
+    let classes = repetitions.iter().map(|s| u32::from(s.class.0));
+    let rows = repetitions.iter().flat_map(|s| s.rows.iter());
+    let lengths = repetitions.iter().map(|s| s.rows.len() as u32);
+    let tables = [
+        ("classes", Tensor::of_u32(classes)),
+        ("lengths", Tensor::of_u32(lengths)),
+        ("rows", Tensor::of_rows(rows, dim, Some(step))),
+        ("step", Tensor::of_f32(step)),
+    ];
+    let named = |(name, table)| (format!("repetitions.{name}"), table);
+    tables.map(named).into()
 }
 
 /// Taught segments, those of other motion behind them, and their metric.
@@ -177,29 +199,13 @@ fn exemplars(classes: &[Exemplars], dim: usize, step: Option<&[f32]>) -> [(Strin
 pub(super) fn read(manifest: &Manifest, tables: &Tables) -> Result<TemplateModel, IndexError> {
     let dim = RowLayout::of(manifest.bones).dim();
     let step = tables.steps("rows.step", dim)?;
-    let lengths = tables.u32s("templates.lengths")?;
-    let classes = tables.u32s("templates.classes")?;
-    if classes.len() != lengths.len() {
-        let message = format!("{} templates, classes for {}", lengths.len(), classes.len());
-        return Err(IndexError::Content(message));
-    }
-    let rows = tables.pieces("templates.rows", dim, &lengths, step.as_deref())?;
-    let samples: Result<_, IndexError> = rows
-        .into_iter()
-        .zip(classes)
-        .map(|(rows, c)| {
-            Ok(TemplateSample {
-                class: class_id(c)?,
-                rows,
-            })
-        })
-        .collect();
+    let samples = samples(tables, "templates", dim, step.as_deref())?;
     let model = TemplateModel {
         features: manifest.features.clone(),
         bones: manifest.bones,
         decode: manifest.decode.clone(),
         classes: manifest.classes.clone(),
-        samples: samples?,
+        samples,
         negatives: tables.pieces(
             "negatives.rows",
             dim,
@@ -224,6 +230,30 @@ pub(super) fn read(manifest: &Manifest, tables: &Tables) -> Result<TemplateModel
         .check()
         .map_err(|e| IndexError::Content(e.to_string()))?;
     Ok(model)
+}
+
+/// Rows of samples with their classes.
+fn samples(
+    tables: &Tables,
+    name: &str,
+    dim: usize,
+    step: Option<&[f32]>,
+) -> Result<Vec<TemplateSample>, IndexError> {
+    let lengths = tables.u32s(&format!("{name}.lengths"))?;
+    let classes = tables.u32s(&format!("{name}.classes"))?;
+    if classes.len() != lengths.len() {
+        let (rows, found) = (lengths.len(), classes.len());
+        let message = format!("{rows} {name}, classes for {found}");
+        return Err(IndexError::Content(message));
+    }
+    let rows = tables.pieces(&format!("{name}.rows"), dim, &lengths, step)?;
+    let sample = |(rows, class)| {
+        Ok(TemplateSample {
+            class: class_id(class)?,
+            rows,
+        })
+    };
+    rows.into_iter().zip(classes).map(sample).collect()
 }
 
 fn verifier(
@@ -337,11 +367,19 @@ fn activities(manifest: &Manifest, tables: &Tables) -> Result<Option<Activities>
     let Some(words) = &manifest.activities else {
         return Ok(None);
     };
-    let dim = Activities::statistics(RowLayout::of(manifest.bones));
+    let layout = RowLayout::of(manifest.bones);
+    let step = tables.steps("repetitions.step", layout.dim())?;
+    let repetitions = match &step {
+        Some(step) => samples(tables, "repetitions", layout.dim(), Some(step))?,
+        None => Vec::new(),
+    };
+    let statistics = Activities::statistics(layout);
     Ok(Some(Activities {
-        windows: reference(tables, "activities", dim)?,
+        windows: reference(tables, "activities", statistics)?,
         window_ticks: words.window_ticks,
         share: words.share,
+        repetitions,
+        step: step.unwrap_or_default(),
     }))
 }
 

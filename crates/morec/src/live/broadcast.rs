@@ -190,6 +190,7 @@ mod tests {
             reported_secs: 1.0,
             wall_secs: 0.0,
             repetitions: None,
+            deviation: None,
         };
         (0..PENDING + 3).for_each(|_| broadcast.keep(&[event]));
         assert!(broadcast.deliver());

@@ -3,6 +3,7 @@
 use crate::TimeSpan;
 use crate::classes::ClassId;
 use crate::decode::Repetitions;
+use crate::templates::Deviation;
 
 use super::{Detection, PerformerId};
 
@@ -62,6 +63,9 @@ pub struct Event {
     pub wall_secs: f64,
     /// Of an activity that repeats, so far.
     pub repetitions: Option<Repetitions>,
+    /// How far it was from the nearest sample, of what ends and of repetitions; only if [asked for](EventOptions::deviation), and not of held
+    /// poses, activities as a whole, and the method of 2009.
+    pub deviation: Option<Deviation>,
 }
 
 impl Event {
@@ -89,6 +93,8 @@ pub struct EventOptions {
     pub tentative: bool,
     /// Make each repetition of an activity an event of its own ([`Phase::Repetition`]).
     pub each_repetition: bool,
+    /// Compare each gesture that ends, and each repetition that is an event, with the nearest sample of its class ([`Event::deviation`]).
+    pub deviation: bool,
     /// A motion of the same class that ends less than this after the one before it is not reported (but counted), seconds.
     /// At 0 the decoder's own rule holds: motions of one performer follow each other and never share more than two
     /// ticks, so one performance is one event.

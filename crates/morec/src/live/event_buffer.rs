@@ -2,6 +2,7 @@
 
 use super::{EarlyDetection, Event, PerformerId, Phase};
 use crate::TimeSpan;
+use crate::templates::Deviation;
 
 /// Events that one frame gives at most in practice: room is made for as many.
 const ROOM: usize = 96;
@@ -43,6 +44,14 @@ impl EventBuffer {
         &self.events
     }
 
+    /// Notes how far performances that ended were from samples, as `measured` says.
+    pub(super) fn compare(&mut self, mut measured: impl FnMut(&Event) -> Option<Deviation>) {
+        let ended = |event: &&mut Event| matches!(event.phase, Phase::End | Phase::Repetition);
+        for event in self.events.iter_mut().filter(ended) {
+            event.deviation = measured(event);
+        }
+    }
+
     pub(super) fn new_motion(&mut self) -> u64 {
         self.motions += 1;
         self.motions
@@ -68,6 +77,7 @@ impl EventBuffer {
             reported_secs,
             wall_secs: self.wall_secs,
             repetitions: what.repetitions,
+            deviation: None,
         });
     }
 }

@@ -61,6 +61,7 @@ mod feed;
 mod frame;
 mod of_clip;
 mod of_index;
+mod performance_memory;
 mod performer;
 mod performer_stream;
 mod performer_table;

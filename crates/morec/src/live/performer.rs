@@ -7,8 +7,8 @@ use super::early::EarlyTracker;
 use super::event_buffer::EventBuffer;
 use super::event_tracker::EventTracker;
 use super::{
-    EarlyDetection, Event, EventOptions, Frame, Model, PerformerId, PoseExtractor, Recognizer,
-    RecognizerCache, RecognizerInput, Rig, ShownBones, StartError,
+    EarlyDetection, Event, EventOptions, Frame, Model, PerformerId, Phase, PoseExtractor,
+    Recognizer, RecognizerCache, RecognizerInput, Rig, ShownBones, StartError,
 };
 use crate::diagnosis::{Diagnoser, Diagnosis};
 use crate::features::{BoneSet, KeyPose};
@@ -29,6 +29,8 @@ pub struct Performer {
     /// Reads what a model asks for beyond places of joints.
     reader: Option<Box<PoseExtractor>>,
     early: EarlyTracker,
+    /// See [`EventOptions::deviation`].
+    compares: bool,
     tracker: EventTracker,
     out: EventBuffer,
     unusable: u64,
@@ -63,6 +65,7 @@ impl Performer {
             rig: None,
             recognizer: None,
             early: EarlyTracker::new(options),
+            compares: options.deviation,
             out: EventBuffer::new(actor),
             unusable: 0,
             dropped: 0,
@@ -98,8 +101,16 @@ impl Performer {
     /// # Errors
     /// As [`Recognizer::new`].
     pub fn announce(&mut self, bones: BoneSet) -> Result<(), StartError> {
-        self.recognizer = Some(Box::new(self.recognizers.recognizer(bones)?));
+        self.recognizer = Some(self.made(bones)?);
         Ok(())
+    }
+
+    fn made(&self, bones: BoneSet) -> Result<Box<Recognizer>, StartError> {
+        let mut made = Box::new(self.recognizers.recognizer(bones)?);
+        if self.compares {
+            made.measure_deviations();
+        }
+        Ok(made)
     }
 
     /// Takes a frame; the events that it settled. A frame without a rig, or of a skeleton that shows none of the index's bones, gives
@@ -157,17 +168,18 @@ impl Performer {
             let (early, after_secs) = (recognizer.early_detection(), self.tracker.last_stop_secs());
             self.early.look(early, after_secs, time_secs, &mut self.out);
         }
+        self.compare();
         self.out.events()
     }
 
     /// Goes on with a recogniser for other bones, if there can be one.
     fn look_at(&mut self, bones: BoneSet) {
-        let new = self.recognizers.recognizer(bones);
+        let new = self.made(bones);
         self.problem = new.as_ref().err().cloned();
         if let Ok(new) = new {
             self.end();
             self.dropped = self.dropped();
-            self.recognizer = Some(Box::new(new));
+            self.recognizer = Some(new);
         }
     }
 
@@ -189,6 +201,17 @@ impl Performer {
             self.tracker.emit(detection, &mut self.early, &mut self.out);
         }
         self.early.cancel(None, &mut self.out);
+        self.compare();
+    }
+
+    /// Compares what ended with samples, if that is asked for.
+    fn compare(&mut self) {
+        if let Some(recognizer) = self.recognizer.as_mut().filter(|_| self.compares) {
+            self.out.compare(|event| {
+                let repetition = event.phase == Phase::Repetition;
+                recognizer.deviation(event.class, event.span, repetition)
+            });
+        }
     }
 
     /// Frames that could not be used: no skeleton was known, or none of its bones are the index's.

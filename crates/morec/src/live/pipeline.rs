@@ -2,8 +2,10 @@
 
 use std::fmt;
 
+use crate::TimeSpan;
+use crate::classes::ClassId;
 use crate::features::Pushed;
-use crate::templates::EarlyDetectionParams;
+use crate::templates::{Deviation, EarlyDetectionParams};
 
 use super::detection::DetectionBuffer;
 use super::{EarlyDetection, RecognizerInput};
@@ -46,6 +48,20 @@ pub(super) trait Pipeline: fmt::Debug + Send + Sync {
 
     /// Sets the limits of [`early_detection`](Self::early_detection).
     fn set_early(&mut self, _params: EarlyDetectionParams) {}
+
+    /// Remembers rows from now on, for [`deviation`](Self::deviation). Allocates.
+    fn measure_deviations(&mut self) {}
+
+    /// How far the last performance of `class` in `span` was from the nearest sample, of methods that keep samples; with `repetition`, one of
+    /// an activity.
+    fn deviation(
+        &mut self,
+        _class: ClassId,
+        _span: TimeSpan,
+        _repetition: bool,
+    ) -> Option<Deviation> {
+        None
+    }
 
     /// A copy with the state of the stream.
     fn boxed(&self) -> Box<dyn Pipeline>;

@@ -2,8 +2,10 @@
 
 use std::sync::Arc;
 
+use crate::TimeSpan;
+use crate::classes::ClassId;
 use crate::features::{BoneSet, KeyPose, Pushed};
-use crate::templates::{ClassMatches, EarlyDetectionParams, TemplateModel};
+use crate::templates::{ClassMatches, Deviation, EarlyDetectionParams, TemplateModel};
 
 use super::detection::DetectionBuffer;
 use super::pipeline::Pipeline;
@@ -127,6 +129,23 @@ impl Recognizer {
     /// [`push`](Self::push) will report, and asking changes nothing of that. Templates only. No allocation.
     pub fn early_detection(&mut self) -> Option<EarlyDetection> {
         self.pipeline.early_detection()
+    }
+
+    /// Remembers motion from now on, so that [`deviation`](Self::deviation) can be asked for. Allocates.
+    pub fn measure_deviations(&mut self) {
+        self.pipeline.measure_deviations();
+    }
+
+    /// How far a performance of `class` in `span`, of the last 20 s, was from the nearest sample; with `repetition`, one
+    /// repetition of an activity. `None` if it was not [remembered](Self::measure_deviations) or no sample is kept: of held poses and of the
+    /// method of 2009. No allocation. O(samples · rows²).
+    pub fn deviation(
+        &mut self,
+        class: ClassId,
+        span: TimeSpan,
+        repetition: bool,
+    ) -> Option<Deviation> {
+        self.pipeline.deviation(class, span, repetition)
     }
 
     /// True while the relaxed gate for unseen performers is open: the performer's recognised motions are unlike the training subject's,

@@ -25,6 +25,8 @@ pub struct StreamOptions {
     pub tentative: bool,
     /// Make each repetition of an activity an event of its own, of the phase repetition.
     pub each_repetition: bool,
+    /// Say how far each gesture that ends, and each repetition that is an event, was from the nearest sample: angle, pace, worst bone.
+    pub deviation: bool,
     /// A motion of the same class that ends less than this after the one before it is not reported, seconds.
     pub refractory_secs: f64,
     /// Roles of joints or points whose names do not tell them.
@@ -40,6 +42,7 @@ impl Default for StreamOptions {
             performer: PerformerKind::default(),
             tentative: false,
             each_repetition: false,
+            deviation: false,
             refractory_secs: 0.0,
             roles: Mapping::default(),
             up: SignedAxis::Y,
@@ -110,6 +113,7 @@ impl StreamOptions {
         Ok(EventOptions {
             tentative: self.tentative,
             each_repetition: self.each_repetition,
+            deviation: self.deviation,
             refractory_secs: self.refractory_secs,
         })
     }

@@ -2,12 +2,16 @@
 
 use std::sync::Arc;
 
+use crate::TimeSpan;
+use crate::classes::ClassId;
 use crate::features::{BoneSet, FeatureStream, Pushed, RowLayout};
 use crate::templates::{
-    AT_ONCE, ClassMatches, EarlyDetectionParams, OngoingMatch, TemplateEngine, TemplateModel,
+    AT_ONCE, ClassMatches, Deviation, EarlyDetectionParams, OngoingMatch, TemplateEngine,
+    TemplateModel,
 };
 
 use super::detection::{DetectionBuffer, Steps};
+use super::performance_memory::PerformanceMemory;
 use super::pipeline::Pipeline;
 use super::start::check_shown;
 use super::{EarlyDetection, RecognizerInput, StartError};
@@ -21,6 +25,8 @@ pub(super) struct TemplatePipeline {
     waiting: WaitingRows,
     early: EarlyDetectionParams,
     seen: PartialMatchTracker,
+    /// Only where performances are compared with samples.
+    memory: Option<Box<PerformanceMemory>>,
 }
 
 /// Rows that wait until there are as many as are matched at once.
@@ -96,6 +102,7 @@ impl TemplatePipeline {
             model,
             early: EarlyDetectionParams::default(),
             seen: PartialMatchTracker::default(),
+            memory: None,
         }
     }
 
@@ -103,9 +110,13 @@ impl TemplatePipeline {
     fn recognise_rows(&mut self, found: &mut DetectionBuffer) {
         loop {
             let noise_gain = self.features.noise_gain();
+            let origin_secs = self.features.origin_secs();
             let Some(row) = self.features.next_row() else {
                 break;
             };
+            if let Some(memory) = &mut self.memory {
+                memory.push(row, origin_secs);
+            }
             self.waiting.push(row, noise_gain, found.reported_secs);
             if self.waiting.count == self.waiting.most {
                 self.recognise_waiting(found);
@@ -176,6 +187,9 @@ impl Pipeline for TemplatePipeline {
             found.add(d.class, steps, (d.start, d.stop), d.score, d.repetitions);
         }
         self.features.reset();
+        if let Some(memory) = &mut self.memory {
+            memory.end();
+        }
     }
 
     fn let_rows_wait(&mut self, wait: bool, found: &mut DetectionBuffer) {
@@ -220,6 +234,22 @@ impl Pipeline for TemplatePipeline {
 
     fn set_early(&mut self, params: EarlyDetectionParams) {
         self.early = params;
+    }
+
+    fn measure_deviations(&mut self) {
+        self.memory = Some(Box::new(PerformanceMemory::new(&self.model)));
+    }
+
+    fn deviation(&mut self, class: ClassId, span: TimeSpan, repetition: bool) -> Option<Deviation> {
+        let memory = self.memory.as_mut()?;
+        match repetition {
+            true => memory.compare(
+                span,
+                self.model.activities.as_ref()?.repetitions_of(class),
+                true,
+            ),
+            false => memory.compare(span, self.model.samples_of(class), false),
+        }
     }
 
     fn boxed(&self) -> Box<dyn Pipeline> {

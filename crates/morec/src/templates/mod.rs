@@ -1,11 +1,13 @@
 //! Matching a stream against labelled samples, elastically in time.
 
 mod activities;
+pub(crate) mod align;
 mod bank;
 mod bytes;
 mod class_matcher;
 mod class_matches;
 mod compact;
+mod deviation;
 mod dot;
 mod early;
 mod engine;
@@ -17,6 +19,7 @@ mod model;
 mod operating;
 mod performer;
 mod reference;
+mod sample;
 pub mod second_look;
 mod spread_norm;
 mod stretches;
@@ -27,10 +30,17 @@ mod verifier;
 pub use activities::Activities;
 #[cfg(feature = "train")]
 pub(crate) use activities::{STEP_TICKS, windows_of};
+#[cfg(feature = "train")]
+pub use align::align;
 pub use bank::{Match, PartialMatch, TemplateBank};
 pub use class_matcher::ClassMatcher;
 pub use class_matches::{ClassMatches, ClassMatchesError};
 
+#[cfg(feature = "train")]
+pub(crate) use bytes::{snapped, steps};
+#[cfg(feature = "train")]
+pub(crate) use deviation::angle_at;
+pub use deviation::{BoneDeviation, Deviation, DeviationMeter, MotionDeviation, deviation_from};
 pub use dot::AT_ONCE;
 pub use early::{EarlyDetectionParams, OngoingMatch};
 pub use engine::TemplateEngine;
@@ -39,10 +49,11 @@ pub use held::HeldPoses;
 pub(crate) use held::distance_from;
 pub use matcher::{MatchGate, Matcher, NormalizedMatch, mean_and_spread};
 pub use metric::{Metric, PackedSymmetric};
-pub use model::{TemplateModel, TemplateModelError, TemplateSample};
+pub use model::{TemplateModel, TemplateModelError};
 pub use operating::{ALARM_RATES, Calibration, OperatingPoint, threshold_at};
 pub use performer::{PerformerKind, PerformerLevel, StrangerGate};
 pub use reference::ReferenceRows;
+pub use sample::TemplateSample;
 pub use stretches::Stretches;
 pub use trace::{Nearest, Trace};
 #[cfg(feature = "train")]

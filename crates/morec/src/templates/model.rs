@@ -6,19 +6,11 @@ use crate::features::{BoneSet, FeatureParams, RowLayout, Rows};
 use crate::math::portable;
 use crate::templates::second_look::SecondLook;
 
+use super::sample::TemplateSample;
 use super::{
     Activities, Calibration, Evidence, Exemplars, HeldPoses, OperatingPoint, PackedSymmetric,
     PerformerKind, StrangerGate, Verifier, threshold_at,
 };
-
-/// One labelled sample's rows, before the metric.
-#[derive(Debug, Clone, PartialEq)]
-pub struct TemplateSample {
-    /// Number of the class.
-    pub class: ClassId,
-    /// One row for each tick.
-    pub rows: Rows,
-}
 
 /// Everything the template recogniser needs, immutable.
 #[derive(Debug, Clone, PartialEq)]
@@ -164,6 +156,8 @@ impl TemplateModel {
         let references = held.chain(activities);
         let rows = self.samples.iter().map(|sample| &sample.rows);
         let rows = rows.chain(&self.negatives);
+        let repetitions = self.activities.iter().flat_map(|a| &a.repetitions);
+        let rows = rows.chain(repetitions.map(|sample| &sample.rows));
         let rows = rows.chain(looks().flat_map(|look| [&look.segments, &look.atlas]));
         let mut rows = rows.chain(references.clone().flat_map(|r| [&r.rows, &r.others]));
         let tables = [&self.ridged, &self.total].into_iter();
@@ -286,6 +280,12 @@ impl TemplateModel {
         let evidence = self.verifier.as_ref().map_or(0.0, |_| Evidence::REACH);
         // A margin covers rounding.
         1.01 * (threshold * factor).max(evidence)
+    }
+
+    /// Rows of the templates of `class`.
+    pub fn samples_of(&self, class: ClassId) -> impl Iterator<Item = &Rows> + Clone {
+        let of_class = self.samples.iter().filter(move |s| s.class == class);
+        of_class.map(|s| &s.rows)
     }
 
     /// Rows of the longest template.

@@ -4,8 +4,10 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::classes::ClassId;
 use crate::features::{BoneSet, Profile, RowLayout, Rows};
+use crate::segment::{CycleParams, cycles};
 use crate::templates::{
-    Activities, Metric, PackedSymmetric, ReferenceRows, STEP_TICKS, squared_distance, windows_of,
+    Activities, Metric, PackedSymmetric, ReferenceRows, STEP_TICKS, TemplateSample, snapped,
+    squared_distance, steps, windows_of,
 };
 
 use super::kind::{ClassKind, ClassLabels};
@@ -19,6 +21,8 @@ const WINDOW_SECS: f64 = 2.5;
 const MOST_OTHERS: usize = 500;
 /// Fewer windows of anything else describe motion of no class badly.
 const LEAST_OTHERS: usize = 50;
+/// Repetitions of a class that are kept at most; and as many mirrored ones.
+const MOST_REPETITIONS: usize = 4;
 /// Unlabelled windows nearer to a class than this share of the class's own windows probably show the class.
 const OWN_SHARE: f64 = 0.9;
 
@@ -55,6 +59,7 @@ pub(super) fn learn(
     let means = means_of_groups(&shown, &groups);
     let own = OwnWindows::new(&metric, &means, &shown, &groups);
     let others = others(set, samples, &classes, windows, &own);
+    let (repetitions, step) = repetitions(set, samples, &classes, params);
     (others.len() >= LEAST_OTHERS).then(|| Activities {
         windows: ReferenceRows {
             rows: Rows::from_values(dim, means.values().flatten().copied().collect()),
@@ -65,7 +70,40 @@ pub(super) fn learn(
         },
         window_ticks,
         share: 1.0,
+        repetitions,
+        step,
     })
+}
+
+/// The repetition in the middle of each sample, of some samples of each class and of as many mirrored ones; and the steps of their values.
+fn repetitions(
+    set: &TrainSet,
+    samples: &[TrainSample],
+    classes: &BTreeSet<ClassId>,
+    params: &TrainParams,
+) -> (Vec<TemplateSample>, Vec<f32>) {
+    let tick_hz = params.features.tick_hz();
+    let mut of_class: BTreeMap<(ClassId, bool), Vec<Rows>> = BTreeMap::new();
+    for sample in samples.iter().filter(|s| classes.contains(&s.class)) {
+        let ticks = sample.rows.len();
+        let found = cycles(&sample.rows, tick_hz, &CycleParams::default());
+        let period = found.map_or(0, |c| (c.period_secs * tick_hz).round() as usize);
+        if (1..=ticks).contains(&period) {
+            let first = (ticks - period) / 2;
+            let group = (sample.class, set.streams[sample.stream].is_copy);
+            let one = sample.rows.slice(first..first + period);
+            of_class.entry(group).or_default().push(one);
+        }
+    }
+    let kept =
+        || (of_class.iter()).flat_map(|(of, all)| evenly(all, MOST_REPETITIONS).map(|r| (of.0, r)));
+    let dim = samples.first().map_or(0, |sample| sample.rows.dim());
+    let step = steps(kept().map(|(_, rows)| rows), dim);
+    let sample = |(class, rows)| TemplateSample {
+        class,
+        rows: snapped(rows, &step),
+    };
+    (kept().map(sample).collect(), step)
 }
 
 /// Classes that go on, by what is said of them or else by their samples.

@@ -1,7 +1,6 @@
 //! Training from labelled samples and background motion, by either method.
 
 mod activities;
-mod align;
 mod alike;
 mod clips;
 mod comparison;
@@ -34,7 +33,7 @@ mod trainer;
 mod trim;
 mod verifier;
 
-pub use align::align;
+pub use crate::templates::align;
 pub use alike::AlikeClasses;
 pub use clips::train_clips;
 pub use data::{DataError, TrainingData, TrainingMaterial};

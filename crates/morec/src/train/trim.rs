@@ -63,7 +63,7 @@ fn average(rows: &Rows, tick: usize, columns: usize) -> Vec<f32> {
 }
 
 fn distance(a: &[f32], b: &[f32]) -> f64 {
-    super::align::squared_distance(a, b).sqrt()
+    crate::templates::align::squared_distance(a, b).sqrt()
 }
 
 #[cfg(test)]

@@ -8,6 +8,7 @@ mod cases;
 mod conformance;
 mod custom;
 mod cuts;
+mod deviation;
 mod diagnosis;
 mod engines;
 mod faster_copies;

@@ -22,7 +22,7 @@ pub use feed::{ClipFeed, Feed, ThreadFeed};
 
 pub use looking::{Looking, SPANS};
 pub use marked::{LiveMark, labelled_there};
-pub use run::{LiveDetection, Run};
+pub use run::{LiveDetection, LiveDeviation, Run};
 
 /// While seconds are counted down, the window is drawn so often, seconds.
 const COUNTED_SECS: f64 = 0.1;

@@ -1,10 +1,13 @@
 //! One run of a live source: its performers, what was recognised, how the stream is.
 
+use std::collections::VecDeque;
+
 use morec::TimeSpan;
 use morec::classes::ClassId;
 use morec::diagnosis::{Diagnosis, Severity};
 use morec::index::MotionIndex;
 use morec::live::{EarlyDetection, Event, Frame, Model, PerformerId, Phase};
+use morec::templates::Deviation;
 use morec_db::ClipId;
 
 use super::feed::{Feed, LiveItem};
@@ -15,6 +18,9 @@ use crate::state::player::LONGEST_FRAME;
 const LOST_SECS: f64 = 1.5;
 /// Most performers that are followed; minutes of poses are kept of each.
 const MOST: usize = 16;
+
+/// Performances whose deviations are shown at most.
+const MOST_COMPARED: usize = 24;
 
 /// Something that was recognised.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,6 +34,16 @@ pub struct LiveDetection {
     pub repetitions: Option<u32>,
 }
 
+/// How far a gesture, or a repetition of an activity, was from the nearest sample.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LiveDeviation {
+    pub class: String,
+    pub actor: PerformerId,
+    /// Of a repetition, its number.
+    pub repetition: Option<u32>,
+    pub deviation: Deviation,
+}
+
 /// A source that runs.
 pub struct Run {
     feed: Feed,
@@ -38,6 +54,8 @@ pub struct Run {
     watched: usize,
     pub now_secs: f64,
     pub seen: Vec<LiveDetection>,
+    /// The last that were compared with samples.
+    pub compared: VecDeque<LiveDeviation>,
     /// Classes of motions that ended since they were asked for.
     pub news: Vec<ClassId>,
     model: Option<Model>,
@@ -58,6 +76,7 @@ impl Run {
             watched: 0,
             now_secs: 0.0,
             seen: Vec::new(),
+            compared: VecDeque::new(),
             news: Vec::new(),
             model: None,
             silent_secs: 0.0,
@@ -150,6 +169,18 @@ impl Run {
 
     fn take_events(&mut self, events: &[Event]) {
         let Some(model) = &self.model else { return };
+        for (event, deviation) in events.iter().filter_map(|e| Some((e, e.deviation?))) {
+            if self.compared.len() == MOST_COMPARED {
+                self.compared.pop_front();
+            }
+            let is_one = event.phase == Phase::Repetition;
+            self.compared.push_back(LiveDeviation {
+                class: model.class_name(event.class).to_owned(),
+                actor: event.actor,
+                repetition: event.repetitions.map(|r| r.count).filter(|_| is_one),
+                deviation,
+            });
+        }
         for event in events.iter().filter(|e| e.phase == Phase::End) {
             self.news.push(event.class);
             self.seen.push(LiveDetection {

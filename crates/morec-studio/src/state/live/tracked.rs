@@ -171,10 +171,12 @@ impl LivePerformer {
     }
 }
 
-/// The window shows what seems to be under way.
+/// The window shows what seems to be under way, and how well each motion and repetition was performed.
 fn recogniser(model: &Model, actor: PerformerId) -> Performer {
     let options = EventOptions {
         tentative: true,
+        each_repetition: true,
+        deviation: true,
         ..EventOptions::default()
     };
     Performer::new(model, actor, &options)

@@ -436,6 +436,8 @@ mod tests {
             windows,
             window_ticks: WINDOW,
             share: 1.0,
+            repetitions: Vec::new(),
+            step: Vec::new(),
         }
     }
 

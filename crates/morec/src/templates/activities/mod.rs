@@ -11,10 +11,10 @@ mod repetitions;
 mod windows;
 
 use crate::classes::ClassId;
-use crate::features::RowLayout;
+use crate::features::{RowLayout, Rows};
 use crate::math::portable;
 
-use super::ReferenceRows;
+use super::{ReferenceRows, TemplateSample};
 
 pub(super) use detector::ActivityDetector;
 pub(crate) use windows::STEP_TICKS;
@@ -39,6 +39,11 @@ pub struct Activities {
     pub window_ticks: usize,
     /// A window is of a class while it is nearer to it than this share of its distance from anything else.
     pub share: f32,
+    /// Rows of single repetitions of the samples, with which those of a stream are compared; none in older indexes. Nothing is recognised by
+    /// them.
+    pub repetitions: Vec<TemplateSample>,
+    /// Their values are whole multiples of this, column by column: files hold bytes.
+    pub step: Vec<f32>,
 }
 
 impl Activities {
@@ -72,7 +77,19 @@ impl Activities {
                 self.share
             ));
         }
-        Ok(())
+        let fits = |sample: &TemplateSample| {
+            sample.rows.dim() == layout.dim() && sample.class.index() < classes
+        };
+        match self.repetitions.iter().all(fits) {
+            true => Ok(()),
+            false => Err("a repetition of an activity of another width or class".to_owned()),
+        }
+    }
+
+    /// Rows of the repetitions of `class`.
+    pub fn repetitions_of(&self, class: ClassId) -> impl Iterator<Item = &Rows> + Clone {
+        let of_class = self.repetitions.iter().filter(move |s| s.class == class);
+        of_class.map(|s| &s.rows)
     }
 
     /// Statistics of a window over rows of `layout`.
@@ -97,8 +114,17 @@ impl Activities {
     /// The part for rows that keep the columns `keep` of rows of `layout`.
     pub(super) fn restricted(&self, layout: RowLayout, keep: &[usize]) -> Self {
         let kept = windows::kept_statistics(layout, keep);
+        let narrowed = |sample: &TemplateSample| TemplateSample {
+            class: sample.class,
+            rows: sample.rows.columns(keep),
+        };
         Self {
             windows: self.windows.restricted(&kept),
+            repetitions: self.repetitions.iter().map(narrowed).collect(),
+            step: keep
+                .iter()
+                .filter_map(|&k| self.step.get(k).copied())
+                .collect(),
             ..self.clone()
         }
     }
