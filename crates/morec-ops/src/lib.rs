@@ -66,7 +66,10 @@ pub use error::OperationError;
 #[cfg(feature = "db")]
 pub use evaluate::{EvaluateMeasures, EvaluateSettings};
 #[cfg(feature = "db")]
-pub use group::{GroupMethod, GroupSettings, GroupedStretch, Grouping, Shapes, largest_first};
+pub use group::{
+    Centre, GroupMethod, GroupSettings, GroupedStretch, Grouping, MOST_IN_TREE, Shapes,
+    largest_first,
+};
 #[cfg(feature = "db")]
 pub use import::{CopiedClip, ImportSettings, ImportedFiles};
 #[cfg(feature = "db")]

@@ -454,7 +454,7 @@ impl PyDatabase {
     ) -> PyResult<Bound<'py, PyAny>> {
         let settings: GroupSettings = keywords(settings)?;
         let (stretches, groups, names) = self.run(py, progress, |db, progress| {
-            let stretches = settings.stretches(db, progress).map_err(db_error)?;
+            let stretches = settings.stretches(db, progress).map_err(operation_error)?;
             let clusters = settings.clusters(stretches.iter().map(|of| &of.rows));
             let groups = largest_first(&clusters.map_err(operation_error)?);
             Ok((stretches, groups, names(db).map_err(db_error)?))

@@ -12,7 +12,6 @@ use std::process::ExitCode;
 use anyhow::{Result, bail};
 
 pub use args::Args;
-use morec_ops::GroupMethod;
 
 use crate::database;
 
@@ -21,7 +20,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let inputs: Vec<PathBuf> = args.inputs.iter().chain(&args.clips).cloned().collect();
     match (database::only(&inputs)?, args.settings.method) {
         (Some(db), _) => stored::run(db, args),
-        (None, GroupMethod::Kwas) => kwas::run(&inputs, args),
+        (None, method) if method.looks_at_poses() => kwas::run(&inputs, args),
         (None, _) => files::run(&inputs, args),
     }
 }

@@ -491,6 +491,11 @@ class Database:
         tau: float | None = None,
         k: int | None = None,
         normalised: bool = False,
+        centre: str = "database",
+        quality: float | None = None,
+        dims: int | None = None,
+        divide: Sequence[int] = (),
+        join: Sequence[int] = (),
         progress: _Progress = None,
     ) -> Table:
         """Groups of stretches that are alike, the largest first; what ``morec group`` does.
@@ -498,7 +503,8 @@ class Database:
         Parameters
         ----------
         of : "cuts" (the default), "labels" or "clips"
-        method : "affinity", "hierarchy" (cut into ``groups``, or at a ``height``) or "kwas"
+        method : "affinity", "hierarchy" (cut into ``groups``, or at a ``height``), "kwas" or "tree" (of single samples)
+        divide, join : numbers of groups of the hierarchy or the tree that go one step down, or up
 
         Returns
         -------

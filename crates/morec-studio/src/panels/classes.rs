@@ -5,6 +5,7 @@ use egui::{
     style::ScrollAnimation,
 };
 use morec_db::labels::{DbSample, SampleState as Judged};
+use morec_ops::GroupMethod;
 
 use super::{Out, card, carried, groups, label, padded, proposals, shelf, similar, view, widgets};
 use crate::format;
@@ -52,28 +53,7 @@ fn tools(ui: &mut Ui, state: &State, out: Out) {
         }
         let mut class = |command| out.push(Command::Classes(command));
         if let Some(groups) = &state.classes.groups {
-            ui.label(RichText::new("Groups").strong());
-            let most = groups.items.len().clamp(2, 60);
-            let mut depth = state.classes.depth.min(most);
-            ui.spacing_mut().slider_width = 220.0;
-            let response = ui.add(egui::Slider::new(&mut depth, 1..=most));
-            widgets::named(&response, WidgetType::Slider, "Number of groups", false);
-            if response.changed() {
-                class(ClassCommand::Depth(depth));
-            }
-            ui.colored_label(
-                c.muted,
-                format!(
-                    "of {}, outliers first",
-                    format::count(groups.items.len(), "stretch")
-                ),
-            );
-            if groups.left_out > 0 {
-                ui.colored_label(c.warn, format!("{} left out", groups.left_out));
-            }
-            if ui.button("Back to classes").clicked() {
-                class(ClassCommand::CloseGroups);
-            }
+            groups::tools(ui, state, groups, out);
             return;
         }
         if ui
@@ -89,20 +69,24 @@ fn tools(ui: &mut Ui, state: &State, out: Out) {
         proposals::at_once(ui, state, out);
         shelf::button(ui, state, out);
         let mut class = |command| out.push(Command::Classes(command));
+        let group = |cuts| ClassCommand::Group {
+            cuts,
+            method: GroupMethod::Hierarchy,
+        };
         ui.separator();
         if ui
             .button("Group labels")
             .on_hover_text("Which labels are alike, whatever their class")
             .clicked()
         {
-            class(ClassCommand::Group { cuts: false });
+            class(group(false));
         }
         if ui
             .button("Group cuts")
             .on_hover_text("Which cuts are alike: a way to begin without labels")
             .clicked()
         {
-            class(ClassCommand::Group { cuts: true });
+            class(group(true));
         }
         ui.colored_label(
             c.muted,

@@ -1,6 +1,10 @@
-//! Groups of what is alike, at the depth that the slider says.
+//! Groups of what is alike, and where they end.
+
+use std::sync::Arc;
 
 use egui::{Button, Rect, RichText, ScrollArea, Sense, Ui, Vec2, WidgetType};
+use morec::cluster::KwasParams;
+use morec_ops::{GroupMethod, Grouping};
 
 use super::strips::{STRIP, go};
 use morec_db::labels::SampleState;
@@ -8,24 +12,17 @@ use morec_db::labels::SampleState;
 use super::carried::Carried;
 use super::{Out, strips, widgets};
 use crate::format;
-use crate::jobs::group::GroupItem;
+use crate::jobs::group::{ClusteredItems, Group, GroupItem};
 use crate::state::{ClassCommand, Command, State};
 use crate::theme::Colours;
 
-/// The groups at the depth that the slider says.
+/// The groups and their stretches.
 pub fn show(ui: &mut Ui, state: &State, out: Out) {
     let Some(groups) = &state.classes.groups else {
         return;
     };
     let c = Colours::now(ui);
-    let key = egui::Id::new(("groups", state.classes.grouping, state.classes.depth));
-    let all = ui
-        .data(|d| d.get_temp::<std::sync::Arc<Vec<crate::jobs::group::Group>>>(key))
-        .unwrap_or_else(|| {
-            let made = std::sync::Arc::new(groups.at(state.classes.depth));
-            ui.data_mut(|d| d.insert_temp(key, made.clone()));
-            made
-        });
+    let all = made(ui, state, groups);
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         for (number, group) in all.iter().enumerate() {
             ui.horizontal(|ui| {
@@ -56,6 +53,7 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
                     out.push(Command::Classes(ClassCommand::NameGroup { group, name }));
                 }
                 ui.data_mut(|d| d.insert_temp(id, name));
+                branch(ui, groups, group, number, out);
             });
             ScrollArea::horizontal()
                 .id_salt(("group", number))
@@ -97,6 +95,139 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
             ui.add_space(6.0);
         }
     });
+}
+
+/// The groups, made once for each place where they end.
+fn made(ui: &Ui, state: &State, groups: &ClusteredItems) -> Arc<Vec<Group>> {
+    let key = egui::Id::new("groups");
+    let at = state.classes.grouping;
+    let known = ui.data(|d| d.get_temp::<(u64, Arc<Vec<Group>>)>(key));
+    match known.filter(|(of, _)| *of == at) {
+        Some((_, known)) => known,
+        None => {
+            let made = Arc::new(groups.at(&state.classes.depth));
+            ui.data_mut(|d| d.insert_temp(key, (at, made.clone())));
+            made
+        }
+    }
+}
+
+/// Buttons that take one branch of a hierarchy a step down or up.
+fn branch(ui: &mut Ui, groups: &ClusteredItems, group: &Group, number: usize, out: Out) {
+    let Some((nodes, node)) = groups.nodes().zip(group.node) else {
+        return;
+    };
+    let (divides, joins) = nodes.goes_on(node);
+    let steps = [
+        (
+            "Divide",
+            divides,
+            "This group alone in its two parts",
+            ClassCommand::Divide(node),
+        ),
+        (
+            "Join",
+            joins,
+            "With what it was parted from",
+            ClassCommand::Join(node),
+        ),
+    ];
+    for (text, on, hint, command) in steps {
+        let response = ui.add_enabled(on, Button::new(text).small());
+        let name = format!("{text} group {}", number + 1);
+        response.widget_info(|| egui::WidgetInfo::labeled(WidgetType::Button, on, &name));
+        if response.on_hover_text(hint).clicked() {
+            out.push(Command::Classes(command));
+        }
+    }
+}
+
+/// How the stretches are grouped, where groups end, and how far they agree with the classes.
+pub fn tools(ui: &mut Ui, state: &State, groups: &ClusteredItems, out: Out) {
+    let c = Colours::now(ui);
+    let mut class = |command| out.push(Command::Classes(command));
+    ui.label(RichText::new("Groups").strong());
+    let cuts = groups.settings.of == Some(Grouping::Cuts);
+    for (method, name, hint) in METHODS {
+        let on = groups.settings.method == method;
+        if ui.selectable_label(on, name).on_hover_text(hint).clicked() && !on {
+            class(ClassCommand::Group { cuts, method });
+        }
+    }
+    match groups.settings.method {
+        GroupMethod::Kwas => kwas(ui, &state.classes.depth.kwas, &mut class),
+        _ => depth(ui, state, groups, &mut class),
+    }
+    let made = made(ui, state, groups);
+    let mut said = format!(
+        "{} of {}, outliers first",
+        format::count(made.len(), "group"),
+        format::count(groups.items.len(), "stretch")
+    );
+    if let Some((rand, adjusted)) = groups.agreement(&made) {
+        said += &format!("; against the classes: Rand index {rand:.3}, adjusted {adjusted:.3}");
+    }
+    ui.colored_label(c.muted, said);
+    if groups.left_out > 0 {
+        ui.colored_label(c.warn, format!("{} left out", groups.left_out));
+    }
+    if ui.button("Back to classes").clicked() {
+        class(ClassCommand::CloseGroups);
+    }
+}
+
+const METHODS: [(GroupMethod, &str, &str); 3] = [
+    (
+        GroupMethod::Hierarchy,
+        "Hierarchy",
+        "Average linkage over evenly resampled motion",
+    ),
+    (
+        GroupMethod::Kwas,
+        "kWAS",
+        "Principal directions of poses, as in the thesis of 2009; needs joint rotations",
+    ),
+    (
+        GroupMethod::Tree,
+        "Tree of samples",
+        "The partition of the classifier of 2009, each stretch a class of its own; needs joint rotations",
+    ),
+];
+
+fn depth(
+    ui: &mut Ui,
+    state: &State,
+    groups: &ClusteredItems,
+    class: &mut impl FnMut(ClassCommand),
+) {
+    let most = groups.items.len().clamp(2, 60);
+    let mut depth = state.classes.depth.groups.min(most);
+    ui.spacing_mut().slider_width = 220.0;
+    let response = ui.add(egui::Slider::new(&mut depth, 1..=most));
+    widgets::named(&response, WidgetType::Slider, "Number of groups", false);
+    if response.changed() {
+        class(ClassCommand::Depth(depth));
+    }
+}
+
+/// The thesis's own: τ near 1 where much is alike, and directions.
+fn kwas(ui: &mut Ui, now: &KwasParams, class: &mut impl FnMut(ClassCommand)) {
+    let mut next = *now;
+    let tau = egui::DragValue::new(&mut next.tau)
+        .range(0.0..=1.0)
+        .speed(0.001);
+    ui.label("τ");
+    let tau = ui.add(tau.max_decimals(3));
+    widgets::named(&tau, WidgetType::DragValue, "Similarity τ", false);
+    let hint = "Two stretches are linked if their similarity is above this";
+    let tau = tau.on_hover_text(hint);
+    ui.label("k");
+    let k = ui.add(egui::DragValue::new(&mut next.k).range(1..=64).speed(0.1));
+    widgets::named(&k, WidgetType::DragValue, "Directions k", false);
+    let k = k.on_hover_text("Principal directions of a stretch that count");
+    if tau.changed() || k.changed() {
+        class(ClassCommand::Kwas(next));
+    }
 }
 
 /// A stretch of a group, to be dragged into a class.

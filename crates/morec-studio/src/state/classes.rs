@@ -2,8 +2,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use morec::cluster::{Dendrogram, GroupNodes, KwasParams};
+
 use super::columns::ClassColumns;
-use crate::jobs::group::ClusteredItems;
+use crate::jobs::group::{ClusteredItems, GroupDepth};
 use crate::jobs::similar::Similar;
 use crate::store::Snapshot;
 
@@ -35,14 +37,13 @@ pub struct Classes {
     /// The samples of each class as they are shown.
     pub columns: ClassColumns,
     pub groups: Option<ClusteredItems>,
-    /// Counts up with every new grouping.
+    /// Counts up with every new grouping, and when it is cut elsewhere.
     pub grouping: u64,
     /// The result of a search by example, while it is shown.
     pub similar: Option<Similar>,
     /// True if searches look for the mirror image, too.
     pub mirror: bool,
-    /// Into how many groups the hierarchy is cut.
-    pub depth: usize,
+    pub depth: GroupDepth,
     /// A class that is being renamed, and its new name so far.
     pub renaming: Option<(String, String)>,
     /// Proposals at least this likely are accepted at once, percent; [`LIKELY`] unless chosen.
@@ -188,8 +189,31 @@ impl Classes {
             .iter()
             .filter_map(|i| i.class.as_ref())
             .collect();
-        self.depth = classes.len().max(groups.items.len().min(4)).max(1);
+        self.depth.groups = classes.len().max(groups.items.len().min(4)).max(1);
+        self.depth.branches = None;
         self.groups = Some(groups);
+        self.grouping += 1;
+    }
+
+    /// Cuts the hierarchy into so many groups, all branches alike.
+    pub(super) fn cut_into(&mut self, groups: usize) {
+        (self.depth.groups, self.depth.branches) = (groups.max(1), None);
+        self.grouping += 1;
+    }
+
+    /// Takes one group of the hierarchy a step down or up.
+    pub(super) fn step(&mut self, node: usize, step: impl Fn(&Dendrogram, &mut GroupNodes, usize)) {
+        let Some(groups) = &self.groups else { return };
+        let mut cut = groups.cut(&self.depth);
+        if let Some(nodes) = groups.nodes() {
+            step(nodes, &mut cut, node);
+        }
+        self.depth.branches = Some(cut);
+        self.grouping += 1;
+    }
+
+    pub(super) fn group_by(&mut self, kwas: KwasParams) {
+        self.depth.kwas = kwas;
         self.grouping += 1;
     }
 

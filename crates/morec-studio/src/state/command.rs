@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use morec::cluster::KwasParams;
 use morec::features::BoneSet;
 use morec::roles::Role;
 use morec::smooth::ChannelKind;
@@ -10,7 +11,7 @@ use morec::train::thesis::SvrdmTrainParams;
 use morec_db::ClipId;
 use morec_db::exchange::LabelFormat;
 use morec_db::labels::SampleId;
-use morec_ops::CutMethod;
+use morec_ops::{CutMethod, GroupMethod};
 
 use super::compare::CompareCommand;
 use super::cuts::CutCommand;
@@ -284,8 +285,15 @@ pub enum ClassCommand {
     Propose,
     Group {
         cuts: bool,
+        method: GroupMethod,
     },
+    /// The hierarchy is cut into so many groups.
     Depth(usize),
+    /// The group at this node of the hierarchy goes one step down, or up.
+    Divide(usize),
+    Join(usize),
+    /// kWAS groups by this.
+    Kwas(KwasParams),
     CloseGroups,
     /// The group of this place becomes a class.
     NameGroup {

@@ -1,13 +1,14 @@
 //! Classes are named, renamed, removed; samples are dragged between them; groups follow a slider.
 
 use egui::Key;
+use morec::cluster::KwasParams;
 use morec::features::Rows;
 use morec_db::MotionDb;
 use morec_db::labels::{NewSample, SampleState as Judged};
-use morec_ops::Shapes;
+use morec_ops::{GroupMethod, GroupSettings, Shapes, largest_first};
 
 use super::{Person, made};
-use crate::jobs::group::ClusteredItems;
+use crate::jobs::group::{self, ClusteredItems};
 use crate::state::{ClassCommand, Command, Panel, PlayCommand};
 
 fn labelling(labelled: usize) -> (tempfile::TempDir, Person) {
@@ -78,7 +79,7 @@ fn groups_follow_the_slider_and_become_classes() {
     person.settle();
     let groups = person.state().classes.groups.clone().unwrap();
     assert_eq!(groups.items.len(), 12);
-    let depth = person.state().classes.depth;
+    let depth = person.state().classes.depth.groups;
     assert!(person.sees(&format!("Group {depth}")));
     assert!(!person.sees(&format!("Group {}", depth + 1)));
     let slider = person.place("Number of groups");
@@ -87,10 +88,14 @@ fn groups_follow_the_slider_and_become_classes() {
         egui::pos2(x, slider.center().y)
     };
     person.drag(at(0.2), at(0.98));
-    let many = person.state().classes.depth;
+    let many = person.state().classes.depth.groups;
     assert!(many > 8 && person.sees("Group 5"), "{many}");
     person.drag(at(0.5), at(0.0));
-    assert_eq!(person.state().classes.depth, 1);
+    assert_eq!(person.state().classes.depth.groups, 1);
+    assert!(person.sees("Group 1") && !person.sees("Group 2"));
+    person.click("Divide group 1");
+    assert!(person.sees("Group 2") && !person.sees("Group 3"));
+    person.click("Join group 2");
     assert!(person.sees("Group 1") && !person.sees("Group 2"));
     let before = person.labels();
     person.click("Name of group 1");
@@ -101,6 +106,54 @@ fn groups_follow_the_slider_and_become_classes() {
     assert!(person.labels().iter().all(|l| l.1 == "all"));
     person.undo();
     assert_eq!(person.labels(), before);
+}
+
+#[test]
+fn kwas_and_the_tree_of_samples_group_as_the_command_does() {
+    let (_folder, mut person) = labelling(2);
+    person.goes_to(Panel::Classes);
+    person.click("Group labels");
+    person.settle();
+    let path = person.state().store.as_ref().unwrap().path().to_owned();
+    let sizes = |person: &Person| -> Vec<usize> {
+        let classes = &person.state().classes;
+        let groups = classes.groups.as_ref().unwrap().at(&classes.depth);
+        groups.iter().map(|group| group.members.len()).collect()
+    };
+    let of_command = |settings: &GroupSettings| -> Vec<usize> {
+        let db = MotionDb::open(&path).unwrap();
+        let stretches = settings.stretches(&db, &()).unwrap();
+        let clusters = settings.clusters(stretches.iter().map(|of| &of.rows));
+        let groups = largest_first(&clusters.unwrap());
+        groups.iter().map(Vec::len).collect()
+    };
+    person.click("kWAS");
+    person.settle();
+    let settings = group::settings(false, GroupMethod::Kwas);
+    assert_eq!(sizes(&person), of_command(&settings));
+    assert!(person.sees_part("Rand index"));
+    let kwas = KwasParams {
+        tau: 0.5,
+        k: 2,
+        ..KwasParams::default()
+    };
+    let command = Command::Classes(ClassCommand::Kwas(kwas));
+    person.window.state_mut().state.apply(command);
+    person.frames(3);
+    let settings = GroupSettings {
+        tau: 0.5,
+        k: 2,
+        ..settings
+    };
+    assert_eq!(sizes(&person), of_command(&settings));
+    person.click("Tree of samples");
+    person.settle();
+    let groups = person.state().classes.depth.groups;
+    let settings = GroupSettings {
+        groups: Some(groups),
+        ..group::settings(false, GroupMethod::Tree)
+    };
+    assert_eq!(sizes(&person), of_command(&settings));
 }
 
 #[test]
@@ -139,7 +192,7 @@ fn cuts_are_grouped_and_a_group_becomes_labels() {
     person.settle();
     let groups = person.state().classes.groups.clone().unwrap();
     assert!(groups.items.iter().all(|item| item.sample.is_none()));
-    let depth = person.state().classes.depth;
+    let depth = person.state().classes.depth.groups;
     let members = groups.at(depth)[0].members.len();
     person.click("Name of group 1");
     person
@@ -171,7 +224,7 @@ fn a_group_is_shown_from_its_outliers_to_what_is_usual() {
     let classes = &mut person.window.state_mut().state.classes;
     classes.groups = Some(ClusteredItems::of(items.clone(), shapes, 0));
     classes.grouping += 1;
-    classes.depth = 1;
+    classes.depth.groups = 1;
     person.frames(3);
     let left = |person: &Person, at: usize| {
         let name = format!("Stretch {at} of group 1");

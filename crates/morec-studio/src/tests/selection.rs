@@ -162,9 +162,9 @@ fn classes_stand_beside_groups_and_take_what_is_dragged_there() {
     person.click("Group cuts");
     person.settle();
     let before = person.labels();
-    let depth = person.state().classes.depth;
+    let depth = person.state().classes.depth.clone();
     let groups = person.state().classes.groups.clone().unwrap();
-    let member = groups.at(depth)[0].members[0];
+    let member = groups.at(&depth)[0].members[0];
     let item = groups.items[member].clone();
     let card = format!("Stretch {member} of group 1");
     let (from, to) = (

@@ -16,6 +16,7 @@ mod qp;
 mod reduce;
 mod sigma;
 mod signs;
+mod singles;
 mod sphere;
 mod svrm;
 
@@ -33,6 +34,7 @@ pub use qp::{Solver, Stop};
 pub use reduce::centroid_factor;
 pub use sigma::{Estimate, algorithm4};
 pub use signs::{SignRule, SignVector, sign_vector};
+pub use singles::{Parting, sample_tree};
 
 #[cfg(test)]
 use {

@@ -57,6 +57,23 @@ impl Hierarchy {
         Self { items: n, merges }
     }
 
+    /// Of `items` items by merges that are known, each with an item of both groups; what a merge joins was joined at no more than its
+    /// height.
+    pub fn of_merges(items: usize, mut merges: Vec<Merge>) -> Self {
+        merges.sort_by(|a, b| a.height.total_cmp(&b.height));
+        Self { items, merges }
+    }
+
+    /// Number of items.
+    pub fn items(&self) -> usize {
+        self.items
+    }
+
+    /// Groups whose items are on average no further apart than `height`.
+    pub fn groups_at(&self, height: f64) -> usize {
+        self.items - self.merges.partition_point(|m| m.height <= height)
+    }
+
     /// The merges, nearest first.
     pub fn merges(&self) -> &[Merge] {
         &self.merges

@@ -15,6 +15,7 @@
 mod affinity;
 mod agreement;
 mod clusters;
+mod dendrogram;
 mod hierarchy;
 mod kwas;
 mod shape;
@@ -22,6 +23,7 @@ mod shape;
 pub use affinity::{AffinityParams, affinity_propagation};
 pub use agreement::{PairCounts, adjusted_rand_index};
 pub use clusters::{Clusters, connected, kwas_clusters};
+pub use dendrogram::{Dendrogram, GroupNodes};
 pub use hierarchy::{Hierarchy, Merge};
 pub use kwas::{KwasForm, KwasParams, Spectrum, kwas};
 pub use shape::{resampled, squared_distance};

@@ -2,9 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::ValueEnum;
 use morec_ops::GroupSettings;
-use serde::Serialize;
 
 use crate::labels::LabelArgs;
 use crate::poses::PoseArgs;
@@ -13,7 +11,8 @@ use crate::poses::PoseArgs;
 ///
 /// With labels, samples are grouped and the groups compared with the classes; without, clips are cut first (as by
 /// `morec cut`) and segments grouped. Affinity propagation finds the number of groups; --method hierarchy is cut at
-/// --groups or --height; kwas is the thesis's. With --name-as, groups of a database become classes of proposed samples
+/// --groups or --height, and with --divide and --join branch by branch; kwas and tree are the thesis's, and need joint
+/// rotations. With --name-as, groups of a database become classes of proposed samples
 /// to rename, merge and accept.
 #[derive(clap::Args)]
 #[command(after_help = "\
@@ -36,25 +35,6 @@ pub struct Args {
     pub(super) labels: Option<PathBuf>,
     #[command(flatten)]
     pub(super) settings: GroupSettings,
-    /// Centre of samples before comparison (kwas, files)
-    #[arg(hide_short_help = true, long, value_enum, default_value = "database")]
-    pub(super) centre: Centre,
-    /// Share of the variance to keep (kwas, files)
-    #[arg(
-        hide_short_help = true,
-        long,
-        value_name = "SHARE",
-        default_value_t = 0.99
-    )]
-    pub(super) quality: f64,
-    /// Keep N dimensions instead (kwas, files)
-    #[arg(
-        hide_short_help = true,
-        long,
-        value_name = "N",
-        conflicts_with = "quality"
-    )]
-    pub(super) dims: Option<usize>,
     /// Propose members as samples of NAME_1, NAME_2, … (databases)
     #[arg(long, value_name = "NAME")]
     pub(super) name_as: Option<String>,
@@ -68,14 +48,4 @@ pub struct Args {
     pub(super) reading: LabelArgs,
     #[command(flatten)]
     pub(super) poses: PoseArgs,
-}
-
-/// Point on which samples are centred.
-#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Centre {
-    /// The mean of all poses, which are then reduced to --quality or --dims: samples are many small clusters
-    Database,
-    /// Nothing, and all dimensions are kept: the mean pose counts, samples are more alike, and --tau belongs near 1
-    None,
 }

@@ -1,4 +1,4 @@
-//! kWAS, as in the thesis of 2009: two samples are alike if the principal directions of their poses are.
+//! Grouping as in the thesis of 2009, by principal directions of poses: kWAS, and the tree of single samples.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::Write;
@@ -6,16 +6,14 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail};
-use morec::cluster::{
-    Clusters, KwasParams, PairCounts, Spectrum, adjusted_rand_index, kwas_clusters,
-};
+use morec::cluster::{Clusters, KwasParams, PairCounts, adjusted_rand_index};
 use morec::features::Rows;
-use morec::pca::{ComponentCount, Moments, Pca};
+use morec::pca::{Moments, Pca};
 use morec::segment::{PpcaParams, segment};
-use morec_ops::largest_first;
+use morec_ops::{Centre, GroupMethod, largest_first};
 use serde::Serialize;
 
-use super::args::{Args, Centre};
+use super::args::Args;
 use super::members::{GroupedSample, labelled};
 use crate::json::write_json;
 use crate::poses::{PoseReader, PosedClip};
@@ -31,7 +29,8 @@ struct Agreement {
 
 #[derive(Serialize)]
 struct Grouped {
-    kwas: KwasParams,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    kwas: Option<KwasParams>,
     centre: Centre,
     dims: usize,
     quality: f64,
@@ -42,11 +41,11 @@ struct Grouped {
 
 /// Reads clips in files, groups, compares and prints.
 pub fn run(paths: &[PathBuf], args: &Args) -> Result<ExitCode> {
-    let keep = args
-        .dims
-        .map_or(ComponentCount::Quality(args.quality), ComponentCount::Dims);
-    keep.check().map_err(anyhow::Error::msg)?;
-    let kwas = args.settings.kwas()?;
+    let settings = &args.settings;
+    let kwas = match settings.method {
+        GroupMethod::Kwas => Some(settings.kwas()?),
+        _ => None,
+    };
     let reader = args.poses.reader()?;
     let clips = read_clips(paths, &reader)?;
     let samples = match &args.labels {
@@ -61,12 +60,13 @@ pub fn run(paths: &[PathBuf], args: &Args) -> Result<ExitCode> {
         }
         None => cut(&reader, &clips)?,
     };
-    let pca = match args.centre {
-        Centre::Database => Some(components(&clips, reader.set.row_dim(), keep)?),
-        Centre::None => None,
-    };
-    let (samples, spectra) = spectra(samples, &clips, reader.rate_hz(), pca.as_ref())?;
-    let clusters = kwas_clusters(&spectra, &kwas);
+    let mut moments = Moments::new(reader.set.row_dim());
+    clips
+        .values()
+        .for_each(|clip| moments.push_rows(&clip.rows));
+    let pca = settings.reduction(&moments)?;
+    let (samples, rows) = reduced(samples, &clips, reader.rate_hz(), pca.as_ref())?;
+    let clusters = settings.clusters(rows.iter())?;
     let agreement = args
         .labels
         .is_some()
@@ -79,7 +79,7 @@ pub fn run(paths: &[PathBuf], args: &Args) -> Result<ExitCode> {
     });
     let grouped = Grouped {
         kwas,
-        centre: args.centre,
+        centre: settings.centre,
         dims,
         quality,
         clusters,
@@ -120,26 +120,14 @@ fn cut(reader: &PoseReader<'_>, clips: &BTreeMap<String, PosedClip>) -> Result<V
     Ok(samples)
 }
 
-fn components(
-    clips: &BTreeMap<String, PosedClip>,
-    dim: usize,
-    keep: ComponentCount,
-) -> Result<Pca> {
-    let mut moments = Moments::new(dim);
-    clips
-        .values()
-        .for_each(|clip| moments.push_rows(&clip.rows));
-    Ok(Pca::fit(&moments, keep)?)
-}
-
-/// The samples of at least one pose, and what kWAS knows of each.
-fn spectra(
+/// The samples of at least one pose, and the reduced rows of each.
+fn reduced(
     samples: Vec<GroupedSample>,
     clips: &BTreeMap<String, PosedClip>,
     rate_hz: f64,
     pca: Option<&Pca>,
-) -> Result<(Vec<GroupedSample>, Vec<Spectrum>)> {
-    let (mut kept, mut spectra) = (Vec::new(), Vec::new());
+) -> Result<(Vec<GroupedSample>, Vec<Rows>)> {
+    let (mut kept, mut reduced) = (Vec::new(), Vec::new());
     for sample in samples {
         let rows: &Rows = &clips.get(&sample.clip).context("a sample of no clip")?.rows;
         let of_sample = sample.span.frames_among(rows.len(), rate_hz);
@@ -151,12 +139,13 @@ fn spectra(
             continue;
         }
         let rows = rows.slice(of_sample);
-        spectra.push(Spectrum::of_rows(
-            &pca.map_or_else(|| rows.clone(), |pca| pca.project(&rows)),
-        ));
+        reduced.push(match pca {
+            Some(pca) => pca.project(&rows),
+            None => rows,
+        });
         kept.push(sample);
     }
-    Ok((kept, spectra))
+    Ok((kept, reduced))
 }
 
 impl Agreement {

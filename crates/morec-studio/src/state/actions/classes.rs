@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use morec::cluster::Dendrogram;
 use morec_db::labels::{SampleId, SampleState as Judged, WholeClip};
 
 use crate::state::classes::Held;
@@ -36,8 +37,11 @@ impl State {
             ClassCommand::Key { slot, down: true } => self.key_down(slot),
             ClassCommand::Key { slot, down: false } => self.key_up(slot),
             ClassCommand::Propose => self.propose(),
-            ClassCommand::Group { cuts } => self.group(cuts),
-            ClassCommand::Depth(depth) => self.classes.depth = depth.max(1),
+            ClassCommand::Group { cuts, method } => self.group(cuts, method),
+            ClassCommand::Depth(groups) => self.classes.cut_into(groups),
+            ClassCommand::Divide(node) => self.classes.step(node, Dendrogram::divide),
+            ClassCommand::Join(node) => self.classes.step(node, Dendrogram::join),
+            ClassCommand::Kwas(kwas) => self.group_by(kwas),
             ClassCommand::CloseGroups => self.classes.groups = None,
             ClassCommand::NameGroup { group, name } => self.name_group(group, &name),
             ClassCommand::Move { id, class } => {

@@ -1,7 +1,8 @@
 //! Groups of what is alike, and what of them becomes classes.
 
+use morec::cluster::KwasParams;
 use morec_db::labels::{NewSample, SampleId, SampleState as Judged};
-use morec_ops::ProposeSettings;
+use morec_ops::{GroupMethod, GroupSettings, ProposeSettings};
 
 use super::lines::ShownCommand;
 use crate::jobs::{JobOutcome, group, propose};
@@ -23,18 +24,32 @@ impl State {
         );
     }
 
-    pub(in crate::state) fn group(&mut self, cuts: bool) {
+    pub(in crate::state) fn group(&mut self, cuts: bool, method: GroupMethod) {
         let Some(store) = &self.store else { return };
         let db = store.path().to_owned();
         let line = ShownCommand::new("morec group").word(&db);
-        self.show_line(line.settings(&group::settings(cuts)));
+        let settings = group::settings(cuts, method);
+        self.show_line(line.settings(&settings));
         self.jobs.start(
             "Grouping",
             true,
             &self.wake,
             JobOutcome::Grouped,
-            move |progress| group::group(&db, cuts, progress),
+            move |progress| group::group(&db, &settings, progress),
         );
+    }
+
+    pub(in crate::state) fn group_by(&mut self, kwas: KwasParams) {
+        self.classes.group_by(kwas);
+        if let (Some(store), Some(groups)) = (&self.store, &self.classes.groups) {
+            let settings = GroupSettings {
+                tau: kwas.tau,
+                k: kwas.k,
+                ..groups.settings.clone()
+            };
+            let line = ShownCommand::new("morec group").word(store.path());
+            self.show_line(line.settings(&settings));
+        }
     }
 
     /// A group's samples become a class; cuts in it become labels of the class.
@@ -42,7 +57,7 @@ impl State {
         let Some(groups) = &self.classes.groups else {
             return;
         };
-        let members = groups.at(self.classes.depth);
+        let members = groups.at(&self.classes.depth);
         let Some(group) = members.get(group).filter(|_| !name.trim().is_empty()) else {
             return;
         };

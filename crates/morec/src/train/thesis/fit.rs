@@ -20,6 +20,17 @@ pub struct Fitted {
     pub signs: Vec<SignVector>,
 }
 
+/// Sign vectors of the samples' directions (Alg. 5).
+pub(super) fn sign_vectors(found: &[&Directions], params: &SvrdmTrainParams) -> Vec<SignVector> {
+    let of_direction = |j: usize| {
+        let vectors: Vec<&[f64]> = found.iter().map(|d| d.vector(j)).collect();
+        sign_vector(&vectors, params.sign)
+    };
+    (0..params.stages.eigenvectors)
+        .filter_map(of_direction)
+        .collect()
+}
+
 /// Trains on samples of reduced rows (§4.5): sign vectors (Alg. 5), feature vectors (Eq. 3.37), the tree (Alg. 7),
 /// profiles (§3.8). O(samples³) in the largest branch.
 ///
@@ -35,14 +46,10 @@ pub fn fit(
     let dim = pca.dims();
     let described: Vec<(&ThesisSample, Gram, Directions)> = samples
         .iter()
-        .filter_map(|s| described(s, dim, stages))
+        .filter_map(|s| described(&s.rows, dim, stages).map(|(gram, found)| (s, gram, found)))
         .collect();
-    let signs: Vec<SignVector> = (0..stages.eigenvectors)
-        .filter_map(|j| {
-            let vectors: Vec<&[f64]> = described.iter().map(|(_, _, d)| d.vector(j)).collect();
-            sign_vector(&vectors, params.sign)
-        })
-        .collect();
+    let found: Vec<&Directions> = described.iter().map(|(_, _, d)| d).collect();
+    let signs = sign_vectors(&found, params);
     let directions: Vec<f64> = signs
         .iter()
         .flat_map(|s| s.direction.iter().copied())

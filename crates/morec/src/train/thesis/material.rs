@@ -141,7 +141,7 @@ impl ThesisTrainingData {
                     group,
                     rows: self.pca.project(&rows.slice(span)),
                 };
-                if described(&sample, self.pca.dims(), &options.params.stages).is_some() {
+                if described(&sample.rows, self.pca.dims(), &options.params.stages).is_some() {
                     self.samples.push(sample);
                 }
             }

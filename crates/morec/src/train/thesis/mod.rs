@@ -7,11 +7,13 @@ mod material;
 mod options;
 mod report;
 mod sample;
+mod sample_tree;
 mod thresholds;
 
 pub use details::SvrdmReport;
 pub use options::{Pivots, Setting, SvrdmOptions, SvrdmTrainParams, ThresholdRule};
 pub use sample::ThesisSample;
+pub use sample_tree::tree_of_samples;
 pub use thresholds::Estimated;
 
 use crate::progress::Progress;

@@ -15,15 +15,15 @@ pub struct ThesisSample {
     pub rows: Rows,
 }
 
-/// A sample with its `AᵀA` and directions; `None` if it does not move at all.
-pub(super) fn described<'s>(
-    sample: &'s ThesisSample,
+/// The `AᵀA` and directions of a sample's reduced rows; `None` if it does not move at all.
+pub(super) fn described(
+    rows: &Rows,
     dim: usize,
     stages: &SvrdmParams,
-) -> Option<(&'s ThesisSample, Gram, Directions)> {
-    let gram = Gram::of_rows(sample.rows.values(), dim, stages.chunk_frames);
+) -> Option<(Gram, Directions)> {
+    let gram = Gram::of_rows(rows.values(), dim, stages.chunk_frames);
     let mut directions = Directions::new(stages.eigenvectors, dim);
     directions
         .find(&gram, stages.centring)
-        .then_some((sample, gram, directions))
+        .then_some((gram, directions))
 }
