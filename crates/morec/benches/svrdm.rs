@@ -19,7 +19,7 @@ use morec::pca::{ComponentCount, Moments, Pca};
 use morec::pivots::{Pivot, PivotSet, PoseParams};
 use morec::svrdm::edr::Edr;
 use morec::svrdm::{
-    Branch, Cell, Centring, ChunkAssembly, ClassCandidates, Descent, Directions, Gram, Node,
+    Acceptance, Branch, Cell, Centring, ChunkAssembly, ClassCandidates, Directions, Gram, Node,
     Normalisation, Profiles, SegmentAssembly, SegmentTracking, SvrdmEngine, SvrdmModel,
     SvrdmParams, Tree, TreeParts,
 };
@@ -163,7 +163,7 @@ fn descent(bencher: Bencher) {
     bencher.bench_local(|| {
         model
             .tree
-            .descend(&vector, 0.92, Descent::Larger, &mut found);
+            .descend(&vector, Acceptance::above(0.92), &mut found);
         found.len()
     });
 }

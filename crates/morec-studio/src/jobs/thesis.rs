@@ -119,7 +119,7 @@ fn shown(
         }
     });
     let path = |vector: &Vec<f64>| {
-        let path = model.tree.path(vector, model.params.accept);
+        let path = model.tree.path(vector, model.params.acceptance());
         path.iter().map(|step| step.node).collect()
     };
     Ok(Thesis {

@@ -6,7 +6,7 @@ use morec_features::ClassId;
 use morec_features::Rows;
 
 use super::{
-    ClassCandidates, Descent, FeatureExtraction, Gram, ModelError, SegmentScoring, SvrdmModel,
+    Acceptance, ClassCandidates, FeatureExtraction, Gram, ModelError, SegmentScoring, SvrdmModel,
 };
 
 /// Classification of a cut-out sample.
@@ -16,11 +16,21 @@ pub struct Classified {
     pub class: ClassId,
     /// The least output on the way there; rejected if below `T`.
     pub output: f64,
+    /// The largest output of another side on the way; rejected if above `t`, where there is one.
+    pub other: f64,
     /// Likeness of these frames to the class's samples, 0 … 1: confidence without the prior on length, as somebody else
     /// has said where the sample begins and ends.
     pub likeness: f64,
     /// Confidence of the recogniser in a segment of just these frames (Eq. 4.5).
     pub confidence: f64,
+}
+
+impl Classified {
+    /// True if the branches on the way are followed.
+    pub fn passes(&self, acceptance: Acceptance) -> bool {
+        let rejects = |other: f64| self.other > other;
+        self.output >= acceptance.accept && !acceptance.other.is_some_and(rejects)
+    }
 }
 
 /// Classifies cut-out samples.
@@ -58,8 +68,7 @@ impl SampleClassifier {
         let feature = self.extraction.feature(&gram)?;
         self.model.tree.descend(
             feature,
-            f64::NEG_INFINITY,
-            Descent::Larger,
+            Acceptance::above(f64::NEG_INFINITY),
             &mut self.candidates,
         );
         let found = *self.candidates.first()?;
@@ -70,6 +79,7 @@ impl SampleClassifier {
         Some(Classified {
             class: found.class,
             output: found.output,
+            other: found.other,
             likeness,
             confidence,
         })

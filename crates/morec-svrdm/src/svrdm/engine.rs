@@ -6,7 +6,7 @@ use super::leading::AT_ONCE;
 use super::stage;
 use super::{
     Cell, ChunkAssembly, ClassCandidates, FeatureExtraction, FrameDetection, Gram, ModelError,
-    SegmentAssembly, SegmentScoring, SegmentTracking, Stage, SvrdmModel, SvrdmParams, Window,
+    SegmentAssembly, SegmentScoring, SegmentTracking, Stage, SvrdmModel, Window,
 };
 
 /// The live stages of the thesis one after the other (§4.6): input assembly, segment assembly, feature vector
@@ -196,12 +196,10 @@ impl SegmentRecogniser {
         let Some(feature) = feature else {
             return Cell::NOTHING;
         };
-        let SvrdmParams {
-            accept, descent, ..
-        } = self.model.params;
+        let acceptance = self.model.params.acceptance();
         self.model
             .tree
-            .descend(feature, accept, descent, &mut self.candidates);
+            .descend(feature, acceptance, &mut self.candidates);
         observer.ended(Stage::Classification);
         if self.candidates.is_empty() {
             return Cell::NOTHING;

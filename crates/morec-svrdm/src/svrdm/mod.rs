@@ -49,7 +49,7 @@ pub use segments::{ChunkAssembly, RowRing, SegmentAssembly, Window};
 pub use stage::Stage;
 pub use tracking::{ChunkDetection, FrameDetection, SegmentTracking};
 pub use tree::{
-    Branch, ClassCandidate, ClassCandidates, Descent, MAX_CANDIDATES, Node, PathStep, Tree,
-    TreeError, TreeParts,
+    Acceptance, Branch, ClassCandidate, ClassCandidates, Descent, MAX_CANDIDATES, Node, PathStep,
+    Tree, TreeError, TreeParts,
 };
 pub use vectors::Directions;

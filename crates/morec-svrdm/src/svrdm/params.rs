@@ -1,6 +1,6 @@
 //! The parameters of the live stages.
 
-use super::Descent;
+use super::{Acceptance, Descent};
 
 /// Widest rows after projection.
 pub const MAX_DIM: usize = 64;
@@ -138,6 +138,11 @@ pub struct SvrdmParams {
     ///
     /// Thesis, §4.6.5; an argument of `Tree::descend`.
     pub accept: f64,
+    /// On the way of the larger output, the other machine says at most this, `t`. None (thesis, §4.6.5).
+    ///
+    /// The thesis wishes it estimated (ch. 6) and recognises without; `thresholds.estimated.other=true` does both.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub other: Option<f64>,
     /// If both machines of a branch accept: both ways, so that up to four classes are scored (thesis, §4.7.2), or
     /// that of the larger output (§4.6.5). `Larger`.
     ///
@@ -182,6 +187,17 @@ pub struct SvrdmParams {
     pub wait_chunks: usize,
 }
 
+impl SvrdmParams {
+    /// What a branch of the tree must say.
+    pub fn acceptance(&self) -> Acceptance {
+        Acceptance {
+            accept: self.accept,
+            other: self.other,
+            descent: self.descent,
+        }
+    }
+}
+
 impl Default for SvrdmParams {
     /// The values of the thesis.
     fn default() -> Self {
@@ -193,6 +209,7 @@ impl Default for SvrdmParams {
             scaling: Scaling::UnitRange,
             centring: Centring::Database,
             accept: 0.92,
+            other: None,
             descent: Descent::Larger,
             comparison: SegmentDistance::Profiles,
             tolerance: 0.25,
@@ -251,8 +268,10 @@ impl SvrdmParams {
                 "segments must be at most {MAX_PROFILE_FRAMES} frames, found {frames}"
             ));
         }
+        let other = self.other.iter().map(|other| ("other", *other));
         let positive = [("accept", self.accept), ("prior_spread", self.prior_spread)];
-        if let Some((name, value)) = positive.iter().find(|(_, v)| !(v.is_finite() && *v > 0.0)) {
+        let mut positive = positive.into_iter().chain(other);
+        if let Some((name, value)) = positive.find(|(_, v)| !(v.is_finite() && *v > 0.0)) {
             return Err(format!("{name} must be above 0, found {value}"));
         }
         if !(self.tolerance.is_finite() && self.tolerance >= 0.0) {

@@ -11,7 +11,7 @@ mod parts;
 mod tests;
 
 pub use check::{MAX_CLASSES, TreeError};
-pub use descent::{ClassCandidate, ClassCandidates, Descent, MAX_CANDIDATES, PathStep};
+pub use descent::{Acceptance, ClassCandidate, ClassCandidates, Descent, MAX_CANDIDATES, PathStep};
 pub use parts::{Branch, Node, TreeParts};
 
 /// A trained classifier: branches that part the classes in two until each stands alone.

@@ -114,7 +114,7 @@ pub(super) fn run(
     let mut features = vec![];
     for (place, class, rows) in cut_out(study, &model)? {
         let found = classifier.classify(&rows);
-        let accepted = found.filter(|f| f.output >= model.params.accept);
+        let accepted = found.filter(|f| f.passes(model.params.acceptance()));
         let alike = accepted.filter(|f| f.likeness >= model.params.min_confidence);
         let unseen = !trained.contains(&place);
         tally.count(
@@ -128,7 +128,7 @@ pub(super) fn run(
         };
         if unseen {
             // The longest way that ends in a leaf shows most.
-            let found = model.tree.path(&vector, model.params.accept);
+            let found = model.tree.path(&vector, model.params.acceptance());
             if found.len() > path.len() && accepted.is_some() {
                 path = found;
             }

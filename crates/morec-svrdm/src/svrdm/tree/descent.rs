@@ -18,6 +18,40 @@ pub enum Descent {
     Larger,
 }
 
+/// What a branch must say for one of its sides to be followed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Acceptance {
+    /// `T`: the side's machine says at least this.
+    pub accept: f64,
+    /// `t`: on the way of the larger output, the other side's machine says at most this; where none is given, whatever it says.
+    pub other: Option<f64>,
+    /// The sides that are taken.
+    pub descent: Descent,
+}
+
+impl Acceptance {
+    /// On the way of the larger output, where it is at least `accept` (thesis, §4.6.5).
+    pub fn above(accept: f64) -> Self {
+        Self {
+            accept,
+            other: None,
+            descent: Descent::Larger,
+        }
+    }
+
+    /// True if `side` of a branch of these outputs is followed.
+    fn follows(&self, outputs: [f64; 2], side: usize) -> bool {
+        let rejects = |other: f64| outputs[1 - side] > other;
+        let is_open = match self.descent {
+            Descent::Both => true,
+            Descent::Larger => {
+                side == usize::from(outputs[1] > outputs[0]) && !self.other.is_some_and(rejects)
+            }
+        };
+        is_open && outputs[side] >= self.accept
+    }
+}
+
 /// A class that every branch on the way to it accepted.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ClassCandidate {
@@ -25,6 +59,8 @@ pub struct ClassCandidate {
     pub class: ClassId,
     /// The least output on the way: at least what was asked for.
     pub output: f64,
+    /// The largest output of the machines of other sides on the way.
+    pub other: f64,
 }
 
 /// The candidates of one descent, largest output first; of fixed size.
@@ -40,6 +76,7 @@ impl Default for ClassCandidates {
             kept: [ClassCandidate {
                 class: ClassId(0),
                 output: 0.0,
+                other: 0.0,
             }; MAX_CANDIDATES],
             count: 0,
         }
@@ -84,14 +121,18 @@ pub struct PathStep {
     pub node: usize,
     /// Outputs of its machines; of a leaf, 0.
     pub outputs: [f64; 2],
-    /// The side that is taken; none of a leaf, and where neither machine accepts.
+    /// The side that is taken; none of a leaf, and where neither is followed.
     pub taken: Option<usize>,
 }
 
 impl Tree {
     /// The way of the larger output down the tree (thesis, Fig. 5.2): to a leaf, or to the branch that rejects `vector`
     /// (`n` values).
-    pub fn path(&self, vector: &[f64], accept: f64) -> Vec<PathStep> {
+    pub fn path(&self, vector: &[f64], acceptance: Acceptance) -> Vec<PathStep> {
+        let acceptance = Acceptance {
+            descent: Descent::Larger,
+            ..acceptance
+        };
         let (mut path, mut at) = (vec![], 0);
         loop {
             let Node::Branch(branch) = &self.nodes()[at] else {
@@ -103,8 +144,7 @@ impl Tree {
                 return path;
             };
             let outputs = self.outputs(branch, vector);
-            let larger = usize::from(outputs[1] > outputs[0]);
-            let taken = (outputs[larger] >= accept).then_some(larger);
+            let taken = (0..2).find(|side| acceptance.follows(outputs, *side));
             path.push(PathStep {
                 node: at,
                 outputs,
@@ -117,47 +157,40 @@ impl Tree {
         }
     }
 
-    /// The classes that `vector` (`n` values) may be: those that every machine on the way gives at least `accept`
-    /// (0.92 in the thesis, where machines are trained towards 1). `out` is emptied first. No allocation; O(size of
+    /// The classes that `vector` (`n` values) may be: those that every branch on the way follows (`accept` is 0.92 in the thesis, where
+    /// machines are trained towards 1). `out` is emptied first. No allocation; O(size of
     /// the branches on the way).
-    pub fn descend(
-        &self,
-        vector: &[f64],
-        accept: f64,
-        descent: Descent,
-        out: &mut ClassCandidates,
-    ) {
+    pub fn descend(&self, vector: &[f64], acceptance: Acceptance, out: &mut ClassCandidates) {
         out.clear();
-        self.visit(
-            &self.nodes()[0],
-            f64::INFINITY,
-            &Question {
-                vector,
-                accept,
-                descent,
-            },
-            out,
-        );
+        let question = Question { vector, acceptance };
+        let most = (f64::INFINITY, f64::NEG_INFINITY);
+        self.visit(&self.nodes()[0], most, &question, out);
     }
 
-    /// Goes on below `node`, to which the least output so far was `least`.
-    fn visit(&self, node: &Node, least: f64, question: &Question, out: &mut ClassCandidates) {
+    /// Goes on below `node`, to which the least output so far was `least`, and the largest of other sides `other`.
+    fn visit(
+        &self,
+        node: &Node,
+        (least, other): (f64, f64),
+        question: &Question,
+        out: &mut ClassCandidates,
+    ) {
         let branch = match node {
             Node::Leaf(class) => {
                 return out.insert(ClassCandidate {
                     class: *class,
                     output: least,
+                    other,
                 });
             }
             Node::Branch(branch) => branch,
         };
         let outputs = self.outputs(branch, question.vector);
-        let larger = usize::from(outputs[1] > outputs[0]);
         for side in 0..2 {
-            let open = question.descent == Descent::Both || side == larger;
-            if open && outputs[side] >= question.accept {
+            if question.acceptance.follows(outputs, side) {
                 let child = &self.nodes()[branch.children[side] as usize];
-                self.visit(child, least.min(outputs[side]), question, out);
+                let met = (least.min(outputs[side]), other.max(outputs[1 - side]));
+                self.visit(child, met, question, out);
             }
         }
     }
@@ -165,6 +198,5 @@ impl Tree {
 
 struct Question<'a> {
     vector: &'a [f64],
-    accept: f64,
-    descent: Descent,
+    acceptance: Acceptance,
 }

@@ -33,7 +33,11 @@ fn parts() -> TreeParts {
 
 fn descended(tree: &Tree, vector: &[f64], accept: f64, descent: Descent) -> ClassCandidates {
     let mut out = ClassCandidates::default();
-    tree.descend(vector, accept, descent, &mut out);
+    let acceptance = Acceptance {
+        descent,
+        ..Acceptance::above(accept)
+    };
+    tree.descend(vector, acceptance, &mut out);
     out
 }
 
@@ -75,12 +79,31 @@ fn a_leaf_is_named_with_the_least_output_on_the_way() {
 }
 
 #[test]
+fn a_side_is_not_followed_where_the_other_machine_says_too_much() {
+    let tree = Tree::new(parts()).unwrap();
+    let vector = [2.0, 0.0];
+    let open = descended(&tree, &vector, 0.2, Descent::Larger)[0];
+    let named = |other: f64| {
+        let acceptance = Acceptance {
+            other: Some(other),
+            ..Acceptance::above(0.2)
+        };
+        let mut out = ClassCandidates::default();
+        tree.descend(&vector, acceptance, &mut out);
+        out.first().map(|c| c.class)
+    };
+    assert_eq!(named(open.other + 1e-9), Some(open.class));
+    assert_eq!(named(open.other - 1e-9), None);
+}
+
+#[test]
 fn the_best_four_are_kept_in_order() {
     let mut all = ClassCandidates::default();
     for (class, output) in [0.3, 0.9, 0.5, 0.9, 0.1, 0.7].into_iter().enumerate() {
         all.insert(ClassCandidate {
             class: ClassId(class as u16),
             output,
+            other: 0.0,
         });
     }
     let kept: Vec<(u16, f64)> = all.iter().map(|c| (c.class.0, c.output)).collect();

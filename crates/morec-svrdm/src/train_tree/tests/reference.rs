@@ -4,7 +4,7 @@ use nalgebra::DVector;
 use serde::Deserialize;
 
 use super::super::*;
-use crate::svrdm::{ClassCandidates, Descent, Node};
+use crate::svrdm::{Acceptance, ClassCandidates, Node};
 use morec_features::ClassId;
 
 type Rows = Vec<Vec<f64>>;
@@ -228,7 +228,7 @@ fn trees_decide_as_those_of_the_prototype() {
         assert_eq!(parted, expected, "tree {number}");
         let mut out = ClassCandidates::default();
         for (at, (probe, named)) in case.probes.iter().zip(&case.named).enumerate() {
-            tree.descend(probe, 0.92, Descent::Larger, &mut out);
+            tree.descend(probe, Acceptance::above(0.92), &mut out);
             assert_eq!(
                 out.first().map(|c| c.class.0),
                 *named,

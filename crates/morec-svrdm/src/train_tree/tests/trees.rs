@@ -1,6 +1,6 @@
 use super::super::*;
 use super::cloud;
-use crate::svrdm::{ClassCandidates, Descent, Tree};
+use crate::svrdm::{Acceptance, ClassCandidates, Tree};
 use mocap::rng::Rng;
 use morec_features::ClassId;
 
@@ -23,7 +23,7 @@ fn samples(classes: u16, each: usize, dim: usize) -> Vec<FeatureSample> {
 
 fn named(tree: &Tree, vector: &[f64]) -> Option<ClassId> {
     let mut out = ClassCandidates::default();
-    tree.descend(vector, 0.92, Descent::Larger, &mut out);
+    tree.descend(vector, Acceptance::above(0.92), &mut out);
     out.first().map(|c| c.class)
 }
 

@@ -4,7 +4,6 @@
 use crate::live::MAX_PERFORMERS;
 use crate::svrdm::{
     Cell, FeatureExtraction, Gram, RowRing, SegmentAssembly, SegmentScoring, SvrdmModel,
-    SvrdmParams,
 };
 
 use super::belt::{RingReceiver, RingSender};
@@ -108,9 +107,7 @@ pub(super) fn classify(
     mut from: RingReceiver<StageMessage>,
     mut to: RingSender<StageMessage>,
 ) {
-    let SvrdmParams {
-        accept, descent, ..
-    } = model.params;
+    let acceptance = model.params.acceptance();
     while let Some(mut message) = from.next() {
         if let What::Segment(_) = message.what {
             let StageMessage {
@@ -121,7 +118,7 @@ pub(super) fn classify(
             } = &mut *message;
             candidates.clear();
             if *has_feature {
-                model.tree.descend(feature, accept, descent, candidates);
+                model.tree.descend(feature, acceptance, candidates);
             }
         }
         to.send(message);

@@ -5,7 +5,7 @@ use crate::classes::ClassId;
 use crate::features::Rows;
 use crate::pca::{ComponentCount, Moments, Pca};
 use crate::rng::Rng;
-use crate::svrdm::Node;
+use crate::svrdm::{Acceptance, Node};
 
 /// `count` vectors around a centre, by chance.
 fn cloud(rng: &mut Rng, count: usize, centre: &[f64], spread: f64) -> Vec<Vec<f64>> {
@@ -53,7 +53,7 @@ fn pictures_show_every_class_by_name_and_where_machines_accept() {
         ..Default::default()
     };
     let tree = grow(&samples, &[], &params).unwrap().tree;
-    let path = tree.path(&samples[12].vector, 0.5);
+    let path = tree.path(&samples[12].vector, Acceptance::above(0.5));
     let said = path_text(&tree, &names, &path);
     assert_eq!(said.last().unwrap(), "bow & rise");
     assert!(
@@ -62,7 +62,7 @@ fn pictures_show_every_class_by_name_and_where_machines_accept() {
             .all(|line| line.contains(", not ")),
         "{said:?}"
     );
-    let lost = tree.path(&[90.0, 0.0, 0.0], 0.5);
+    let lost = tree.path(&[90.0, 0.0, 0.0], Acceptance::above(0.5));
     assert!(path_text(&tree, &names, &lost)[0].starts_with("neither "));
     let drawn = tree_picture(&tree, &names, &path);
     assert_eq!(

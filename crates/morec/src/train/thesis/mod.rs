@@ -41,9 +41,10 @@ pub fn train_svrdm(
     let fitted = fit::fit(&material.samples, &material.classes, &material.pca, params)?;
     let (model, estimated) = match params.thresholds {
         ThresholdRule::Fixed => (fitted.model.clone(), None),
-        ThresholdRule::Estimated { folds } => {
+        ThresholdRule::Estimated { folds, other } => {
+            let asked = (folds, other);
             let estimated =
-                thresholds::estimate(&material, &fitted.model, params, folds, progress)?;
+                thresholds::estimate(&material, &fitted.model, params, asked, progress)?;
             (estimated.applied_to(&fitted.model), Some(estimated))
         }
     };

@@ -17,6 +17,9 @@ pub enum ThresholdRule {
     Estimated {
         /// Parts into which each class's samples are dealt; each is left out in turn.
         folds: usize,
+        /// `t` too: what the other machine of a branch says at most.
+        #[serde(default)]
+        other: bool,
     },
 }
 
@@ -130,7 +133,10 @@ impl SvrdmTrainParams {
                 },
                 ..faithful.tree
             },
-            thresholds: ThresholdRule::Estimated { folds: 4 },
+            thresholds: ThresholdRule::Estimated {
+                folds: 4,
+                other: false,
+            },
             ..faithful
         }
     }

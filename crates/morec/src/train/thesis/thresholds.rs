@@ -2,7 +2,7 @@
 //!
 //! The thesis trains with `T = 1` and recognises with a `T` of 0.92 that was chosen by hand. Here `T` is as low as it may
 //! be without samples that were left out of training being taken for another class, and a second threshold, on the confidence of what the tree let pass, is
-//! high enough to reject motion of no class.
+//! high enough to reject motion of no class. `t`, which the thesis wishes estimated too, is estimated on request.
 
 use std::sync::Arc;
 
@@ -26,6 +26,8 @@ const MAY_MISTAKE: f64 = 0.01;
 /// This share of the left-out samples that the tree gets right may fall below the least confidence, if background
 /// asks for as much: what lies near a motion in its own clip must not silence the class.
 const MAY_SILENCE: f64 = 0.25;
+/// This share of them may be lost to `t`.
+const MAY_LOSE: f64 = 0.02;
 /// Margin below a threshold that unwanted detections must keep.
 const MARGIN: f64 = 0.01;
 /// The least confidence where there is no background to ask for more.
@@ -38,6 +40,9 @@ const MAX_OVERLAP: f64 = 0.3;
 pub struct Estimated {
     /// `T`.
     pub accept: f64,
+    /// `t`, if it was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub other: Option<f64>,
     /// The least confidence that is reported.
     pub min_confidence: f64,
     /// Left-out samples that were judged.
@@ -60,7 +65,9 @@ impl Estimated {
     /// The model with these thresholds.
     pub fn applied_to(&self, model: &SvrdmModel) -> SvrdmModel {
         let mut model = model.clone();
-        (model.params.accept, model.params.min_confidence) = (self.accept, self.min_confidence);
+        let params = &mut model.params;
+        (params.accept, params.min_confidence) = (self.accept, self.min_confidence);
+        params.other = self.other.or(params.other);
         model
     }
 }
@@ -70,7 +77,15 @@ struct LeftOutResult {
     right: bool,
     /// Least output on its way down the tree.
     output: f64,
+    /// The largest of another side.
+    other: f64,
     confidence: f64,
+}
+
+impl LeftOutResult {
+    fn passes(&self, accept: f64, other: Option<f64>) -> bool {
+        self.output >= accept && other.is_none_or(|other| self.other <= other)
+    }
 }
 
 /// Estimates both thresholds. Trains `folds` times, then plays all background through the model.
@@ -78,7 +93,7 @@ pub(super) fn estimate(
     material: &ThesisTrainingData,
     model: &SvrdmModel,
     params: &SvrdmTrainParams,
-    folds: usize,
+    (folds, wants_other): (usize, bool),
     progress: &dyn Progress,
 ) -> Result<Estimated, TrainError> {
     let folds = folds.max(2);
@@ -91,9 +106,13 @@ pub(super) fn estimate(
         }
         judged.extend(judge_fold(material, params, &places, fold)?);
     }
+    let other = match wants_other {
+        true => least_other(&judged, params.tree.machine.other),
+        false => params.stages.other,
+    };
     let mut mistaken: Vec<f64> = judged
         .iter()
-        .filter(|j| !j.right)
+        .filter(|j| !j.right && j.passes(LEAST_ACCEPT, other))
         .map(|j| j.output)
         .collect();
     mistaken.sort_by(|a, b| b.total_cmp(a));
@@ -105,6 +124,7 @@ pub(super) fn estimate(
 
     let mut listening = model.clone();
     (listening.params.accept, listening.params.min_confidence) = (accept, 0.2);
+    listening.params.other = other;
     let listening = Arc::new(listening);
     let scores: Result<Vec<Vec<f64>>, TrainError> = material
         .background
@@ -114,7 +134,7 @@ pub(super) fn estimate(
     let scores = scores?.concat();
     let background_confidence = scores.iter().copied().fold(0.0, f64::max);
 
-    let passing = || judged.iter().filter(|j| j.right && j.output >= accept);
+    let passing = || judged.iter().filter(|j| j.right && j.passes(accept, other));
     let mut confidences: Vec<f64> = passing().map(|j| j.confidence).collect();
     let most = low_quantile(&mut confidences, MAY_SILENCE)
         .unwrap_or(1.0)
@@ -129,13 +149,14 @@ pub(super) fn estimate(
         .sum();
     Ok(Estimated {
         accept,
+        other: other.filter(|_| wants_other),
         min_confidence: min_confidence.min(0.99),
         samples: judged.len(),
         right: share(right, judged.len()),
         wrong: share(
             judged
                 .iter()
-                .filter(|j| !j.right && j.output >= accept)
+                .filter(|j| !j.right && j.passes(accept, other))
                 .count(),
             judged.len(),
         ),
@@ -147,6 +168,18 @@ pub(super) fn estimate(
         background_detections: scores.len(),
         background_confidence,
     })
+}
+
+/// `t`: as low as it may be without silencing more than a share of the left-out samples that are right, and not below the `trained` one.
+/// None where no sample is.
+fn least_other(judged: &[LeftOutResult], trained: f64) -> Option<f64> {
+    let right = judged
+        .iter()
+        .filter(|j| j.right && j.output >= LEAST_ACCEPT);
+    // Ascending from the largest.
+    let mut others: Vec<f64> = right.map(|j| -j.other).collect();
+    let largest = -low_quantile(&mut others, MAY_LOSE)?;
+    Some((largest + MARGIN).max(trained))
 }
 
 /// For each sample the fold that leaves it out; `None` for the only one of its class.
@@ -193,6 +226,7 @@ fn judge_fold(
         Some(LeftOutResult {
             right: found.class == sample.class,
             output: found.output,
+            other: found.other,
             confidence: found.confidence,
         })
     };
