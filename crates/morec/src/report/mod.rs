@@ -80,7 +80,7 @@ impl Report<'_> {
         curves::push_perturbed(&mut body, self.evaluation, self.perturbed);
         timeline::push(&mut body, self.timelines, &palette);
         tables::push_confusion(&mut body, &self.evaluation.confusion);
-        tables::push_classes(&mut body, self.evaluation, self.training);
+        tables::push_classes(&mut body, self.evaluation, self.training, self.timelines);
         out.push_str(&with_contents(&body, self.motion.is_some()));
         if let Some(reel) = self.motion {
             out.push_str("<h2 id=\"motion\">Motion</h2>\n");

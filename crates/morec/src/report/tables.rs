@@ -2,7 +2,8 @@
 
 use super::TrainedClass;
 use super::html::{Figure, Text, secs};
-use crate::eval::{Confusion, Evaluation, MEASURED_OVERLAP};
+use crate::eval::{Confusion, Evaluation, MEASURED_OVERLAP, Timeline};
+use crate::labels::{ClassLengths, class_lengths};
 
 /// The strongest tint of a cell: writing on it stays readable in both themes.
 const STRONGEST: f64 = 0.6;
@@ -56,7 +57,16 @@ fn push_cell(out: &mut String, count: usize, total: usize, right: bool) {
     ));
 }
 
-pub(super) fn push_classes(out: &mut String, e: &Evaluation, training: &[TrainedClass]) {
+pub(super) fn push_classes(
+    out: &mut String,
+    e: &Evaluation,
+    training: &[TrainedClass],
+    timelines: &[Timeline],
+) {
+    let truths = timelines.iter().flat_map(|timeline| &timeline.truths);
+    let lengths = class_lengths(
+        truths.map(|(truth, _)| (&truth.class[..], None, truth.span.duration_secs())),
+    );
     out.push_str(
         "<h2>Class by class</h2>\n<div class=\"wide\"><table>\n<tr><th scope=\"col\">class</th>",
     );
@@ -65,7 +75,7 @@ pub(super) fn push_classes(out: &mut String, e: &Evaluation, training: &[Trained
     }
     let unknown = e.unknown.clips > 0;
     out.push_str(
-        "<th>samples</th><th>found</th><th>F1</th><th>precision</th><th>recall</th><th>P_C</th><th>P_E</th><th>P_R</th>\
+        "<th>samples</th><th>shortest</th><th>median</th><th>longest</th><th>found</th><th>F1</th><th>precision</th><th>recall</th><th>P_C</th><th>P_E</th><th>P_R</th>\
          <th>missed</th><th>false alarms</th>",
     );
     out.push_str(if unknown { "<th>in unknown</th>" } else { "" });
@@ -82,7 +92,8 @@ pub(super) fn push_classes(out: &mut String, e: &Evaluation, training: &[Trained
                 trained.map_or("–".to_owned(), trained_by)
             ));
         }
-        push_class_figures(out, class, unknown);
+        let lengths = lengths.iter().find(|l| l.class == class.class);
+        push_class_figures(out, class, lengths, unknown);
         out.push_str("</tr>\n");
     }
     out.push_str(&format!(
@@ -91,9 +102,22 @@ pub(super) fn push_classes(out: &mut String, e: &Evaluation, training: &[Trained
     ));
 }
 
-fn push_class_figures(out: &mut String, class: &crate::eval::ClassFigures, unknown: bool) {
+fn push_class_figures(
+    out: &mut String,
+    class: &crate::eval::ClassFigures,
+    lengths: Option<&ClassLengths>,
+    unknown: bool,
+) {
     let mut cell = |text: String| out.push_str(&format!("<td>{text}</td>"));
     cell(class.samples.to_string());
+    let secs_of = [
+        lengths.map(|l| l.shortest_secs),
+        lengths.map(|l| l.median_secs),
+        lengths.map(|l| l.longest_secs),
+    ];
+    secs_of
+        .into_iter()
+        .for_each(|length| cell(secs(length, false)));
     cell(class.detections.to_string());
     if let Some(half) = class.overlap.iter().find(|o| o.min_iou == MEASURED_OVERLAP) {
         [half.f1, half.precision, half.recall]
