@@ -86,6 +86,7 @@ impl<'a> ReportMotion<'a> {
         let played = PlayedClip {
             clip: &take.clip,
             roles: &take.roles,
+            beside: None,
             span: None,
             labels: truths
                 .map(|(truth, _)| Mark::new(truth.class.as_str(), truth.span))

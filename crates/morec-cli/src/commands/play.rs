@@ -6,12 +6,16 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail};
+use morec::clip::Clip;
+use morec::features::Rows;
 use morec::import::{ImportOptions, Take};
 use morec::index::MotionIndex;
 use morec::labels::ClipLength;
 use morec::labels::Mark;
 use morec::live::Detection;
 use morec::live::recognize_clip;
+use morec::pca::{ComponentCount, Moments, Pca};
+use morec::pivots::{PivotMap, PivotSet, PoseParams, clip_of_pose_rows, pose_rows_of_clip};
 use morec::player::{PlayedClip, page};
 
 use super::recognize::open_index;
@@ -29,7 +33,8 @@ use crate::show::{self, ShownClip};
 Examples:
   morec play walk.bvh
   morec play new/signals_3.bvh --index signs.index --speed 2
-  morec play clips/ --labels labels.tsv -o clips.html")]
+  morec play clips/ --labels labels.tsv -o clips.html
+  morec play walk.bvh --reduced 4 -o reduced.html")]
 pub struct Args {
     /// Clips, or folders of clips
     #[arg(required = true, value_name = "CLIP")]
@@ -40,6 +45,11 @@ pub struct Args {
     /// Also show what this index recognises
     #[arg(long, value_name = "INDEX")]
     index: Option<PathBuf>,
+    /// Show each beside itself as N dimensions of its poses have it (page)
+    ///
+    /// Principal components of the poses of all these clips, as of `morec reduce`.
+    #[arg(long, value_name = "N", requires = "output")]
+    reduced: Option<usize>,
     /// Speed in the terminal; 1: as performed
     #[arg(long, value_name = "TIMES", default_value_t = 1.0, value_parser = speed)]
     speed: f64,
@@ -90,8 +100,12 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         let labels = labelled.remove(take.name()).unwrap_or_default();
         played.push((labels, said));
     }
+    let beside = match args.reduced {
+        Some(dims) => reduced(&takes, dims)?.into_iter().map(Some).collect(),
+        None => vec![None; takes.len()],
+    };
     match &args.output {
-        Some(path) => write_page(path, &takes, played)?,
+        Some(path) => write_page(path, &takes, &beside, played)?,
         None => in_terminal(&takes, &played, args.speed)?,
     }
     Ok(ExitCode::SUCCESS)
@@ -162,16 +176,39 @@ fn in_terminal(
     Ok(())
 }
 
+/// The clips as so many dimensions of their poses have them (thesis, Eq. 3.10).
+fn reduced(takes: &[Take], dims: usize) -> Result<Vec<Clip>> {
+    let (set, params) = (PivotSet::thesis(), PoseParams::default());
+    let mut moments = Moments::new(set.row_dim());
+    let mut posed = Vec::with_capacity(takes.len());
+    for take in takes {
+        let map = PivotMap::of_clip(&set, &take.clip, &take.roles)
+            .with_context(|| take.name().to_owned())?;
+        let rows = pose_rows_of_clip(&take.clip, &set, &map, take.rest(), &params);
+        moments.push_rows(&rows);
+        posed.push((map, rows));
+    }
+    let pca = Pca::fit(&moments, ComponentCount::Dims(dims)).context("--reduced")?;
+    let rebuilt = |(take, (map, rows)): (&Take, (PivotMap, Rows))| {
+        let rows = pca.reconstruct(&pca.project(&rows));
+        clip_of_pose_rows(&take.clip, &set, &map, &rows, &params)
+    };
+    Ok(takes.iter().zip(posed).map(rebuilt).collect())
+}
+
 fn write_page(
     path: &Path,
     takes: &[Take],
+    beside: &[Option<Clip>],
     played: Vec<(Vec<Mark>, Vec<Detection<String>>)>,
 ) -> Result<()> {
     let clips: Vec<PlayedClip> = takes
         .iter()
+        .zip(beside)
         .zip(played)
-        .map(|(take, (truth, said))| PlayedClip {
+        .map(|((take, beside), (truth, said))| PlayedClip {
             clip: &take.clip,
+            beside: beside.as_ref(),
             roles: &take.roles,
             span: None,
             labels: truth,

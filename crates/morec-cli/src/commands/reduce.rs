@@ -28,7 +28,7 @@ Examples:
   morec reduce recordings/ --quality 0.9 --plot quality.svg
   morec reduce recordings/ --pivots roles --dims 16 --json
   morec reduce walk.bvh --dims 4 -o reduced/
-  morec play walk.bvh reduced/walk.bvh -o both.html")]
+  morec play walk.bvh --reduced 4 -o both.html  # beside the original")]
 pub struct Args {
     /// Clips (BVH, AMC) or folders of clips
     #[arg(required = true, value_name = "CLIP")]

@@ -180,6 +180,7 @@ fn played(db: &MotionDb, clip: ClipId, detections: Vec<Mark>) -> Result<String, 
     let played = PlayedClip {
         clip: &stored.clip,
         roles: &stored.roles,
+        beside: None,
         span: None,
         labels: labels.collect(),
         detections,

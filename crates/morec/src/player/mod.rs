@@ -23,6 +23,8 @@ pub struct PlayedClip<'a> {
     pub clip: &'a Clip,
     /// The joint of each role.
     pub roles: &'a RoleMap,
+    /// Another motion of the same skeleton, drawn a step to its left.
+    pub beside: Option<&'a Clip>,
     /// The stretch to show; `None` for the whole clip.
     pub span: Option<TimeSpan>,
     /// Labels of the clip.
@@ -30,6 +32,9 @@ pub struct PlayedClip<'a> {
     /// Detections in the clip.
     pub detections: Vec<Mark>,
 }
+
+/// Motions of one skeleton stand this far apart.
+const BESIDE_METRES: f64 = 1.2;
 
 /// Frames a second at most.
 const RATE_HZ: f64 = 30.0;
@@ -136,18 +141,21 @@ fn clip(played: &PlayedClip, most: usize) -> serde_json::Value {
         step *= 2.0;
     }
     let frames = ((shown as f64 / step).floor() as usize).max(usize::from(shown > 0));
+    let beside = played.beside.filter(|other| other.frames > 0);
+    let beside = beside.map(|other| (other, Vec3::new(BESIDE_METRES, 0.0, 0.0)));
+    let both = || std::iter::once((*clip, Vec3::zeros())).chain(beside);
     let mut pose = WorldPose::default();
     let mut poses: Vec<Vec<Vec3>> = Vec::with_capacity(frames);
     for frame in 0..frames {
         let at = first + (frame as f64 * step) as usize;
-        pose.set(clip, at.min(clip.frames - 1));
-        let mut places = pose.positions.clone();
-        let joints = clip.skeleton.joints().iter().enumerate();
-        places.extend(
-            joints
-                .filter(|(_, j)| j.tip.is_some())
-                .map(|(j, _)| pose.tip(clip, j)),
-        );
+        let mut places = Vec::new();
+        for (clip, step) in both() {
+            pose.set(clip, at.min(clip.frames - 1));
+            let joints = clip.skeleton.joints().iter().enumerate();
+            let tips = (joints.filter(|(_, j)| j.tip.is_some())).map(|(j, _)| pose.tip(clip, j));
+            let here = pose.positions.iter().copied().chain(tips);
+            places.extend(here.map(|place| place + step));
+        }
         poses.push(places);
     }
     let (middle, reach) = middle(&poses);
@@ -169,13 +177,22 @@ fn clip(played: &PlayedClip, most: usize) -> serde_json::Value {
     let tips = (0..joints.len())
         .filter(|&j| joints[j].tip.is_some())
         .map(Some);
-    let parents: Vec<Option<usize>> = own.chain(tips).collect();
+    let mut parents: Vec<Option<usize>> = own.chain(tips).collect();
     let start = first as f64 / clip.rate_hz;
     let marks = |marks: &[Mark]| -> Vec<serde_json::Value> {
         let mark = |m: &Mark| json!([m.class, m.span.start_secs - start, m.span.stop_secs - start]);
         marks.iter().map(mark).collect()
     };
-    let sides: Vec<i8> = (0..joints.len()).map(|j| side(clip, roles, j)).collect();
+    let mut sides: Vec<i8> = (0..joints.len()).map(|j| side(clip, roles, j)).collect();
+    if beside.is_some() {
+        let points = parents.len();
+        let of_tips = parents[joints.len()..].iter().flatten();
+        let of_tips: Vec<i8> = of_tips.map(|joint| sides[*joint]).collect();
+        sides.extend(of_tips);
+        sides.extend_from_within(..);
+        let others: Vec<_> = parents.iter().map(|p| p.map(|p| p + points)).collect();
+        parents.extend(others);
+    }
     let name = match played.span {
         Some(span) => format!("{} {span:.2}", clip.name),
         None => clip.name.clone(),
@@ -269,6 +286,7 @@ mod tests {
         let played = PlayedClip {
             clip: &take.clip,
             roles: &take.roles,
+            beside: None,
             span: None,
             labels: vec![mark("wave")],
             detections: vec![mark("wave"), mark("<b>")],
@@ -330,6 +348,7 @@ mod tests {
         PlayedClip {
             clip: &take.clip,
             roles: &take.roles,
+            beside: None,
             span: None,
             labels: Vec::new(),
             detections: Vec::new(),
@@ -350,6 +369,27 @@ mod tests {
         );
     }
 
+    #[test]
+    fn a_motion_beside_another_has_its_own_points_a_step_away() {
+        let script = Script::new(3, Person::draw(31, 2)).rest(0.3).play("wave");
+        let take = Take::new(script.film("wave", 30.0).unwrap().clip).unwrap();
+        let alone = clip(&whole(&take), 1000);
+        let two = PlayedClip {
+            beside: Some(&take.clip),
+            ..whole(&take)
+        };
+        let two = clip(&two, 1000);
+        let points = |clip: &serde_json::Value| clip["parents"].as_array().unwrap().len();
+        assert_eq!(points(&two), 2 * points(&alone));
+        assert_eq!(two["sides"].as_array().unwrap().len(), points(&two));
+        let values = 3 * points(&alone);
+        let (first, places) = (&places(&alone)[..values], places(&two));
+        for at in (0..values).filter(|at| at % 3 == 0) {
+            assert!((places[at] - first[at]).abs() < 2e-3);
+            assert!((places[values + at] - first[at] - BESIDE_METRES).abs() < 2e-3);
+        }
+    }
+
     /// A stretch holds its own frames, thinned as asked, and its marks begin with it.
     #[test]
     fn a_stretch_is_cut_out_and_thinned() {
@@ -358,6 +398,7 @@ mod tests {
         let played = PlayedClip {
             clip: &take.clip,
             roles: &take.roles,
+            beside: None,
             span: Some(TimeSpan::new(0.3, 1.3)),
             labels: vec![Mark::new("wave", TimeSpan::new(0.5, 1.0))],
             detections: Vec::new(),

@@ -96,6 +96,7 @@ impl Page {
                 let played = PlayedClip {
                     clip: &stored.clip,
                     roles: &stored.roles,
+                    beside: None,
                     span: Some(span),
                     labels: Vec::new(),
                     detections: Vec::new(),
