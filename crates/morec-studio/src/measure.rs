@@ -40,6 +40,7 @@ pub struct Load {
 pub struct FrameTimes {
     /// Name of the scene.
     pub scene: &'static str,
+    /// The median.
     pub p50: f64,
     /// The 99th percentile.
     pub p99: f64,

@@ -81,6 +81,7 @@ pub struct Group {
 
 impl ClusteredItems {
     /// Groups items of these shapes by their hierarchy.
+    #[cfg(test)]
     pub fn of(items: Vec<GroupItem>, shapes: Shapes, left_out: usize) -> Self {
         Self {
             links: Links::Tree(Dendrogram::of(&shapes.hierarchy())),

@@ -8,7 +8,7 @@ use morec_db::labels::{NewSample, SampleState as Judged};
 use morec_ops::{GroupMethod, GroupSettings, Shapes, largest_first};
 
 use super::{Person, made};
-use crate::jobs::group::{self, ClusteredItems};
+use crate::jobs::group::{self, ClusteredItems, GroupDepth};
 use crate::state::{ClassCommand, Command, Panel, PlayCommand};
 
 fn labelling(labelled: usize) -> (tempfile::TempDir, Person) {
@@ -175,10 +175,12 @@ fn a_label_that_holds_no_tick_is_left_out_of_groups() {
     person.click("Group labels");
     person.settle();
     let groups = person.state().classes.groups.clone().unwrap();
-    assert_eq!(
-        groups.at(3).iter().map(|g| g.members.len()).sum::<usize>(),
-        12
-    );
+    let depth = GroupDepth {
+        groups: 3,
+        ..GroupDepth::default()
+    };
+    let members = groups.at(&depth).into_iter().map(|g| g.members.len());
+    assert_eq!(members.sum::<usize>(), 12);
 }
 
 #[test]
@@ -192,8 +194,8 @@ fn cuts_are_grouped_and_a_group_becomes_labels() {
     person.settle();
     let groups = person.state().classes.groups.clone().unwrap();
     assert!(groups.items.iter().all(|item| item.sample.is_none()));
-    let depth = person.state().classes.depth.groups;
-    let members = groups.at(depth)[0].members.len();
+    let depth = person.state().classes.depth.clone();
+    let members = groups.at(&depth)[0].members.len();
     person.click("Name of group 1");
     person
         .window

@@ -132,8 +132,8 @@ fn events_are_those_of_the_inline_layout_to_the_bit() {
         for refractory_secs in [0.0, 5.0] {
             let events = EventOptions {
                 tentative: true,
-                each_repetition: false,
                 refractory_secs,
+                ..EventOptions::default()
             };
             let (inline, by_one) = run(&model, Threading::Inline, &steps, events.clone());
             let (staged, by_many) = run(&model, Threading::Stages, &steps, events);
