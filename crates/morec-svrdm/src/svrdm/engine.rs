@@ -69,7 +69,7 @@ impl SvrdmEngine {
 
     /// Rows that must follow a motion's last before it can be reported: those of the chunk that shows its segment to be
     /// a maximum. How long it then waits for rivals, [`SegmentTracking`] says: until
-    /// [`wait_chunks`](SvrdmParams::wait_chunks) at the most.
+    /// [`wait_chunks`](super::SvrdmParams::wait_chunks) at the most.
     pub fn latency_frames(&self) -> usize {
         self.model.params.chunk_frames
     }
