@@ -146,7 +146,7 @@ fn the_header_may_be_included_twice_and_after_others() {
     let folder = eight::files();
     let source = folder.path("twice.c");
     let text = "#include <math.h>\n#include \"morec.h\"\n#include \"morec.h\"\n\
-        int main(void) { MorecEvent e; MorecOptions o; MotionSeg s; return sizeof e == 88 && sizeof o == 56 && \
+        int main(void) { MorecEvent e; MorecOptions o; MotionSeg s; return sizeof e == 120 && sizeof o == 56 && \
         sizeof s == 112 && MOREC_ROLE_RIGHT_HAND + 1 == MOREC_ROLE_COUNT ? 0 : 1; }\n";
     std::fs::write(&source, text).unwrap();
     for compiler in Compiler::all() {

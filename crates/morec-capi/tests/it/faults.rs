@@ -293,7 +293,7 @@ fn options_that_cannot_be_are_refused() {
     assert_eq!(status(&|_| {}), MorecStatus::Ok);
     assert_eq!(status(&|o| o.handedness = 0), MorecStatus::InvalidValue);
     assert_eq!(status(&|o| o.up_axis = 2), MorecStatus::InvalidValue);
-    assert_eq!(status(&|o| o.flags = 16), MorecStatus::InvalidValue);
+    assert_eq!(status(&|o| o.flags = 32), MorecStatus::InvalidValue);
     assert_eq!(
         status(&|o| o.flags = MOREC_PERFORMER_ANYONE | MOREC_PERFORMER_TEACHER),
         MorecStatus::InvalidValue
