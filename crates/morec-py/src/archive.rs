@@ -20,7 +20,7 @@ use rayon::prelude::*;
 use crate::arrays::owned;
 use crate::clip::PyClip;
 use crate::clip_data::ClipData;
-use crate::database::db_error;
+use crate::errors::db_error;
 use crate::errors::{MorecError, value_error};
 use crate::index::PyIndex;
 use crate::options::reader;

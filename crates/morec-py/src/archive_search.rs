@@ -16,7 +16,8 @@ use pyo3::types::PyBytes;
 use rayon::prelude::*;
 
 use crate::clip::PyClip;
-use crate::database::{db_error, example_of};
+use crate::database::example_of;
+use crate::errors::db_error;
 use crate::errors::value_error;
 
 /// Clips of a part of an archive, laid out for searching.

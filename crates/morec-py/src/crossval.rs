@@ -9,9 +9,9 @@ use morec_ops::{CrossvalMeasures, CrossvalSettings, LeftOut, TrainSettings};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::errors::{io_error, morec_error, value_error};
+use crate::errors::{io_error, morec_error, operation_error, value_error};
 use crate::job;
-use crate::material::{operation_error, settings, training_data};
+use crate::material::{settings, training_data};
 use crate::tables::{DETECTION, plain, table};
 
 /// Measures of a cross-validation.

@@ -15,15 +15,14 @@ use morec_ops::{
     CutSettings, GroupSettings, ImportSettings, ProposeSettings, SearchSettings, example_of_clip,
     example_of_database, largest_first,
 };
-use pyo3::exceptions::{PyFileExistsError, PyFileNotFoundError, PyKeyError, PyPermissionError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::clip::PyClip;
 use crate::clip_data::ClipData;
-use crate::errors::{MorecError, file_error, value_error, warn};
+use crate::errors::{db_error, file_error, operation_error, value_error, warn};
 use crate::job;
-use crate::material::{keywords, operation_error};
+use crate::material::keywords;
 use crate::tables::{plain, table};
 
 /// A motion database: clips, cuts, classes and labels in one SQLite file, as `morec db` keeps it.
@@ -33,19 +32,6 @@ pub struct PyDatabase {
     db: Mutex<Option<MotionDb>>,
     /// Rows of all clips, laid out for searching; made by the first search and dropped by every change.
     search: Mutex<Option<SearchIndex>>,
-}
-
-/// An error of the database, as the usual exception of Python.
-pub fn db_error(error: DbError) -> PyErr {
-    let text = error.to_string();
-    match error {
-        DbError::Missing(_) => PyFileNotFoundError::new_err(text),
-        DbError::Exists(_) => PyFileExistsError::new_err(text),
-        DbError::ReadOnly | DbError::ReadOnlyDisk => PyPermissionError::new_err(text),
-        DbError::Unknown { .. } => PyKeyError::new_err(text),
-        DbError::Invalid(_) => value_error(text),
-        _ => MorecError::new_err(text),
-    }
 }
 
 fn held<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {

@@ -9,8 +9,9 @@ use pyo3::types::PyDict;
 use crate::clip::PyClip;
 use crate::clip_data::ClipData;
 use crate::database::PyDatabase;
+use crate::errors::operation_error;
 use crate::job;
-use crate::material::{keywords, operation_error};
+use crate::material::keywords;
 use crate::tables::table;
 
 /// Sets in clips; a row for each repetition.

@@ -5,9 +5,11 @@ use std::io::ErrorKind;
 use std::path::Path;
 
 use morec::files::{FileError, FileErrorKind};
+use morec_db::DbError;
+use morec_ops::OperationError;
 use pyo3::create_exception;
 use pyo3::exceptions::{
-    PyException, PyFileExistsError, PyFileNotFoundError, PyOSError, PyPermissionError,
+    PyException, PyFileExistsError, PyFileNotFoundError, PyKeyError, PyOSError, PyPermissionError,
     PyUserWarning, PyValueError,
 };
 use pyo3::prelude::*;
@@ -66,6 +68,29 @@ pub fn library_error(error: morec::Error) -> PyErr {
         morec::Error::File(error) => file_error(&error),
         morec::Error::Sensitivity(error) => value_error(format!("sensitivity: {error}")),
         morec::Error::Performer(error) => value_error(format!("performer: {error}")),
+        error => morec_error(error),
+    }
+}
+
+/// An error of the database, as the usual exception of Python.
+pub fn db_error(error: DbError) -> PyErr {
+    let text = error.to_string();
+    match error {
+        DbError::Missing(_) => PyFileNotFoundError::new_err(text),
+        DbError::Exists(_) => PyFileExistsError::new_err(text),
+        DbError::ReadOnly | DbError::ReadOnlyDisk => PyPermissionError::new_err(text),
+        DbError::Unknown { .. } => PyKeyError::new_err(text),
+        DbError::Invalid(_) => value_error(text),
+        _ => MorecError::new_err(text),
+    }
+}
+
+/// An error of an operation: of settings as a `ValueError`, of the database as [`db_error`], of anything else as a
+/// `MorecError`.
+pub fn operation_error(error: OperationError) -> PyErr {
+    match error {
+        OperationError::Param(_) | OperationError::Settings(_) => value_error(error),
+        OperationError::Database(error) => db_error(error),
         error => morec_error(error),
     }
 }

@@ -11,9 +11,9 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
 use crate::clip::PyClip;
-use crate::errors::{morec_error, value_error, warn};
+use crate::errors::{morec_error, operation_error, value_error, warn};
 use crate::index::PyIndex;
-use crate::material::{keywords, labels, operation_error, train_clip};
+use crate::material::{keywords, labels, train_clip};
 use crate::tables::plain;
 
 /// Frames a second in which the length of a clip is counted that is known in seconds alone.

@@ -15,9 +15,9 @@ use rayon::prelude::*;
 
 use crate::clip::PyClip;
 use crate::clip_data::ClipData;
-use crate::errors::{library_error, morec_error, value_error, warn};
+use crate::errors::{library_error, morec_error, operation_error, value_error, warn};
 use crate::job;
-use crate::material::{keywords, operation_error};
+use crate::material::keywords;
 use crate::recognizer::{PointLayout, PyRecognizer, stream_options};
 use crate::tables::{FoundWithDeviation, detections, plain};
 

@@ -5,7 +5,6 @@ use std::collections::{BTreeMap, BTreeSet};
 use morec::TimeSpan;
 use morec::labels::{Extent, Label, Labels, People, read_people};
 use morec::train::{StreamKind, TrainClip, TrainingData, TrainingMaterial};
-use morec_ops::OperationError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use serde::Serialize;
@@ -150,14 +149,6 @@ pub fn keywords<S: Serialize + DeserializeOwned + Default>(
     }
     let json = given.py().import("json")?.call_method1("dumps", (set,))?;
     settings(&json.extract::<String>()?)
-}
-
-/// Settings that make no sense are the caller's, other errors morec's.
-pub fn operation_error(error: OperationError) -> PyErr {
-    match error {
-        OperationError::Param(_) | OperationError::Settings(_) => value_error(error),
-        error => morec_error(error),
-    }
 }
 
 /// Labels in a table, as rows for Python.

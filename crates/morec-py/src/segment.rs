@@ -12,8 +12,8 @@ use pyo3::types::PyDict;
 use crate::arrays::owned;
 use crate::clip::PyClip;
 use crate::clip_data::ClipData;
-use crate::errors::morec_error;
-use crate::material::{keywords, operation_error};
+use crate::errors::{morec_error, operation_error};
+use crate::material::keywords;
 
 /// Changes of behaviour in a clip, and the misfit over time where the method has one.
 #[pyfunction]

@@ -6,10 +6,10 @@ use morec_ops::TrainSettings;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::errors::warn;
+use crate::errors::{operation_error, warn};
 use crate::index::PyIndex;
 use crate::job;
-use crate::material::{operation_error, settings, training_data};
+use crate::material::{settings, training_data};
 
 /// Trains an index from material as `morec._learn` lays it out.
 #[pyfunction]
