@@ -1,7 +1,8 @@
 //! A lower bound of what aligning two segments costs: most samples are not near, and need no alignment.
 
 use multiversion::multiversion;
-use nalgebra::{DMatrix, DVector, SymmetricEigen};
+
+use crate::pca::{Eigen, Moments};
 
 use super::segment::{BAND, PADDED, SEGMENT, SEGMENT_ROWS};
 
@@ -34,20 +35,12 @@ impl CoarseBasis {
     /// Of segments after the metric. O(d³).
     pub fn of(segments: &[f32]) -> Self {
         let step = (segments.len() / PADDED).div_ceil(ROWS_OF_BASIS).max(1);
-        let rows = segments.chunks_exact(PADDED).step_by(step);
-        let values =
-            |row: &[f32]| DVector::from_iterator(PADDED, row.iter().map(|v| f64::from(*v)));
-        let rows: Vec<DVector<f64>> = rows.map(values).collect();
-        let mean = rows.iter().sum::<DVector<f64>>() / rows.len().max(1) as f64;
-        let mut scatter = DMatrix::zeros(PADDED, PADDED);
-        for row in &rows {
-            let apart = row - &mean;
-            scatter.ger(1.0, &apart, &apart, 1.0);
+        let mut moments = Moments::new(PADDED);
+        for row in segments.chunks_exact(PADDED).step_by(step) {
+            moments.push_values(row);
         }
-        let eigen = SymmetricEigen::new(scatter);
-        let mut order: Vec<usize> = (0..PADDED).collect();
-        order.sort_by(|a, b| eigen.eigenvalues[*b].total_cmp(&eigen.eigenvalues[*a]));
-        let part = |i: usize, k: usize| eigen.eigenvectors[(i, order[k])] as f32;
+        let eigen = Eigen::of(moments.scatter());
+        let part = |i: usize, k: usize| eigen.vectors[(i, k)] as f32;
         Self {
             parts: (0..PADDED)
                 .map(|i| std::array::from_fn(|k| part(i, k)))

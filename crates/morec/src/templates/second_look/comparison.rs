@@ -50,8 +50,6 @@ pub struct Comparison {
     coarse: Box<CoarseRows>,
     noise: f32,
     mean: [f32; PADDED],
-    /// Segments by the distance of their means, which is room for the samples and for the atlas.
-    order: Vec<(f32, usize)>,
 }
 
 impl Comparison {
@@ -69,7 +67,6 @@ impl Comparison {
             classes: model.classes.clone(),
             typical_spread,
             least_divisor: divisor(0.0),
-            order: Vec::with_capacity(samples.spreads.len().max(atlas.spreads.len())),
             mean: [0.0; PADDED],
             atlas,
             samples,
@@ -116,29 +113,22 @@ impl Comparison {
     ) -> Option<Judged> {
         let spread = self.map(segment);
         let mut best: Option<(f32, ClassId)> = None;
-        let farthest = self.farthest;
-        let mut order = std::mem::take(&mut self.order);
-        let classes = &self.classes;
-        self.search(
-            &self.samples,
-            (spread, farthest),
-            counts,
-            &mut order,
-            |sample, distance| {
-                if best.is_none_or(|(nearest, _)| distance < nearest.min(farthest)) {
-                    best = Some((distance, classes[sample]));
-                }
-                best.map_or(farthest, |(nearest, _)| nearest.min(farthest))
-            },
-        );
-        self.order = order;
+        let mut least = self.farthest;
+        let limits = (spread, least);
+        self.search(&self.samples, limits, counts, |sample, distance| {
+            if best.is_none() || distance < least {
+                best = Some((distance, self.classes[sample]));
+                least = least.min(distance);
+            }
+            least
+        });
         let (nearest, class) = best?;
         let score = self.score(spread, nearest);
         Some(Judged { class, score })
     }
 
     /// The score of a segment of this spread whose nearest sample is `nearest` away.
-    fn score(&mut self, spread: f32, nearest: f32) -> f32 {
+    fn score(&self, spread: f32, nearest: f32) -> f32 {
         let nearest = nearest.max(LEAST_DISTANCE);
         match self.atlas.spreads.is_empty() {
             true => portable::ln(f64::from(self.scale / nearest)) as f32,
@@ -154,33 +144,31 @@ impl Comparison {
         (distances, score)
     }
 
-    /// The score beside what other motion is at.
-    fn against_atlas(&mut self, spread: f32, nearest: f32) -> f32 {
+    /// The score relative to the distance of other motion.
+    fn against_atlas(&self, spread: f32, nearest: f32) -> f32 {
         let mut found = [f32::MAX; NEAREST_OF_ATLAS];
         let least = match self.has_scale {
             true => 2.0 * self.bound - portable::ln(f64::from(self.scale / nearest)) as f32,
             false => self.bound,
         };
         let refused = nearest * portable::exp(f64::from(least)) as f32;
-        let mut order = std::mem::take(&mut self.order);
         self.search(
             &self.atlas,
             (spread, f32::MAX),
             |_| true,
-            &mut order,
             |_, distance| {
-                if distance < found[NEAREST_OF_ATLAS - 1] {
-                    found[NEAREST_OF_ATLAS - 1] = distance;
+                let [.., third] = &mut found;
+                if distance < *third {
+                    *third = distance;
                     found.sort_unstable_by(f32::total_cmp);
                 }
-                // As near to so much other motion it is refused, whatever the rest is at.
+                // So near to the third, it is refused, however near the rest is.
                 match found[NEAREST_OF_ATLAS - 1] {
                     third if third < f32::MAX && third <= refused => f32::MIN,
                     third => third,
                 }
             },
         );
-        self.order = order;
         let against = |of: f32| portable::ln(f64::from(of / nearest)) as f32;
         let other = against(found[NEAREST_OF_ATLAS - 1].max(LEAST_DISTANCE));
         match self.has_scale {
@@ -219,22 +207,22 @@ impl Comparison {
         spread_of(&self.segment)
     }
 
-    /// Gives `take` the segments of `of` that `counts` admits and their distances: those of the nearest means first, then each that its bound
-    /// does not keep out. `take` returns the distance from which on none is asked for, at first `most`; below zero, the search ends.
+    /// Gives `take` the segments of `of` that `counts` admits, with their distances: those of the nearest means first, then each whose lower
+    /// bound does not exclude it. `take` returns the distance from which on segments may be left out, at first `most`; below zero, the
+    /// search ends.
     fn search(
         &self,
         of: &MappedSegments,
         (spread, mut most): (f32, f32),
         counts: impl Fn(usize) -> bool,
-        order: &mut Vec<(f32, usize)>,
         mut take: impl FnMut(usize, f32) -> f32,
     ) {
-        of.nearest_means(&self.mean, &counts, order);
-        for (_, place) in order.iter() {
+        let nearest = of.nearest_means(&self.mean, &counts);
+        for place in nearest.into_iter().flatten() {
             if most < 0.0 {
                 return;
             }
-            most = take(*place, self.distance(of, *place, spread, most));
+            most = take(place, self.distance(of, place, spread, most));
         }
         for (block, coarse) in of.coarse.iter().enumerate() {
             if most < 0.0 {
@@ -245,7 +233,7 @@ impl Comparison {
             let costs = least_costs(coarse, &self.coarse, &limits);
             for lane in (0..TOGETHER).filter(|lane| costs[*lane] < limits[*lane]) {
                 let place = first + lane;
-                let is_left = counts(place) && !order.iter().any(|(_, looked)| *looked == place);
+                let is_left = counts(place) && !nearest.contains(&Some(place));
                 if is_left {
                     most = take(place, self.distance(of, place, spread, most));
                 }
@@ -253,16 +241,21 @@ impl Comparison {
         }
     }
 
-    /// Costs from it on say that a distance is `most` or more; below every cost where there is no segment.
+    /// The cost of an alignment from which on the distance is `most` or more; below every cost where there is no segment.
     fn limit(&self, of: &MappedSegments, place: usize, spread: f32, most: f32) -> f32 {
         let (Some(noise), Some((at_own, slope))) = (of.noises.get(place), of.tangents.get(place))
         else {
             return f32::MIN;
         };
-        let noise = (self.noise - noise).max(0.0);
-        let moved = (spread - noise).max(0.0);
+        let (noise, moved) = self.noise_and_spread(spread, *noise);
         let divisor = (at_own + slope * (moved - of.spreads[place])).max(self.least_divisor);
         Self::cost_of(most * divisor, noise) * ROUNDING
+    }
+
+    /// The segment's noise beyond that of a sample, and its spread without it.
+    fn noise_and_spread(&self, spread: f32, noise_of_sample: f32) -> (f32, f32) {
+        let noise = (self.noise - noise_of_sample).max(0.0);
+        (noise, (spread - noise).max(0.0))
     }
 
     /// The cost of an alignment whose mean, less the noise, is `mean`.
@@ -273,8 +266,7 @@ impl Comparison {
     /// `D / max(0.05, (V_T + V_S) / 2 V₀)^0.85`, or anything from `most` on if it is not below. What the segment has of noise beyond the
     /// sample's is taken off `V_S`, and off `D`, of which at most half.
     fn distance(&self, of: &MappedSegments, place: usize, spread: f32, most: f32) -> f32 {
-        let noise = (self.noise - of.noises[place]).max(0.0);
-        let moved = (spread - noise).max(0.0);
+        let (noise, moved) = self.noise_and_spread(spread, of.noises[place]);
         let spreads = (of.spreads[place] + moved) / (2.0 * self.typical_spread);
         let norm = divisor(spreads);
         let taught = &of.values[place * SEGMENT..][..SEGMENT];

@@ -11,8 +11,8 @@ use super::segment::{LANES, PADDED, SEGMENT, SEGMENT_ROWS};
 const EXPONENT: f32 = 0.85;
 /// Least share of the typical spread that normalises: segments that hardly move must not be near everything.
 const LEAST_SPREAD: f32 = 0.05;
-/// Segments that are compared before any is kept out.
-const FIRST: usize = 16;
+/// Segments that are compared before bounds exclude any.
+pub const FIRST: usize = 16;
 
 /// Segments after the metric, each with its spread and its noise.
 #[derive(Debug, Clone, Default)]
@@ -41,25 +41,23 @@ impl MappedSegments {
         }
     }
 
-    /// Writes the places of the [`FIRST`] segments that count and whose means are the nearest to `mean` to `order`, the nearest first: where
-    /// they are near, most others are kept out by their bounds.
+    /// Places of the segments that count and whose means are the nearest to `mean`, the nearest first. O(segments · d).
     pub fn nearest_means(
         &self,
         mean: &[f32; PADDED],
         counts: impl Fn(usize) -> bool,
-        order: &mut Vec<(f32, usize)>,
-    ) {
+    ) -> [Option<usize>; FIRST] {
+        let mut nearest = [(f32::INFINITY, None); FIRST];
         let means = self.means.chunks_exact(PADDED).enumerate();
-        let counting = means.filter(|(place, _)| counts(*place));
-        order.clear();
-        order.extend(counting.map(|(place, of)| (squared(of, mean), place)));
-        let by_distance =
-            |a: &(f32, usize), b: &(f32, usize)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
-        if order.len() > FIRST {
-            order.select_nth_unstable_by(FIRST, by_distance);
-            order.truncate(FIRST);
+        for (place, of) in means.filter(|(place, _)| counts(*place)) {
+            let apart = squared(of, mean);
+            if apart < nearest[FIRST - 1].0 {
+                let at = nearest.partition_point(|(other, _)| *other <= apart);
+                nearest[at..].rotate_right(1);
+                nearest[at] = (apart, Some(place));
+            }
         }
-        order.sort_unstable_by(by_distance);
+        nearest.map(|(_, place)| place)
     }
 
     /// Sets the tangents, for spreads that are shares of `typical`.
