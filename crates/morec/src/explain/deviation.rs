@@ -5,7 +5,7 @@ use crate::clip::{Clip, Span};
 use crate::features::{Rows, all_bones_of_clip, rows_of_clip};
 use crate::live::{Detection, Model};
 use crate::roles::RoleMap;
-use crate::templates::{DeviationMeter, MotionDeviation, TemplateModel};
+use crate::templates::{DeviationMeter, MotionDeviation, TemplateModel, TemplateSample};
 
 /// A motion of a clip and how well it was performed.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -55,6 +55,7 @@ fn of_motion(
     let ticks = found.span.frames_among(rows.len(), hz);
     let stretch = rows.slice(ticks.clone());
     let start_secs = ticks.start as f64 / hz;
-    meter.compare(model.samples_of(found.class), &stretch, false)?;
+    let samples = TemplateSample::rows_of(&model.samples, found.class);
+    meter.compare(samples, &stretch, false)?;
     Some(meter.motion(start_secs))
 }

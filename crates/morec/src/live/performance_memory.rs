@@ -2,7 +2,7 @@
 
 use crate::TimeSpan;
 use crate::features::{RowLayout, Rows};
-use crate::templates::{Deviation, DeviationMeter, TemplateModel};
+use crate::templates::{Deviation, DeviationMeter, RecentRows, TemplateModel};
 
 /// Motion is remembered for so long, seconds: longer performances, and those reported later, are not compared.
 pub(super) const MEMORY_SECS: f64 = 20.0;
@@ -11,13 +11,11 @@ pub(super) const MEMORY_SECS: f64 = 20.0;
 #[derive(Debug)]
 pub(super) struct PerformanceMemory {
     tick_hz: f64,
-    /// Row `n` at slot `n % capacity`.
-    rows: Vec<f32>,
-    capacity: usize,
-    ticks: usize,
+    rows: RecentRows,
     ended: bool,
     /// The stream's clock at the first row.
     origin_secs: f64,
+    /// With room for all that is remembered.
     stretch: Rows,
     meter: DeviationMeter,
 }
@@ -25,16 +23,14 @@ pub(super) struct PerformanceMemory {
 impl PerformanceMemory {
     pub(super) fn new(model: &TemplateModel) -> Self {
         let (dim, tick_hz) = (RowLayout::of(model.bones).dim(), model.features.tick_hz());
-        let capacity = (MEMORY_SECS * tick_hz).ceil() as usize;
+        let capacity = remembered(tick_hz);
         let repetitions = model.activities.iter().flat_map(|a| &a.repetitions);
         let longest = repetitions.map(|s| s.rows.len()).max().unwrap_or(0);
         // A template that is not run through around needs half the room.
         let longest = longest.max(model.longest().div_ceil(2));
         Self {
             tick_hz,
-            rows: vec![0.0; capacity * dim],
-            capacity,
-            ticks: 0,
+            rows: RecentRows::new(dim, capacity),
             ended: false,
             origin_secs: 0.0,
             stretch: Rows::with_room(dim, capacity),
@@ -45,12 +41,10 @@ impl PerformanceMemory {
     /// Takes the next row of the stretch that began at `origin_secs`.
     pub(super) fn push(&mut self, row: &[f32], origin_secs: f64) {
         if std::mem::take(&mut self.ended) {
-            self.ticks = 0;
+            self.rows.restart();
         }
         self.origin_secs = origin_secs;
-        let slot = self.ticks % self.capacity;
-        self.rows[slot * row.len()..][..row.len()].copy_from_slice(row);
-        self.ticks += 1;
+        self.rows.push(row);
     }
 
     /// The stretch is over: the next row begins another.
@@ -66,20 +60,24 @@ impl PerformanceMemory {
         around: bool,
     ) -> Option<Deviation> {
         let origin_secs = self.origin_secs;
+        let pushed = self.rows.pushed();
         let ticks = TimeSpan::new(span.start_secs - origin_secs, span.stop_secs - origin_secs)
-            .frames_among(self.ticks, self.tick_hz);
-        if ticks.start + self.capacity < self.ticks {
+            .frames_among(pushed, self.tick_hz);
+        if ticks.start + remembered(self.tick_hz) < pushed {
             return None;
         }
         self.stretch.clear();
-        let dim = self.stretch.dim();
         for tick in ticks {
-            let slot = tick % self.capacity;
-            self.stretch.push(&self.rows[slot * dim..][..dim]);
+            self.stretch.push(self.rows.row(tick));
         }
         self.meter.compare(samples, &self.stretch, around)?;
         self.meter.in_short()
     }
+}
+
+/// Ticks that are remembered.
+fn remembered(tick_hz: f64) -> usize {
+    (MEMORY_SECS * tick_hz).ceil() as usize
 }
 
 impl Clone for PerformanceMemory {
@@ -87,7 +85,7 @@ impl Clone for PerformanceMemory {
     fn clone(&self) -> Self {
         Self {
             rows: self.rows.clone(),
-            stretch: Rows::with_room(self.stretch.dim(), self.capacity),
+            stretch: Rows::with_room(self.stretch.dim(), remembered(self.tick_hz)),
             meter: self.meter.emptied(),
             ..*self
         }

@@ -7,7 +7,7 @@ use crate::classes::ClassId;
 use crate::features::{BoneSet, FeatureStream, Pushed, RowLayout};
 use crate::templates::{
     AT_ONCE, ClassMatches, Deviation, EarlyDetectionParams, OngoingMatch, TemplateEngine,
-    TemplateModel,
+    TemplateModel, TemplateSample,
 };
 
 use super::detection::{DetectionBuffer, Steps};
@@ -242,14 +242,11 @@ impl Pipeline for TemplatePipeline {
 
     fn deviation(&mut self, class: ClassId, span: TimeSpan, repetition: bool) -> Option<Deviation> {
         let memory = self.memory.as_mut()?;
-        match repetition {
-            true => memory.compare(
-                span,
-                self.model.activities.as_ref()?.repetitions_of(class),
-                true,
-            ),
-            false => memory.compare(span, self.model.samples_of(class), false),
-        }
+        let samples = match repetition {
+            true => &self.model.activities.as_ref()?.repetitions,
+            false => &self.model.samples,
+        };
+        memory.compare(span, TemplateSample::rows_of(samples, class), repetition)
     }
 
     fn boxed(&self) -> Box<dyn Pipeline> {

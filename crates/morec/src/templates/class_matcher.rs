@@ -82,7 +82,9 @@ impl ClassMatcher {
         let mapped = &mut self.mapped[..rows.len()];
         self.metric.apply_each(rows, mapped);
         self.matcher.advance(mapped.chunks_exact(dim));
-        self.negatives.advance(mapped.chunks_exact(dim));
+        if !self.negatives.bank().is_empty() {
+            self.negatives.advance(mapped.chunks_exact(dim));
+        }
     }
 
     /// Finds the nearest matches at tick `at` of those that it last advanced by.

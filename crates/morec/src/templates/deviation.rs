@@ -131,14 +131,20 @@ impl DeviationMeter {
         if stretch.is_empty() || self.bones.is_empty() {
             return None;
         }
-        let samples = samples.filter(|sample| !sample.is_empty());
-        let mut off = |sample: &&Rows| {
+        let mut nearest: Option<(f64, &Rows)> = None;
+        let mut last = None;
+        for sample in samples.filter(|sample| !sample.is_empty()) {
             self.measure(sample, stretch, around);
-            self.off_degrees()
-        };
-        let (_, nearest) = (samples.map(|sample| (off(&sample), sample)))
-            .reduce(|best, next| if next.0 < best.0 { next } else { best })?;
-        self.measure(nearest, stretch, around);
+            let off = self.off_degrees();
+            if nearest.is_none_or(|(least, _)| off < least) {
+                nearest = Some((off, sample));
+            }
+            last = Some(sample);
+        }
+        let (_, nearest) = nearest?;
+        if !last.is_some_and(|last| std::ptr::eq(last, nearest)) {
+            self.measure(nearest, stretch, around);
+        }
         Some(())
     }
 

@@ -8,6 +8,7 @@ use super::activities::ActivityDetector;
 use super::class_matches::{ClassMatches, MatchReplay};
 use super::early::{EarlyDetectionParams, OngoingMatch};
 use super::held::HoldDetector;
+use super::recent_rows::RecentRows;
 use super::verifier::{CandidateScorer, Evidence};
 use super::{
     Calibration, ClassMatcher, MatchGate, Metric, PerformerLevel, StrangerGate, TemplateModel,
@@ -21,6 +22,7 @@ pub struct TemplateEngine {
     matches: Matches,
     judge: Option<CandidateScorer>,
     decoder: Decoder,
+    /// As many rows as a match can span.
     recent: RecentRows,
     threshold: f32,
     calibration: Option<Calibration>,
@@ -84,37 +86,6 @@ enum Matches {
     Computed(Box<ClassMatcher>),
     /// Of the same stream, from elsewhere.
     Given(MatchReplay),
-}
-
-/// The last rows of the stream, as many as a match can span.
-#[derive(Debug, Clone)]
-struct RecentRows {
-    rows: Vec<f32>,
-    dim: usize,
-    mask: usize,
-    pushed: usize,
-}
-
-impl RecentRows {
-    fn new(dim: usize, capacity: usize) -> Self {
-        let capacity = capacity.next_power_of_two();
-        Self {
-            rows: vec![0.0; dim * capacity],
-            dim,
-            mask: capacity - 1,
-            pushed: 0,
-        }
-    }
-
-    fn push(&mut self, row: &[f32]) {
-        let slot = self.pushed & self.mask;
-        self.rows[slot * self.dim..][..self.dim].copy_from_slice(row);
-        self.pushed += 1;
-    }
-
-    fn row(&self, tick: usize) -> &[f32] {
-        &self.rows[(tick & self.mask) * self.dim..][..self.dim]
-    }
 }
 
 impl TemplateEngine {
@@ -218,7 +189,7 @@ impl TemplateEngine {
             looks.reset();
         }
         self.decoder.reset();
-        self.recent.pushed = 0;
+        self.recent.restart();
     }
 
     /// Forgets how the performer moves: the next row may be another performer's.
@@ -316,7 +287,7 @@ impl TemplateEngine {
 
     /// Ticks taken since the stretch began.
     pub fn ticks(&self) -> usize {
-        self.recent.pushed
+        self.recent.pushed()
     }
 
     /// The class whose beginning is nearest at the last tick, if one is within the bounds of `params`. O(template rows),

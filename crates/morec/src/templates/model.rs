@@ -1,6 +1,6 @@
 //! A trained set of templates: what an index file holds for this method.
 
-use crate::classes::{ClassId, ClassInfo};
+use crate::classes::ClassInfo;
 use crate::decode::{CandidatePolicy, DecodeParams};
 use crate::features::{BoneSet, FeatureParams, RowLayout, Rows};
 use crate::math::portable;
@@ -265,9 +265,6 @@ impl TemplateModel {
         if let Some(look) = &self.look {
             return 1.01 * look.reach;
         }
-        if let Some(look) = &self.look {
-            return 1.01 * look.reach;
-        }
         let wide = self.stranger.iter();
         let thresholds = (self.class_thresholds.iter().copied())
             .chain(wide.clone().map(|gate| gate.threshold))
@@ -280,12 +277,6 @@ impl TemplateModel {
         let evidence = self.verifier.as_ref().map_or(0.0, |_| Evidence::REACH);
         // A margin covers rounding.
         1.01 * (threshold * factor).max(evidence)
-    }
-
-    /// Rows of the templates of `class`.
-    pub fn samples_of(&self, class: ClassId) -> impl Iterator<Item = &Rows> + Clone {
-        let of_class = self.samples.iter().filter(move |s| s.class == class);
-        of_class.map(|s| &s.rows)
     }
 
     /// Rows of the longest template.

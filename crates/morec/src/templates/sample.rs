@@ -11,3 +11,11 @@ pub struct TemplateSample {
     /// One row for each tick.
     pub rows: Rows,
 }
+
+impl TemplateSample {
+    /// Rows of those of `samples` that are of `class`.
+    pub fn rows_of(samples: &[Self], class: ClassId) -> impl Iterator<Item = &Rows> + Clone {
+        let of_class = samples.iter().filter(move |s| s.class == class);
+        of_class.map(|s| &s.rows)
+    }
+}

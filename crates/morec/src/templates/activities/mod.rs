@@ -11,7 +11,7 @@ mod repetitions;
 mod windows;
 
 use crate::classes::ClassId;
-use crate::features::{RowLayout, Rows};
+use crate::features::RowLayout;
 use crate::math::portable;
 
 use super::{ReferenceRows, TemplateSample};
@@ -84,12 +84,6 @@ impl Activities {
             true => Ok(()),
             false => Err("a repetition of an activity of another width or class".to_owned()),
         }
-    }
-
-    /// Rows of the repetitions of `class`.
-    pub fn repetitions_of(&self, class: ClassId) -> impl Iterator<Item = &Rows> + Clone {
-        let of_class = self.repetitions.iter().filter(move |s| s.class == class);
-        of_class.map(|s| &s.rows)
     }
 
     /// Statistics of a window over rows of `layout`.
