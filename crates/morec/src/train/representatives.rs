@@ -28,10 +28,10 @@ pub fn representatives<G: Ord + Sync>(
     }
     let comparison = Comparison::new(look);
     let choose = |comparison: &mut Comparison, of_group: Vec<usize>| {
-        let compared: Vec<usize> = evenly(&of_group, MOST_COMPARED).copied().collect();
-        if compared.len() <= most {
-            return compared;
+        if of_group.len() <= most {
+            return of_group;
         }
+        let compared: Vec<usize> = evenly(&of_group, MOST_COMPARED).copied().collect();
         let places: Vec<usize> = compared.iter().map(|s| segments[*s]).collect();
         let rows = compared.iter().map(|s| look.segment(segments[*s]));
         let distances: Vec<Vec<f32>> = rows

@@ -131,12 +131,15 @@ pub fn train(
     let judges_whole = params.judge_whole
         && Profile::of(bones) == Profile::Body
         && second_look::are_apart(set, &samples, bones, params);
-    // What goes on is compared, too, and reported by its windows.
-    let judged = [samples.as_slice(), &going_on].concat();
+    // The second look compares activities too; their windows report them.
+    let judged = match judges_whole {
+        true => [samples.as_slice(), &going_on].concat(),
+        false => Vec::new(),
+    };
     let learn = || second_look::learn(set, &judged, bones, params);
     let mut learned = (judges_whole && !verifies).then(learn).flatten();
     match &learned {
-        // Templates find where to look, and samples are compared there.
+        // Templates only find candidates, which the second look then compares with all samples.
         Some(learned) => samples = step.representatives(learned, samples),
         None => samples.extend(step.faster_copies(&samples, bones, plain)?),
     }
@@ -149,7 +152,7 @@ pub fn train(
     let matches = step.templates(&samples, gates, (gate_of_verifier, farthest))?;
     let near: Vec<&NearestByGate> = matches.iter().map(|m| &m.all).collect();
     let near_enough = step.operating(&near, None, |near| &near.plain);
-    // What comes near is refused by the comparison of whole motions.
+    // The second look refuses background that comes near, so no negatives are needed.
     let negatives = match &learned {
         Some(_) => Vec::new(),
         None => {

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::progress::Progress;
-use crate::svrdm::{FrameDetection, SampleClassifier, SvrdmEngine, SvrdmModel};
+use crate::svrdm::{Classified, FrameDetection, SampleClassifier, SvrdmEngine, SvrdmModel};
 use crate::train::{TrainError, overlap_share};
 
 use super::fit::fit;
@@ -75,16 +75,12 @@ impl Estimated {
 /// Result of one left-out sample.
 struct LeftOutResult {
     right: bool,
-    /// Least output on its way down the tree.
-    output: f64,
-    /// The largest of another side.
-    other: f64,
-    confidence: f64,
+    found: Classified,
 }
 
 impl LeftOutResult {
     fn passes(&self, accept: f64, other: Option<f64>) -> bool {
-        self.output >= accept && other.is_none_or(|other| self.other <= other)
+        self.found.output >= accept && other.is_none_or(|other| self.found.other <= other)
     }
 }
 
@@ -113,7 +109,7 @@ pub(super) fn estimate(
     let mut mistaken: Vec<f64> = judged
         .iter()
         .filter(|j| !j.right && j.passes(LEAST_ACCEPT, other))
-        .map(|j| j.output)
+        .map(|j| j.found.output)
         .collect();
     mistaken.sort_by(|a, b| b.total_cmp(a));
     let spared = (MAY_MISTAKE * judged.len() as f64) as usize;
@@ -135,7 +131,7 @@ pub(super) fn estimate(
     let background_confidence = scores.iter().copied().fold(0.0, f64::max);
 
     let passing = || judged.iter().filter(|j| j.right && j.passes(accept, other));
-    let mut confidences: Vec<f64> = passing().map(|j| j.confidence).collect();
+    let mut confidences: Vec<f64> = passing().map(|j| j.found.confidence).collect();
     let most = low_quantile(&mut confidences, MAY_SILENCE)
         .unwrap_or(1.0)
         .max(LEAST_CONFIDENCE);
@@ -161,7 +157,9 @@ pub(super) fn estimate(
             judged.len(),
         ),
         confident: share(
-            passing().filter(|j| j.confidence >= min_confidence).count(),
+            passing()
+                .filter(|j| j.found.confidence >= min_confidence)
+                .count(),
             right,
         ),
         background_minutes: frames as f64 / params.pose.rate_hz / 60.0,
@@ -175,9 +173,9 @@ pub(super) fn estimate(
 fn least_other(judged: &[LeftOutResult], trained: f64) -> Option<f64> {
     let right = judged
         .iter()
-        .filter(|j| j.right && j.output >= LEAST_ACCEPT);
+        .filter(|j| j.right && j.found.output >= LEAST_ACCEPT);
     // Ascending from the largest.
-    let mut others: Vec<f64> = right.map(|j| -j.other).collect();
+    let mut others: Vec<f64> = right.map(|j| -j.found.other).collect();
     let largest = -low_quantile(&mut others, MAY_LOSE)?;
     Some((largest + MARGIN).max(trained))
 }
@@ -225,9 +223,7 @@ fn judge_fold(
         let found = classifier.classify(&sample.rows)?;
         Some(LeftOutResult {
             right: found.class == sample.class,
-            output: found.output,
-            other: found.other,
-            confidence: found.confidence,
+            found,
         })
     };
     Ok(out.into_iter().filter_map(judge).collect())
