@@ -45,6 +45,8 @@ mod propose;
 mod recognize;
 #[cfg(feature = "db")]
 mod search;
+#[cfg(feature = "db")]
+mod shapes;
 mod text;
 mod train;
 #[cfg(feature = "clap")]
@@ -67,8 +69,7 @@ pub use error::OperationError;
 pub use evaluate::{EvaluateMeasures, EvaluateSettings};
 #[cfg(feature = "db")]
 pub use group::{
-    Centre, GroupMethod, GroupSettings, GroupedStretch, Grouping, MOST_IN_TREE, Shapes,
-    largest_first,
+    Centre, GroupMethod, GroupSettings, GroupedStretch, Grouping, MOST_IN_TREE, largest_first,
 };
 #[cfg(feature = "db")]
 pub use import::{CopiedClip, ImportSettings, ImportedFiles};
@@ -82,6 +83,8 @@ pub use recognize::RecognizeSettings;
 pub use recognize::StreamSettings;
 #[cfg(feature = "db")]
 pub use search::{SearchSettings, example_of_clip, example_of_database};
+#[cfg(feature = "db")]
+pub use shapes::Shapes;
 pub use train::{Method, TrainSettings, Unlabelled};
 #[cfg(feature = "clap")]
 pub use words::share;

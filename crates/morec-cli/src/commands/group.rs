@@ -2,8 +2,8 @@
 
 mod args;
 mod files;
-mod kwas;
 mod members;
+mod posed;
 mod stored;
 
 use std::path::PathBuf;
@@ -20,7 +20,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let inputs: Vec<PathBuf> = args.inputs.iter().chain(&args.clips).cloned().collect();
     match (database::only(&inputs)?, args.settings.method) {
         (Some(db), _) => stored::run(db, args),
-        (None, method) if method.looks_at_poses() => kwas::run(&inputs, args),
+        (None, method) if method.looks_at_poses() => posed::run(&inputs, args),
         (None, _) => files::run(&inputs, args),
     }
 }
