@@ -18,9 +18,9 @@ use crate::OperationError;
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize, clap::Args)]
 #[serde(default, deny_unknown_fields)]
 pub struct DiscoverSettings {
-    /// Use the plain metric in one pass: half the time
+    /// Do not learn a metric from the first sets: half the time
     ///
-    /// As good where people rest between motions.
+    /// The result is as good where people rest between motions.
     #[arg(long)]
     pub plain: bool,
     /// Join successive repetitions: walking is one stretch

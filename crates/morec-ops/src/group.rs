@@ -35,21 +35,22 @@ pub struct GroupSettings {
     /// Method of grouping
     #[arg(long, value_enum, default_value = "affinity")]
     pub method: GroupMethod,
-    /// Number of groups: higher gives more, 0 to 1 (affinity)
+    /// Tendency to many groups, 0 to 1 (affinity)
     ///
-    /// Preference of a sample to represent a group, as a quantile of similarities.
+    /// The preference of affinity propagation, which decides how many samples represent a group, given as a quantile of all similarities: 0.5 is
+    /// the median.
     #[arg(long, value_name = "Q", value_parser = share, default_value_t = AffinityParams::default().preference)]
     pub preference: f64,
     /// Number of groups (hierarchy, tree)
     #[arg(long, value_name = "N", conflicts_with = "height")]
     pub groups: Option<usize>,
-    /// Mean distance at which groups stay apart (hierarchy)
+    /// Join groups up to this mean distance, instead of --groups (hierarchy)
     #[arg(long, value_name = "DISTANCE")]
     pub height: Option<f64>,
-    /// Divide these groups once more (hierarchy, tree), by their numbers without it
+    /// Divide these groups in two; numbers as printed without this option (hierarchy, tree)
     #[arg(long, value_delimiter = ',', value_name = "GROUPS")]
     pub divide: Vec<usize>,
-    /// Join each of these with what it was parted from (hierarchy, tree)
+    /// Join each of these groups with its sibling branch; numbers as printed without this option (hierarchy, tree)
     #[arg(long, value_delimiter = ',', value_name = "GROUPS")]
     pub join: Vec<usize>,
     /// Similarity above which two samples are in one group (kwas)

@@ -12,7 +12,7 @@ use crate::files::{self, ReadArgs};
 /// The output's extension chooses: .bvh; .c3d, .trc and .jsonl with positions only; .glb and .vrma for other programs
 /// and avatars; .npz with positions, rotations and feature rows; .csv with one of these. BVH, C3D and TRC keep the
 /// clip's lengths and axes (lengths without a named unit become millimetres in C3D and TRC); the others have metres, Y
-/// up. Several clips are written into a folder in the form of --form. Repairs are reported on standard error.
+/// up. Several clips are written into a folder in the format of --form. Repairs are reported on standard error.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -31,7 +31,7 @@ pub struct Args {
     /// File to write, or folder for several clips; - is BVH on standard output
     #[arg(short, long, value_name = "FILE|FOLDER")]
     pub(super) output: PathBuf,
-    /// Write into a folder in this form [default: bvh]
+    /// File format of clips written into a folder [default: bvh]
     #[arg(long, value_enum)]
     pub(super) form: Option<ClipForm>,
     /// Content of a CSV
