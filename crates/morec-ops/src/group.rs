@@ -47,10 +47,14 @@ pub struct GroupSettings {
     /// Join groups up to this mean distance, instead of --groups (hierarchy)
     #[arg(long, value_name = "DISTANCE")]
     pub height: Option<f64>,
-    /// Divide these groups in two; numbers as printed without this option (hierarchy, tree)
+    /// Divide these groups in two (hierarchy, tree)
+    ///
+    /// Numbers of groups are those printed without this option.
     #[arg(long, value_delimiter = ',', value_name = "GROUPS")]
     pub divide: Vec<usize>,
-    /// Join each of these groups with its sibling branch; numbers as printed without this option (hierarchy, tree)
+    /// Join each of these groups with its sibling branch (hierarchy, tree)
+    ///
+    /// Numbers of groups are those printed without this option.
     #[arg(long, value_delimiter = ',', value_name = "GROUPS")]
     pub join: Vec<usize>,
     /// Similarity above which two samples are in one group (kwas)

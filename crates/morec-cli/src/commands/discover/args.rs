@@ -23,7 +23,7 @@ pub struct Args {
     /// Clips, folders of clips, or one database
     #[arg(required = true, value_name = "CLIP|DB")]
     pub(super) inputs: Vec<PathBuf>,
-    /// Only clips of the database whose name matches; `*` any text, `?` one character
+    /// Clips of the database whose name matches; `*` any text, `?` one character
     #[arg(long, value_name = "CLIP")]
     pub(super) clip: Option<String>,
     #[command(flatten)]
