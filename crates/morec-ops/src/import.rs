@@ -140,7 +140,8 @@ impl fmt::Display for CopiedClip {
 
 fn absolute(path: &Path) -> PathBuf {
     let (file, choice) = split_choice(path);
-    match (file.canonicalize(), choice) {
+    // On Windows without the prefix of verbatim paths, which people and many programs do not expect.
+    match (dunce::canonicalize(file), choice) {
         (Ok(file), Some(choice)) => format!("{}#{choice}", file.display()).into(),
         (Ok(file), None) => file,
         (Err(_), _) => path.to_owned(),
