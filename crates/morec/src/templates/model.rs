@@ -21,7 +21,7 @@ pub struct TemplateModel {
     pub bones: BoneSet,
     /// Parameters of decoding.
     pub decode: DecodeParams,
-    /// The classes; a [`ClassId`] is an index into this.
+    /// The classes; a [`ClassId`](crate::classes::ClassId) is an index into this.
     pub classes: Vec<ClassInfo>,
     /// Templates of the classes, before the metric.
     pub samples: Vec<TemplateSample>,
