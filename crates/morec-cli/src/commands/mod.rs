@@ -5,7 +5,6 @@
 
 pub mod agree;
 pub mod bench;
-pub mod budget;
 pub mod classify;
 pub mod complete;
 pub mod convert;

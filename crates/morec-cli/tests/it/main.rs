@@ -1,7 +1,6 @@
 //! The commands as they are typed: one binary for all of them, a module for each.
 
 mod agree;
-mod budget;
 mod classify;
 mod convert;
 mod db;

@@ -16,7 +16,7 @@ from . import plot, synth
 from ._discover import discover
 from ._files import read, read_all, read_folder
 from ._drawing import animation
-from ._learn import agree, crossval, evaluate, learning_curve, time_budget, train
+from ._learn import crossval, evaluate, train
 from ._live import listen
 from ._morec import (
     ROLES,
@@ -52,14 +52,12 @@ __all__ = [
     "WEBCAM_POINTS",
     "Windows",
     "__version__",
-    "agree",
     "animation",
     "crossval",
     "cut",
     "discover",
     "evaluate",
     "features",
-    "learning_curve",
     "listen",
     "load",
     "normalize",
@@ -68,7 +66,6 @@ __all__ = [
     "read_all",
     "read_folder",
     "synth",
-    "time_budget",
     "train",
     "webcam",
     "windows",

@@ -1,6 +1,6 @@
 //! How far two annotators of the same streams agree.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use serde::Serialize;
 
@@ -11,7 +11,6 @@ use super::{
     StreamInfo, all_classes, streams, timing,
 };
 use crate::TimeSpan;
-use crate::labels::ClipLength;
 use crate::rng::Rng;
 
 /// Draws by which agreement by chance is estimated.
@@ -90,44 +89,6 @@ pub struct UnitConfusion {
     pub classes: Vec<String>,
     /// `units[row][column]`, one row and one column more than there are classes.
     pub units: Vec<Vec<usize>>,
-}
-
-/// The clips that two annotators both labelled.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SharedClips {
-    /// The clips with their durations, by name.
-    pub streams: Vec<StreamInfo>,
-    /// Names of the clips that only the first annotator labelled, and of those that only the second did.
-    pub alone: [Vec<String>; 2],
-}
-
-impl SharedClips {
-    /// Of labels that were resolved against `lengths`; labels of other clips are removed from both.
-    pub fn of(
-        a: &mut Vec<GroundTruth>,
-        b: &mut Vec<GroundTruth>,
-        lengths: &BTreeMap<String, ClipLength>,
-    ) -> Self {
-        let clips = |labels: &[GroundTruth]| -> BTreeSet<String> {
-            labels.iter().map(|label| label.clip.clone()).collect()
-        };
-        let (of_a, of_b) = (clips(a), clips(b));
-        for labels in [a, b] {
-            labels.retain(|label| of_a.contains(&label.clip) && of_b.contains(&label.clip));
-        }
-        let stream = |clip: &String| {
-            Some(StreamInfo {
-                duration_secs: lengths.get(clip)?.duration_secs(),
-                clip: clip.clone(),
-                unknown: false,
-            })
-        };
-        Self {
-            streams: of_a.intersection(&of_b).filter_map(stream).collect(),
-            alone: [(&of_a, &of_b), (&of_b, &of_a)]
-                .map(|(own, other)| own.difference(other).cloned().collect()),
-        }
-    }
 }
 
 impl LabelAgreement {

@@ -38,7 +38,6 @@
 
 mod agreement;
 mod alarms;
-mod budget;
 mod confusion;
 mod decisions;
 mod evaluation;
@@ -59,11 +58,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::TimeSpan;
 use crate::live::Detection;
 
-pub use agreement::{
-    ClassAgreement, EventAgreement, Kappa, LabelAgreement, SharedClips, UnitConfusion,
-};
+pub use agreement::{ClassAgreement, EventAgreement, Kappa, LabelAgreement, UnitConfusion};
 pub use alarms::{FalseAlarms, UnknownFigures};
-pub use budget::{ClassBudget, ClassTransitions, PersonBudget, TimeBudget};
 pub use confusion::{Confusion, Mistake};
 pub use decisions::{Classification, ThesisAccuracy};
 pub use evaluation::{ClassFigures, Evaluation, Totals};
