@@ -173,5 +173,5 @@ test("an index of bodies says what it is when a hand is shown", async () => {
   const said = [];
   teaching.addEventListener("diagnosis", ({ detail }) => said.push(...detail));
   for (const { t, positions } of handPoses(4, {})) teaching.pose(t, positions);
-  assert.match(said.join("\n"), /this index is of a body; what is shown here is a (right )?hand/);
+  assert.match(said.join("\n"), /this index recognises a body, but the input shows a (right )?hand/);
 });

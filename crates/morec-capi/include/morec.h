@@ -426,8 +426,8 @@ typedef struct MotionSeg {
      */
     double stop_secs;
     /**
-     * Probability that the motion is right, 0 to 1: a just accepted one has 0.05 to 0.44, by the kind of index. Of held poses and
-     * of indexes without calibration (svrdm, older ones) it is the closeness to a sample instead.
+     * Probability that the detection is right, 0 to 1. The lowest accepted score is 0.05 to 0.44, depending on the index. For
+     * held poses and indexes without calibration (svrdm, older files) it is the similarity to a sample instead.
      */
     double confidence;
     /**
@@ -607,9 +607,9 @@ typedef struct MorecEvent {
      */
     uint64_t sequence;
     /**
-     * Probability that the motion is right, 0 to 1: a just accepted one has 0.05 to 0.44, by the kind of index. Of held poses and
-     * of indexes without calibration (svrdm, older ones) it is the closeness to a sample instead. Of a tentative event: how near
-     * what was seen so far is to the beginning of a sample, 0 to 1.
+     * Probability that the detection is right, 0 to 1. The lowest accepted score is 0.05 to 0.44, depending on the index. For
+     * held poses and indexes without calibration (svrdm, older files) it is the similarity to a sample instead. Of a tentative
+     * event: how near what was seen so far is to the beginning of a sample, 0 to 1.
      */
     double score;
     /**

@@ -37,9 +37,9 @@ pub struct MorecEvent {
     pub motion: u64,
     /// Number of the event, from 1. A gap would be a lost event, and be counted in `MorecStats.lost_events`.
     pub sequence: u64,
-    /// Probability that the motion is right, 0 to 1: a just accepted one has 0.05 to 0.44, by the kind of index. Of held poses and
-    /// of indexes without calibration (svrdm, older ones) it is the closeness to a sample instead. Of a tentative event: how near
-    /// what was seen so far is to the beginning of a sample, 0 to 1.
+    /// Probability that the detection is right, 0 to 1. The lowest accepted score is 0.05 to 0.44, depending on the index. For
+    /// held poses and indexes without calibration (svrdm, older files) it is the similarity to a sample instead. Of a tentative
+    /// event: how near what was seen so far is to the beginning of a sample, 0 to 1.
     pub score: f64,
     /// Share of the motion seen so far, 0 to 1; 1 at its end.
     pub progress: f64,

@@ -54,7 +54,7 @@ def taught() -> morec.Index:
 
 def test_an_index_of_hands_says_that_a_body_is_none(taught: morec.Index, newcomer: morec.Clip, tmp_path: Path) -> None:
     newcomer[0.0:4.0].save(tmp_path / "body.bvh")
-    said = "this index is of a hand; what is shown here is a body"
+    said = "this index recognises a hand, but the input shows a body"
     with morec.listen(f"clip://{tmp_path / 'body.bvh'}", taught, timeout=8.0) as events:
         with pytest.warns(morec.MorecWarning, match=f"error: {said}"):
             assert list(events) == []
@@ -79,5 +79,5 @@ def test_gestures_of_hands_are_recognised_in_clips_and_live(taught: morec.Index)
 
 
 def test_a_body_is_refused(taught: morec.Index, newcomer: morec.Clip) -> None:
-    with pytest.raises(morec.MorecError, match="this index is of a hand; what is shown here is a body"):
+    with pytest.raises(morec.MorecError, match="this index recognises a hand, but the input shows a body"):
         taught.recognize(newcomer)

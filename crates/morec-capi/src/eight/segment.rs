@@ -23,8 +23,8 @@ pub struct MotionSeg {
     pub start_secs: f64,
     /// Stop, seconds.
     pub stop_secs: f64,
-    /// Probability that the motion is right, 0 to 1: a just accepted one has 0.05 to 0.44, by the kind of index. Of held poses and
-    /// of indexes without calibration (svrdm, older ones) it is the closeness to a sample instead.
+    /// Probability that the detection is right, 0 to 1. The lowest accepted score is 0.05 to 0.44, depending on the index. For
+    /// held poses and indexes without calibration (svrdm, older files) it is the similarity to a sample instead.
     pub confidence: f64,
     /// The name of its class, UTF-8, with a zero at its end; cut if it is longer.
     pub class_name: [c_char; 64],

@@ -353,7 +353,7 @@ fn options_that_cannot_be_are_refused() {
         );
         let said = last_error();
         assert!(
-            said.contains("this index is of a body; what is shown here is a hand"),
+            said.contains("this index recognises a body, but the input shows a hand"),
             "{said}"
         );
     }

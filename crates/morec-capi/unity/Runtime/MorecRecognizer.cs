@@ -12,9 +12,9 @@ namespace Morec
         public string name;
         /// <summary>Its start, updates and end share it.</summary>
         public ulong number;
-        /// <summary>Probability that the motion is right, 0 to 1: a just accepted one has 0.05 to 0.44, by the kind of index. Of
-        /// held poses and of indexes without calibration (svrdm, older ones) it is the closeness to a sample instead. Of a
-        /// tentative event: how near what was seen so far is to the beginning of a sample, 0 to 1.</summary>
+        /// <summary>Probability that the detection is right, 0 to 1. The lowest accepted score is 0.05 to 0.44, depending on the
+        /// index. For held poses and indexes without calibration (svrdm, older files) it is the similarity to a sample instead.
+        /// Of a tentative event: how near what was seen so far is to the beginning of a sample, 0 to 1.</summary>
         public double score;
         public double progress, startSecs, stopSecs;
         /// <summary>Time of the frame that settled it, and the wall clock then: seconds since 1970.</summary>

@@ -31,8 +31,8 @@ use morec_live::PlayableClip;
 /// score, and the times in seconds; with activities in the index also how often one was repeated, and the seconds of a
 /// repetition.
 ///
-/// Score: Probability that the motion is right, 0 to 1: a just accepted one has 0.05 to 0.44, by the kind of index. Of
-/// held poses and of indexes without calibration (svrdm, older ones) it is the closeness to a sample instead.
+/// Score: Probability that the detection is right, 0 to 1. The lowest accepted score is 0.05 to 0.44, depending on the index. For
+/// held poses and indexes without calibration (svrdm, older files) it is the similarity to a sample instead.
 #[derive(clap::Args)]
 #[command(
     after_help = "Exit codes: 0 all clips done; 1 something cannot be read (the others are done all the same); \

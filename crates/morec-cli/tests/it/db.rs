@@ -301,7 +301,7 @@ fn clips_with_the_tag_background_are_what_a_database_has_of_it() {
     assert!(err.contains(&said), "{err}");
     // Named on the command line it is background, and its labels are said not to count.
     let (_, err) = trained(&["--background", names[0]]);
-    let said = "labels do not count, because their clips are named as background";
+    let said = "labels are ignored because their clips are given as background";
     assert!(err.contains(said), "{err}");
 }
 

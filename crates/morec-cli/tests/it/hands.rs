@@ -196,7 +196,7 @@ fn the_guides_senders_send_hands() {
         }
         assert!(!live.contains("malformed"), "{chapter}: {live}");
         assert!(
-            live.contains("this index is of a body; what is shown here is a hand"),
+            live.contains("this index recognises a body, but the input shows a hand"),
             "{chapter}: {live}"
         );
     }
@@ -216,7 +216,7 @@ fn an_index_of_bodies_refuses_a_clip_of_a_hand() {
         assert_eq!(ran.code, Some(1), "{ran:?}");
         assert!(
             ran.err
-                .contains("this index is of a body; what is shown here is a hand"),
+                .contains("this index recognises a body, but the input shows a hand"),
             "{ran:?}"
         );
     }

@@ -316,7 +316,7 @@ fn times_in_the_wrong_column_are_an_error_with_the_likely_reason() {
     std::fs::write(folder.path().join("framed.tsv"), framed).unwrap();
     for (file, why) in [
         ("whole.tsv", "last "),
-        ("framed.tsv", "run over the end of their clips"),
+        ("framed.tsv", "end after their clips do"),
     ] {
         for args in [
             vec!["db", "label", "m.mdb", file],

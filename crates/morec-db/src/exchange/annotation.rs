@@ -252,7 +252,8 @@ impl ReadLabels {
         (start, stop): (f64, f64),
     ) -> Result<Option<(f64, f64)>, String> {
         if start == stop && start >= 0.0 && start.is_finite() {
-            let text = format!("`{class}` is a moment at {start} s, without a length; left out");
+            let text =
+                format!("`{class}` is a point in time, at {start} s, without a duration; left out");
             self.warnings.push(Warning::new(at, text));
             return Ok(None);
         }

@@ -407,7 +407,7 @@ fn a_moment_costs_no_other_label() {
             labels[0].ends_with("wave 1.200 2.400"),
             "{labels:?}: {text}"
         );
-        assert!(said.contains("`tap` is a moment"), "{said}: {text}");
+        assert!(said.contains("`tap` is a point in time"), "{said}: {text}");
     }
     let (cues, _) = opened(
         "a.srt",

@@ -59,8 +59,8 @@ class listen:
         repetitions so far and period_secs (None where nothing is counted). With `deviation` also off_degrees (mean angle
         off the nearest sample), pace (duration over its), worst_bone and worst_degrees; None where nothing is compared.
 
-        score: Probability that the motion is right, 0 to 1: a just accepted one has 0.05 to 0.44, by the kind of index.
-        Of held poses and of indexes without calibration (svrdm, older ones) it is the closeness to a sample instead. Of
+        score: Probability that the detection is right, 0 to 1. The lowest accepted score is 0.05 to 0.44, depending on the index.
+        For held poses and indexes without calibration (svrdm, older files) it is the similarity to a sample instead. Of
         a tentative event: how near what was seen so far is to the beginning of a sample, 0 to 1.
 
     Warns

@@ -192,8 +192,9 @@ class Index:
             dict of off_degrees (mean angle off the nearest sample), pace (duration over its), bones (each with off_degrees,
             worst_degrees, worst_secs; the farthest off first) and over_time_degrees; None for activities and held poses.
 
-            score: Probability that the motion is right, 0 to 1: a just accepted one has 0.05 to 0.44, by the kind of index.
-            Of held poses and of indexes without calibration (svrdm, older ones) it is the closeness to a sample instead.
+            score: Probability that the detection is right, 0 to 1. The lowest accepted score is 0.05 to 0.44, depending on the
+            index. For held poses and indexes without calibration (svrdm, older files) it is the similarity to a sample
+            instead.
 
         Warns
         -----

@@ -192,5 +192,5 @@ fn people_of_a_table_come_with_its_labels() {
     .unwrap();
     person.drops(&[&whole]);
     assert!(person.state().label_import.is_none());
-    assert!(person.sees_part("probably the unit is another one"));
+    assert!(person.sees_part("probably in another unit"));
 }

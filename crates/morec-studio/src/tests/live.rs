@@ -410,7 +410,7 @@ fn an_index_of_another_kind_of_performer_is_said() {
     while person.state().live.now_secs() < 2.0 {
         person.frames(1);
     }
-    let said = "This index is of a custom skeleton; what is shown here is a body";
+    let said = "This index recognises a custom skeleton, but the input shows a body";
     assert!(person.sees_part(said));
     assert!(!person.sees_part("No fault is found"));
 }
@@ -571,6 +571,6 @@ fn a_hand_is_seen_marked_kept_with_its_roles_and_spoils_no_training() {
         person.state().notices
     );
     let notes = &person.state().train.report.as_ref().unwrap().notes;
-    let said = "share no bone with the others and are set aside: gesture";
+    let said = "have no bone in common with the others and are not used: gesture";
     assert!(notes.iter().any(|note| note.contains(said)), "{notes:?}");
 }

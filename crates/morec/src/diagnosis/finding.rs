@@ -198,7 +198,7 @@ impl Finding {
         match self {
             Nobody { .. } => "nobody there",
             TimeUnit { .. } => "time is not in seconds",
-            TimeStands { .. } => "time stands still",
+            TimeStands { .. } => "times do not increase",
             NoHeading => "no hip joints or shoulders",
             UpsideDown { .. } => "upside down",
             UpIsNotY { .. } => "Y is not up",

@@ -22,17 +22,19 @@ impl fmt::Display for Finding {
         match *self {
             Nobody { share } => write!(
                 f,
-                "{} of the frames show no body: step into view of the tracker, and look whether it tracks",
+                "{} of the frames show no body: step into the tracker's view and check that it is tracking",
                 percent(share)
             ),
             TimeUnit { interval_secs } => time_unit(f, interval_secs),
             TimeStands { share } => write!(
                 f,
-                "{} of the frames are not later than the frame before and are left out: send the time of each frame in seconds, or no time at all",
+                "{} of the frames are left out because their time is not after the previous frame's: send the time of each frame \
+                 in seconds, or leave times out",
                 percent(share)
             ),
             NoHeading => f.write_str(
-                "neither left_thigh and right_thigh (the hip joints) nor left_arm and right_arm are seen, so it is unknown which way the body faces and nothing can be recognised: send these joints, too",
+                "the stream has neither the hip joints (left_thigh and right_thigh) nor the shoulders (left_arm and right_arm), \
+                 so the direction that the body faces is unknown and nothing can be recognised: send one of these pairs",
             ),
             UpsideDown { mirrored } => {
                 let send = if mirrored { "[x, -y, z]" } else { "[x, -y, -z]" };
@@ -41,7 +43,8 @@ impl fmt::Display for Finding {
             UpIsNotY { axis, negative, mirrored } => up_is_not_y(f, axis, negative, mirrored),
             Tilted { tilt_rad } => write!(
                 f,
-                "an upright performer appears tilted by {:.0}°: level the camera, or calibrate the tracker again; recognition suffers from some 8° on",
+                "an upright performer appears tilted by {:.0}°: level the camera or calibrate the tracker again; above about 8° \
+                 fewer motions are recognised",
                 tilt_rad.to_degrees()
             ),
             SidesExchanged => f.write_str(
@@ -54,54 +57,62 @@ impl fmt::Display for Finding {
             JointsMissing { roles } => joints_missing(f, roles),
             JointsFlicker { roles } => write!(
                 f,
-                "seen only at times: {roles}; keep them in view of the tracker, and away from what hides them"
+                "often missing: {roles}; keep them in the tracker's view and unobstructed"
             ),
             UnknownUnit { leg } => write!(
                 f,
-                "a leg is {leg:.3} long, which is a person's in no common unit of length; recognition does not mind, figures in metres are guesses"
+                "a leg is {leg:.3} long, which fits a person in no common unit of length; recognition is not affected, but \
+                 lengths in metres are guesses"
             ),
             Noisy { noise_m } => write!(
                 f,
-                "positions jitter by {:.1} cm: more light, less distance or the tracker's own smoothing help; from 1 cm on motions are reported later or missed",
+                "positions jitter by {:.1} cm, and above 1 cm motions are reported later or missed: add light, move closer, or \
+                 switch on the tracker's smoothing",
                 100.0 * noise_m
             ),
             Spikes { share } => write!(
                 f,
-                "in {} of the frames a joint is thrown far aside: look for reflections, for hidden parts, or for a second person in view",
+                "in {} of the frames a joint jumps far away: check for reflections, hidden body parts or a second person in view",
                 percent(share)
             ),
             SlowRate { rate_hz } => write!(
                 f,
-                "only {rate_hz:.1} frames come a second: what lasts no longer than a few frames is not seen, and frames half a second apart are no stream; lower the resolution of the camera, or close other programs"
+                "only {rate_hz:.1} frames arrive each second: motions that last a few frames are missed, and frames 0.5 s apart \
+                 cannot be recognised at all; lower the camera's resolution or close other programs"
             ),
             FramesLost { share } => write!(
                 f,
-                "{} of the frames are lost on the way: use a cable, another channel, or a lower rate",
+                "{} of the frames are lost in transmission: use a cable, another radio channel, or a lower frame rate",
                 percent(share)
             ),
             FramesRepeated { share } => write!(
                 f,
-                "{} of the frames repeat the one before: the sender is faster than its tracker, or every packet comes twice, which does no harm",
+                "{} of the frames repeat the previous one: the sender is faster than its tracker, or each packet is sent twice; \
+                 this does no harm",
                 percent(share)
             ),
             UnevenArrival { jitter_secs } => write!(
                 f,
-                "frames come unevenly, by ±{:.0} ms: motions are reported as much later; use a cable, or close other programs",
+                "frames arrive irregularly, by ±{:.0} ms, which delays reports by as much: use a cable or close other programs",
                 1000.0 * jitter_secs
             ),
             MovingFloor => f.write_str(
-                "the feet move together and never stand, so the whole body glides: fix the tracker's floor or its base stations; motions on the spot are still recognised, walking may not be",
+                "the feet move together and never stand still, so the whole body glides: set up the tracker's floor or its base \
+                 stations again; motions on the spot are still recognised, walking may not be",
             ),
             HipsFixed => f.write_str(
-                "the hips never move: gestures of the arms are recognised, motions of the whole body (walking, squats, jumps) may not be; if the performer is standing, send positions in the room, not relative to the hips",
+                "the hips never move: gestures of the arms are recognised, but motions of the whole body (walking, squats, \
+                 jumps) may not be; if the performer is standing, send positions in the room, not relative to the hips",
             ),
             HandLost { per_minute } => write!(
                 f,
-                "a hand is lost {per_minute:.0} times a minute: keep it in view of the tracker, and away from its edges; a motion in which it is lost for half a second is not recognised",
+                "a hand is lost {per_minute:.0} times a minute: keep it in the tracker's view, away from the edges; a motion in \
+                 which the hand is lost for 0.5 s is not recognised",
             ),
             HandsSwap { per_minute } => write!(
                 f,
-                "left and right hand change places {per_minute:.0} times a minute: show the tracker the inner side of a hand or its back, not the edge, and keep hands apart; or send every hand with the side that it was first seen with",
+                "left and right hand are exchanged {per_minute:.0} times a minute: show the tracker the palm or the back of a \
+                 hand, not its edge, and keep the hands apart; or send each hand with the side that it was first seen with",
             ),
         }
     }
@@ -129,27 +140,27 @@ fn time_unit(f: &mut fmt::Formatter<'_>, interval_secs: f64) -> fmt::Result {
             ", which look like {name}: times must be in seconds, so multiply them by {unit:e}"
         ),
         None => f.write_str(
-            ": times must be in seconds (are these numbers of frames?), and frames more than 0.5 s apart are no stream",
+            ": times must be in seconds (are these frame numbers?), and frames more than 0.5 s apart cannot be recognised",
         ),
     }
 }
 
 fn joints_missing(f: &mut fmt::Formatter<'_>, roles: RoleSet) -> fmt::Result {
-    const ADVICE: &str = "the index cannot use them: send them if the tracker has them";
+    const ADVICE: &str = "send them if the tracker has them, because the index may use them";
     let is_lower = |role: Role| role == Role::Hips || LEGS.as_flattened().contains(&role);
     let mut lower = Role::BODY.into_iter().filter(|role| is_lower(*role));
     let heading = !roles.contains(Role::LeftArm) && !roles.contains(Role::RightArm);
     if !heading || !lower.all(|role| roles.contains(role)) {
-        return write!(f, "never seen: {roles}; {ADVICE}");
+        return write!(f, "missing: {roles}; {ADVICE}");
     }
     f.write_str(
-        "neither hips nor legs are seen: the shoulders tell which way the body faces, and motions of arms and head are \
-         recognised",
+        "the stream has neither hips nor legs: the facing direction is taken from the shoulders, and motions of arms and head \
+         are recognised",
     )?;
     let others: RoleSet = roles.iter().filter(|role| !is_lower(*role)).collect();
     match others.is_empty() {
         true => Ok(()),
-        false => write!(f, "; never seen either: {others}; {ADVICE}"),
+        false => write!(f, "; also missing: {others}; {ADVICE}"),
     }
 }
 
@@ -169,6 +180,7 @@ fn up_is_not_y(
     };
     write!(
         f,
-        "the body lies along {sign}{name}, so {sign}{name} is up (unless the performer lies down): send {send}, Y must be up"
+        "the body extends along {sign}{name}, so {sign}{name} is up (unless the performer lies down), but Y must be up: send \
+         {send}"
     )
 }

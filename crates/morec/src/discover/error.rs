@@ -4,11 +4,11 @@
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs)] // The messages say it all.
 pub enum DiscoverError {
-    #[error("rows of {found} and of {expected} values: all clips must show the same bones")]
+    #[error("feature rows of {found} and of {expected} values: all clips must have the same bones")]
     Width { expected: usize, found: usize },
-    #[error("rows of {0} values are no feature rows: their number is 6 for each bone and 4")]
+    #[error("expected feature rows of 6 values for each bone and 4 more, found rows of {0} values")]
     Layout(usize),
-    #[error("no bone is shown by all clips: choose clips of one kind of skeleton")]
+    #[error("the clips have no bone in common: choose clips of one kind of skeleton")]
     NoBones,
     #[error("the rate must be above 0 and at most 1000 rows a second, found {0}")]
     Rate(f64),

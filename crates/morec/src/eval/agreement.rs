@@ -106,7 +106,7 @@ impl LabelAgreement {
         b: &[GroundTruth],
         unit_secs: f64,
     ) -> Result<Self, EvalError> {
-        assert!(unit_secs > 0.0, "a unit of time has a length");
+        assert!(unit_secs > 0.0, "the unit of time must be above 0 s");
         let b: Vec<ClipDetection> = b.iter().map(ClipDetection::from).collect();
         let streams = streams(infos, a, &b)?;
         let classes: Vec<&str> = all_classes(&streams).into_iter().collect();

@@ -127,7 +127,7 @@ pub struct StreamInfo {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum EvalError {
     /// A stream is named twice.
-    #[error("the stream {clip} is named twice; names must differ")]
+    #[error("two streams are called {clip}; names must differ")]
     TwoStreams {
         /// Name of the stream.
         clip: String,
@@ -166,7 +166,7 @@ pub enum EvalError {
         span: TimeSpan,
     },
     /// A labelled sample in a stream that is said to hold none.
-    #[error("{clip} is named as unknown motion but holds a sample of {class}")]
+    #[error("{clip} is given as unknown motion but contains a sample of {class}")]
     SampleInUnknown {
         /// Name of the stream.
         clip: String,

@@ -64,7 +64,8 @@ pub enum Reason {
         /// Distance of the other class.
         other: f32,
     },
-    /// An activity that goes on unlike its samples: the mean of its windows' distances, as shares of their distances from what is no
+    /// An activity that continues unlike the samples of its class: the mean of its windows' distances, as shares of their
+    /// distances from what is no
     /// activity.
     GoesOnUnlike {
         /// Its share; below 1 counts.
@@ -128,7 +129,7 @@ impl Reason {
             } => "similar to another class",
             Self::Whole { other: None, .. } => "too different as a whole motion",
             Self::Background { .. } => "similar to background motion",
-            Self::GoesOnUnlike { .. } => "goes on unlike the samples",
+            Self::GoesOnUnlike { .. } => "continues unlike the samples",
             Self::Short { .. } => "too short",
             Self::Refused { .. } => "not clear enough",
             Self::Neighbour { .. } => "part of another motion",
@@ -149,8 +150,8 @@ fn over(distance: f32, threshold: f32) -> String {
 impl fmt::Display for Reason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::NoSuchClass => f.write_str("the index does not know the class"),
-            Self::Unseen => f.write_str("the clip shows no bone that the index uses"),
+            Self::NoSuchClass => f.write_str("the index does not have this class"),
+            Self::Unseen => f.write_str("the clip has none of the bones that the index uses"),
             Self::NoMatch => f.write_str(
                 "less than half as fast as every sample, or more than twice: add samples at that speed",
             ),
@@ -190,21 +191,21 @@ impl fmt::Display for Reason {
             } => {
                 let how = if other < distance { "more" } else { "about as" };
                 let than = if other < distance { "than" } else { "as" };
-                write!(f, "{how} similar to {class} {than} to its own samples")
+                write!(f, "{how} similar to {class} {than} to the samples of its own class")
             }
             Self::GoesOnUnlike { nearer, .. } => match nearer {
-                Some((class, _)) => write!(f, "goes on more like {class} than like its own samples"),
-                None => f.write_str("goes on unlike its samples"),
+                Some((class, _)) => write!(f, "continues more like {class} than like the samples of its own class"),
+                None => f.write_str("continues unlike the samples of its class"),
             },
             Self::Short { secs, least_secs } => write!(
                 f,
-                "lasts {secs:.1} s: an activity is recognised from {least_secs:.1} s on"
+                "lasts {secs:.1} s, but an activity is recognised only from {least_secs:.1} s"
             ),
             Self::Refused {
                 other, background, ..
             } => {
                 let what = if other < background { "another class" } else { "background motion" };
-                write!(f, "not clear enough: nearly as similar to {what} as to its own samples")
+                write!(f, "not clear enough: nearly as similar to {what} as to the samples of its own class")
             }
             Self::Neighbour {
                 same,

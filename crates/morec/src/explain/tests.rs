@@ -396,9 +396,9 @@ fn reasons_are_in_the_words_of_whoever_labels() {
         [
             "too little movement to distinguish from standing still",
             "more similar to background motion than to the samples",
-            "more similar to clap than to its own samples",
-            "goes on more like walk than like its own samples",
-            "not clear enough: nearly as similar to another class as to its own samples",
+            "more similar to clap than to the samples of its own class",
+            "continues more like walk than like the samples of its own class",
+            "not clear enough: nearly as similar to another class as to the samples of its own class",
             "too different from the samples, 12 % over the limit; most in right forearm (42°)",
         ]
     );

@@ -96,7 +96,8 @@ impl MotionIndex {
         };
         if model.features.heading == HeadingLine::Headset && !shown.contains(Role::Face) {
             return Some(
-                "the index takes the heading from where the headset looks, which is not sent (`face`): a performer who faces another direction than in the samples is missed",
+                "the index takes the heading from the direction of the headset (`face`), which is not sent: motions are missed \
+                 if the performer faces another direction than in the samples",
             );
         }
         const HIPS: [Role; 2] = [Role::LeftThigh, Role::RightThigh];
@@ -107,8 +108,8 @@ impl MotionIndex {
             && !shows(HIPS[0], HIPS[1])
             && shows(Role::LeftArm, Role::RightArm);
         differs.then_some(
-            "the index takes the heading from the hips, which are not seen here: the shoulders stand in for them, and motions may \
-             be missed; an index trained on recordings without hips, or with --param features.heading=shoulders, fits better",
+            "the index takes the heading from the hips, which this stream lacks: the shoulders are used instead, and motions may \
+             be missed; better, train on recordings without hips, or with --param features.heading=shoulders",
         )
     }
 

@@ -148,7 +148,8 @@ impl From<SvrdmModel> for Model {
 /// Anyone was expected, and the model cannot be set to that.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "this index has one gate for all performers: three people or more taught it, or an older version trained it; leave the option out, or train again"
+    "this index has one gate for all performers, because it was trained on three people or more or by an older morec: leave the \
+     option out, or train again"
 )]
 pub struct PerformerError;
 
@@ -156,11 +157,11 @@ pub struct PerformerError;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SensitivityError {
     /// The rate makes no sense.
-    #[error("the sensitivity is a number of false alarms a minute above 0, found {0}")]
+    #[error("sensitivity: expected false alarms a minute above 0, found {0}")]
     Rate(f64),
     /// The model does not note rates.
     #[error(
-        "this index notes no rates of false alarms: train it again, with templates, to choose a sensitivity"
+        "this index has no rates of false alarms, so the sensitivity cannot be chosen: train it again by the method templates"
     )]
     Fixed,
 }

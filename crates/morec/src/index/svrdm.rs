@@ -175,7 +175,7 @@ fn profiles(tables: &Tables, width: usize) -> Result<Profiles, IndexError> {
 /// The tree's nodes: words and tables put together again.
 fn nodes(manifest: &SvrdmManifest, tables: &Tables) -> Result<Vec<Node>, IndexError> {
     let short = |name: &str| {
-        IndexError::Content(format!("tensor {name:?} is shorter than the tree asks for"))
+        IndexError::Content(format!("tensor {name:?} is shorter than the tree requires"))
     };
     let mut exemplar_counts = tables.u32s("tree.exemplar_counts")?.into_iter();
     let exemplars = tables.u32s("tree.exemplars")?;

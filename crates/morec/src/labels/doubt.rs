@@ -26,15 +26,15 @@ pub fn doubtful_unit(
     let all = secs.len() + left_out;
     if 2 * beyond > all {
         return Some(format!(
-            "{beyond} of {all} labels run over the end of their clips: probably the unit is another one. Frames belong in the columns \
-             `start` and `stop`, seconds in `start_secs` and `stop_secs`"
+            "{beyond} of {all} labels end after their clips do, so their times are probably in another unit: frames belong in \
+             the columns `start` and `stop`, seconds in `start_secs` and `stop_secs`"
         ));
     }
     let median = *secs.get(secs.len() / 2)?;
     (median < SHORTEST_SECS).then(|| {
         format!(
-            "half of {} labels last {median:.2} s or less, which no motion does: probably the unit is another one. Seconds belong in \
-             the columns `start_secs` and `stop_secs`, frames in `start` and `stop`",
+            "half of {} labels last {median:.2} s or less, too short for motions, so their times are probably in another unit: \
+             seconds belong in the columns `start_secs` and `stop_secs`, frames in `start` and `stop`",
             secs.len()
         )
     })
@@ -108,7 +108,7 @@ mod tests {
         assert!(short.contains("0.07 s or less"));
         assert!(doubtful_unit([1.0, 0.1, 0.9], 0, 0).is_none());
         let late = doubtful_unit([2.0], 5, 5).unwrap();
-        assert!(late.contains("5 of 6 labels run over"));
+        assert!(late.contains("5 of 6 labels end after"));
         assert!(doubtful_unit([2.0, 1.0, 3.0], 1, 0).is_none());
         assert!(doubtful_unit([2.0; 6], 4, 4).is_none(), "4 of 10");
         assert!(doubtful_unit([], 0, 0).is_none());

@@ -35,7 +35,8 @@ pub fn read_people(bytes: &[u8]) -> Result<People, ParseError> {
         }
         let before = by_clip.insert(name.clone(), who.clone());
         if let Some(before) = before.filter(|b| *b != who) {
-            let text = format!("{name} was given to {before} before; it is now {who}'s");
+            let text =
+                format!("{name} was assigned to {before} before; now it is assigned to {who}");
             warnings.push(Warning::new(row.place(person), text));
         }
     }
@@ -55,7 +56,7 @@ mod tests {
         assert!(
             people.warnings[0]
                 .to_string()
-                .starts_with("line 4, column 3: b was given to y")
+                .starts_with("line 4, column 3: b was assigned to y")
         );
         let mut labels =
             Labels::read(b"clip\tclass\tperson\na\twave\t\na\twave\tother\nd\twave\n").unwrap();

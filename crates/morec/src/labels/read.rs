@@ -65,7 +65,7 @@ impl Labels {
                 _ => extents.read(&row)?,
             };
             let Some(extent) = extent else {
-                let text = format!("`{class}` is a moment, without a length; left out");
+                let text = format!("`{class}` is a point in time without a duration; left out");
                 warnings.push(Warning::new(Place::Line(row.line), text));
                 continue;
             };
@@ -213,7 +213,7 @@ mod tests {
         assert_eq!(labels.rows.len(), 1);
         assert_eq!(labels.rows[0].extent, Extent::Secs(TimeSpan::new(1.2, 2.4)));
         assert_eq!(labels.warnings[0].at, Place::Line(3));
-        assert!(labels.warnings[0].text.contains("`tap` is a moment"));
+        assert!(labels.warnings[0].text.contains("`tap` is a point in time"));
     }
 
     #[test]

@@ -134,10 +134,7 @@ impl<'a> Table<'a> {
                 .skip(self.header.len())
                 .find(|(_, c)| !c.is_empty())
             {
-                let text = format!(
-                    "`{}` stands beyond the last column; left out",
-                    shortened(cell)
-                );
+                let text = format!("`{}` is beyond the last column; left out", shortened(cell));
                 warnings.push(Warning::new(Place::Column(row.line, *column), text));
             }
         }

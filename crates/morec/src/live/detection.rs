@@ -12,8 +12,8 @@ use super::Model;
 const MAX_DETECTIONS_PER_PUSH: usize = 64;
 
 /// Meaning of a [score](Detection::score), in the words of every door.
-pub const SCORE: &str = "Probability that the motion is right, 0 to 1: a just accepted one has 0.05 to 0.44, by the kind of index. \
-    Of held poses and of indexes without calibration (svrdm, older ones) it is the closeness to a sample instead.";
+pub const SCORE: &str = "Probability that the detection is right, 0 to 1. The lowest accepted score is 0.05 to 0.44, depending \
+    on the index. For held poses and indexes without calibration (svrdm, older files) it is the similarity to a sample instead.";
 
 /// A motion recognised in a stream. Its class is a number of the index's, or a name ([`named`](Detection::named)).
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
@@ -23,8 +23,8 @@ pub struct Detection<C = ClassId> {
     /// When it happened, on the stream's clock.
     #[serde(flatten)]
     pub span: TimeSpan,
-    /// Probability that the motion is right, 0 to 1: a just accepted one has 0.05 to 0.44, by the kind of index. Of held poses and
-    /// of indexes without calibration (svrdm, older ones) it is the closeness to a sample instead.
+    /// Probability that the detection is right, 0 to 1. The lowest accepted score is 0.05 to 0.44, depending on the index. For
+    /// held poses and indexes without calibration (svrdm, older files) it is the similarity to a sample instead.
     pub score: f64,
     /// The stream's clock when it was reported: the time of the pose that settled it.
     pub reported_secs: f64,

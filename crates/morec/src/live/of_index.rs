@@ -92,7 +92,7 @@ impl MotionIndex {
             .map(Role::name)
             .collect();
         match names.is_empty() {
-            true => vec!["bones of no length"],
+            true => vec!["bones without a length"],
             false => names,
         }
     }

@@ -72,13 +72,13 @@ pub enum StreamError {
     Roles(ParseError),
     /// Points of which no part of a body is known.
     #[error(
-        "points: no known set of points, and no names of parts of the body; say with roles which are, as in \
+        "points: neither a known set of points nor names of body parts; assign roles to points with `roles`, as in \
          {{\"left_hand\": \"LWrist\", \"hips\": \"LHip+RHip\"}}"
     )]
     NoParts,
     /// Points do not turn.
     #[error(
-        "an index of the method {method} looks at joint rotations, which a stream of positions does not have"
+        "an index of the method {method} needs joint rotations, which a stream of positions does not have"
     )]
     NoRotations {
         /// The method of the index.

@@ -20,13 +20,13 @@ const MOST_FRAMES: f64 = 3.6e6;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum RecordingError {
     /// Too little came.
-    #[error("a clip takes two frames at different times, the recording has {frames}")]
+    #[error("a clip needs at least two frames at different times, the recording has {frames}")]
     TooShort {
         /// Frames recorded.
         frames: usize,
     },
     /// No joint was ever seen.
-    #[error("the {frames} recorded frames show no joint")]
+    #[error("none of the {frames} recorded frames contains a joint")]
     Nobody {
         /// Frames recorded.
         frames: usize,

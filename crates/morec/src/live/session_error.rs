@@ -6,7 +6,7 @@ use super::StartError;
 #[derive(Debug, thiserror::Error)]
 pub enum SessionError {
     /// The system gave no thread.
-    #[error("no thread for {what}: {error}")]
+    #[error("cannot start a thread for {what}: {error}")]
     Thread {
         /// Purpose of the thread.
         what: &'static str,

@@ -32,10 +32,10 @@ pub enum StartError {
     #[error(transparent)]
     Svrdm(#[from] crate::svrdm::ModelError),
     /// No skeleton is known yet.
-    #[error("no skeleton is known: one must come before the first frame")]
+    #[error("the skeleton is unknown: it must be set before the first frame")]
     NoSkeleton,
     /// The stream shows a performer of another kind than the index is of.
-    #[error("this index is of {index}; what is shown here is {shown}")]
+    #[error("this index recognises {index}, but the input shows {shown}")]
     OtherProfile {
         /// What the index is of.
         index: &'static str,

@@ -80,7 +80,7 @@ pub(super) fn push_perturbed(
     if perturbed.is_empty() {
         return;
     }
-    out.push_str("<h2>Worse captures</h2>\n<p class=\"small\">Copies of the clips, each worse in one way.</p>\n");
+    out.push_str("<h2>Worse captures</h2>\n<p class=\"small\">Results on copies of the clips, each degraded in one way.</p>\n");
     push_perturbed_curves(out, clean, perturbed);
     out.push_str(
         "<div class=\"wide\"><table>\n<tr><th scope=\"col\">copy</th><th>thesis accuracy</th><th>F1</th><th>F1 of \

@@ -41,8 +41,8 @@ pub(super) fn push(out: &mut String, short: &[&Timeline], palette: &Palette) {
         blocks.entry(block).or_default().push(timeline);
     }
     out.push_str(
-        "<p class=\"small\">A square is a short clip, coloured by the class that was found in it; blank: no detection, <b>✗</b>: the \
-         wrong class, <b>!</b>: a detection in a clip without labels.</p>\n",
+        "<p class=\"small\">Each square is a short clip, coloured by the class that was detected in it. Blank: no detection. \
+         <b>✗</b>: wrong class. <b>!</b>: detection in a clip without labels.</p>\n",
     );
     for ((_, name), clips) in &blocks {
         push_block(out, name, clips, palette);

@@ -106,7 +106,7 @@ impl Report<'_> {
     }
 
     fn push_notes(&self, out: &mut String) {
-        out.push_str("<h2>What to teach next</h2>\n");
+        out.push_str("<h2>What to add next</h2>\n");
         let notes = learning_notes(self.evaluation, self.training);
         let (first, rest) = notes.split_at(notes.len().min(NOTES_SHOWN));
         push_list(out, first);

@@ -62,7 +62,7 @@ pub fn learning_notes(evaluation: &Evaluation, training: &[TrainedClass]) -> Vec
         (
             0,
             format!(
-                "{} is trained but has no sample here, so it is not measured.",
+                "{} is in the index but has no sample here, so it is not measured.",
                 t.class
             ),
         )
@@ -79,8 +79,8 @@ pub fn learning_notes(evaluation: &Evaluation, training: &[TrainedClass]) -> Vec
 fn nothing_wrong(evaluation: &Evaluation) -> &'static str {
     match (evaluation.totals.samples, evaluation.unknown.clips) {
         (0, 0) => "There are no labels.",
-        (0, _) => "Nothing was found in the unknown motion.",
-        _ => "Every sample was recognised, and nothing else was found.",
+        (0, _) => "Nothing was detected in the unknown motion.",
+        _ => "Every sample was recognised, and nothing else was detected.",
     }
 }
 
@@ -115,7 +115,7 @@ fn notes_on_class(class: &ClassFigures, notes: &mut Vec<(usize, String)>) {
     if class.false_alarms.count > 0 {
         let alarms = class.false_alarms.count;
         let text = format!(
-            "{name} is detected where nothing is labelled, {}: add labels or background there.",
+            "{name} is detected in unlabelled motion, {}: add labels or background there.",
             times(alarms)
         );
         notes.push((alarms, text));

@@ -22,8 +22,8 @@ pub(super) fn push(out: &mut String, performances: &[Performance]) {
     }
     out.push_str(
         "<h2>How well motions were performed</h2>\n<p class=\"small\">Each correctly recognised motion is compared with the nearest \
-         sample of its class: the mean angle between their bones, aligned in time. The largest angle \
-         comes first.</p>\n",
+         sample of its class: the mean angle between their bones, aligned in time. The motion with the largest angle comes \
+         first.</p>\n",
     );
     let mut sorted: Vec<&Performance> = performances.iter().collect();
     sorted.sort_by(|a, b| b.deviation.off_degrees.total_cmp(&a.deviation.off_degrees));

@@ -11,8 +11,7 @@ const STRONGEST: f64 = 0.6;
 pub(super) fn push_confusion(out: &mut String, confusion: &Confusion) {
     out.push_str(
         "<h2>Confusion matrix</h2>
-<p class=\"small\">Rows: labelled class. Columns: detected class. Green \
-         is right, red is wrong; the darker, the larger the share of the row.</p>
+<p class=\"small\">Rows: labelled class. Columns: detected class. Green is right, red is wrong; a darker cell is a larger share of its row.</p>
 <div class=\"wide\"><table \
          class=\"heat\">
 <tr><td></td>",

@@ -172,13 +172,13 @@ fn every_sample_and_detection_is_drawn_and_said() {
         "x 1.00–2.00 s: right, score 0.500",
         "y 50.00–51.00 s: wrong class",
         "y 70.00–71.00 s: false alarm",
-        "Nothing labelled and nothing found in rest",
+        "No labels and no detections in rest",
     ] {
         assert!(html.contains(title), "{title}");
     }
     // 100 s make four rows, of which the second, from 25 s to 50 s, is blank; one more is the reliability diagram.
     assert_eq!(html.matches("<svg").count(), 4);
-    assert!(html.contains("; rows without anything are left out: 1"));
+    assert!(html.contains("; empty rows are left out: 1"));
 }
 
 #[test]
@@ -239,7 +239,7 @@ fn curves_and_reasons_are_shown_where_they_are_known() {
     }
     .html();
     check_nesting(&html);
-    assert!(html.contains("more similar to &lt;y&gt; than to its own samples"));
+    assert!(html.contains("more similar to &lt;y&gt; than to the samples of its own class"));
     // Two performances, sensitivity, reliability, white noise.
     assert_eq!(html.matches("<svg").count(), 5);
     // The one that is farther off comes first, with its worst moment.
@@ -314,12 +314,12 @@ fn notes_name_what_to_teach() {
             "hands_up is mistaken for wave once.",
             "kick is detected in unknown motion once.",
             "wave is detected but not labelled in these clips.",
-            "bow is trained but has no sample here, so it is not measured.",
+            "bow is in the index but has no sample here, so it is not measured.",
         ]
     );
     let perfect = Evaluation::of(&infos, &truths[4..], &founds[1..2]).unwrap();
     assert_eq!(
         learning_notes(&perfect, &[]),
-        ["Every sample was recognised, and nothing else was found."]
+        ["Every sample was recognised, and nothing else was detected."]
     );
 }

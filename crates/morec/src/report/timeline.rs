@@ -37,7 +37,8 @@ pub(super) fn push(out: &mut String, timelines: &[Timeline], palette: &Palette) 
     for timeline in &drawn {
         rows += rows_of(timeline);
         if rows > MOST_ROWS {
-            let text = "<p>The timelines that follow are left out: the file would be too large to open. Every figure counts them.</p>\n";
+            let text = "<p>The timelines of the remaining clips are left out to keep the file small enough to open. All figures \
+                include these clips.</p>\n";
             out.push_str(text);
             break;
         }
@@ -50,7 +51,7 @@ pub(super) fn push(out: &mut String, timelines: &[Timeline], palette: &Palette) 
             .map(|t| Text(&t.stream.clip).to_string())
             .collect();
         out.push_str(&format!(
-            "<p class=\"small\">Nothing labelled and nothing found in {}.</p>\n",
+            "<p class=\"small\">No labels and no detections in {}.</p>\n",
             names.join(", ")
         ));
     }
@@ -66,7 +67,8 @@ fn push_legend(out: &mut String, palette: &Palette) {
     }
     out.push_str(
         "</p>\n<p class=\"small\">Above: labels (<b>○</b> missed, <b>✗</b> detected as another class). Below: \
-         detections (<b>✗</b> wrong class, <b>!</b> false alarm, <b>~</b> right class but badly placed or double; the small tick \
+         detections (<b>✗</b> wrong class, <b>!</b> false alarm, <b>~</b> right class, but inaccurate in time or a duplicate; \
+         the small tick \
          is the time of the report).</p>\n",
     );
 }
@@ -93,10 +95,7 @@ fn push_clip(out: &mut String, timeline: &Timeline, scale: f64, palette: &Palett
     let (shown, blank): (Vec<TimeWindow>, Vec<TimeWindow>) =
         windows.partition(|window| window.holds_any(timeline));
     if !blank.is_empty() {
-        out.push_str(&format!(
-            "; rows without anything are left out: {}",
-            blank.len()
-        ));
+        out.push_str(&format!("; empty rows are left out: {}", blank.len()));
     }
     out.push_str("</figcaption>\n");
     for window in shown {
@@ -237,7 +236,11 @@ fn push_found(
 ) {
     let (class, mark, text) = match verdict {
         DetectionVerdict::Right => ("bar", "", "right"),
-        DetectionVerdict::Loose => ("bar loose", "~", "right class, but badly placed or twice"),
+        DetectionVerdict::Loose => (
+            "bar loose",
+            "~",
+            "right class, but inaccurate in time or a duplicate",
+        ),
         DetectionVerdict::WrongClass => ("bar wrong", "✗", "wrong class"),
         DetectionVerdict::FalseAlarm => ("bar alarm", "!", "false alarm"),
     };

@@ -37,7 +37,7 @@ pub enum ClassMatchesError {
     #[error("not matches of this version: {0}")]
     Format(&'static str),
     /// The parts are of streams of different lengths.
-    #[error("matches of {first} ticks and of {other}: the parts are of different streams")]
+    #[error("matches of {first} ticks and of {other}: the parts belong to different streams")]
     Ticks {
         /// Of the first part.
         first: usize,
@@ -148,11 +148,11 @@ impl ClassMatches {
         let (negatives, matches) = (ticks as usize)
             .checked_mul(4)
             .and_then(|len| rest.split_at_checked(len))
-            .ok_or(ClassMatchesError::Format("fewer ticks than it says"))?;
+            .ok_or(ClassMatchesError::Format("fewer ticks than stated"))?;
         let negatives = negatives.as_chunks().0;
         let (matches, over) = matches.as_chunks::<MATCH_BYTES>();
         if !over.is_empty() {
-            return Err(ClassMatchesError::Format("a match is cut off"));
+            return Err(ClassMatchesError::Format("an incomplete match"));
         }
         let matches: Vec<ClassMatch> = matches.iter().map(read_match).collect();
         let ordered = matches.is_sorted_by(|a, b| (a.tick, a.class) < (b.tick, b.class));

@@ -170,7 +170,7 @@ mod tests {
             let bytes = index.to_bytes().unwrap();
             let index = MotionIndex::from_bytes(&bytes).unwrap();
             assert_eq!(heading(&index), HeadingLine::Shoulders);
-            let said = format!("{of} training clips show no hips");
+            let said = format!("{of} training clips have no hips");
             let note = report.notes.iter().find(|note| note.starts_with(&said));
             assert!(note.unwrap().ends_with("right_forearm, head"), "{note:?}");
             assert_eq!(index.heading_doubt(shown), None);
@@ -225,7 +225,7 @@ mod tests {
         let trained = train_clips(&[clip], &labelling, &options, &());
         let error = trained.map(drop).unwrap_err().to_string();
         assert!(
-            error.starts_with("no body to learn from in hand: "),
+            error.starts_with("no body to train on in hand: "),
             "{error}"
         );
     }

@@ -44,10 +44,10 @@ pub struct TrainingData {
 #[non_exhaustive]
 pub enum DataError {
     /// Two clips of one name.
-    #[error("two clips are called {0}: labels cannot tell them apart")]
+    #[error("two clips are called {0}, so labels cannot distinguish them: rename one")]
     SameName(String),
     /// A class was asked for that the labels do not show.
-    #[error("the class {class} is asked for, but no clip has a sample of it{hint}")]
+    #[error("no clip has a sample of the requested class {class}{hint}")]
     NoSampleOf {
         /// Name of the class.
         class: String,
@@ -56,7 +56,7 @@ pub enum DataError {
     },
     /// No label lies in any clip.
     #[error(
-        "no sample to learn from: no label names any of these clips (labels name clips by file stem)"
+        "no sample to train on: no label names any of these clips (labels name clips by their file name without the ending)"
     )]
     NoSample,
     /// Times that are probably in another unit.
@@ -95,7 +95,7 @@ impl TrainingMaterial<'_> {
         let strangers = strangers(&clips, &teaching, &resolved.samples);
         if !strangers.is_empty() {
             notes.push(format!(
-                "{} labelled clips share no bone with the others and are set aside: {}",
+                "{} labelled clips have no bone in common with the others and are not used: {}",
                 strangers.len(),
                 some_of(&strangers)
             ));
@@ -108,7 +108,7 @@ impl TrainingMaterial<'_> {
         if !ignored.is_empty() {
             let clips: BTreeSet<&String> = ignored.iter().map(|s| &s.clip).collect();
             notes.push(format!(
-                "{} labels do not count, because their clips are named as background or unknown: {}",
+                "{} labels are ignored because their clips are given as background or unknown: {}",
                 ignored.len(),
                 some_of(clips)
             ));
@@ -131,7 +131,8 @@ impl TrainingMaterial<'_> {
         let unused: Vec<String> = unused.collect();
         if !unused.is_empty() {
             notes.push(format!(
-                "{} clips have no sample of the classes and are not used (if they show none of the classes, name them as background): {}",
+                "{} clips have no sample of the classes and are not used (if they contain none of the classes, add them as \
+                 background): {}",
                 unused.len(),
                 some_of(&unused)
             ));
@@ -353,7 +354,7 @@ mod tests {
         assert_eq!(data.samples.len(), 1);
         assert_eq!(data.clips[1].person.as_deref(), Some("ada"));
         let said =
-            "1 labels do not count, because their clips are named as background or unknown: tested";
+            "1 labels are ignored because their clips are given as background or unknown: tested";
         assert_eq!(data.notes, [said]);
     }
 

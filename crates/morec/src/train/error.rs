@@ -5,24 +5,24 @@ use crate::templates::TemplateModelError;
 /// Why nothing could be trained.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum TrainError {
-    /// There is no sample to learn from.
-    #[error("no sample to learn from: no label lies inside its clip")]
+    /// There is no sample to train on.
+    #[error("no sample to train on: no label lies inside its clip")]
     NoSamples,
     /// Labelled clips of which none shows a body.
     #[error(
-        "no body to learn from in {0}: no limb and no head is found among the joints (`morec inspect` shows what is); faces \
-         and things alone cannot be learned"
+        "no body to train on in {0}: its joints include neither a limb nor a head (`morec inspect` lists them); faces and \
+         objects alone cannot be learned"
     )]
     NoBody(String),
     /// Labelled clips that show bodies, but no bone in common.
-    #[error("no bone to learn from: the labelled clips show none in common")]
+    #[error("no bone to train on: the labelled clips have none in common")]
     NoCommonBone,
     /// More classes than an index numbers.
     #[error("{0} classes; an index can have at most 65535")]
     TooManyClasses(usize),
     /// A class that an index must know well enough to show is not shown.
     #[error(
-        "class {class}: no sample of it can be described; each needs some motion inside its clip"
+        "class {class}: none of its samples can be used; each needs some motion inside its clip"
     )]
     NoSample {
         /// Name of the class.

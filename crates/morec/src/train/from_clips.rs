@@ -98,7 +98,7 @@ impl Prepared {
         if wanted != BoneSet::BODY && self.teaching > 0 {
             let wanted: Vec<String> = wanted.into();
             return TrainError::Params(format!(
-                "no bone to learn from: not every labelled clip shows one of {}",
+                "no bone to train on: not every labelled clip has one of {}",
                 wanted.join(", ")
             ));
         }

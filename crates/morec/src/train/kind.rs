@@ -75,7 +75,7 @@ impl ClassLabels {
     pub fn reason(&self) -> String {
         match self.kind() {
             ClassKind::Activity if self.longest_secs < LONG_SECS => {
-                "its labels follow others without a break".to_owned()
+                "its labels follow other labels without a gap".to_owned()
             }
             _ => format!("its longest label lasts {:.1} s", self.longest_secs),
         }

@@ -6,11 +6,11 @@ use crate::classes::ClassInfo;
 pub(crate) fn class_notes(classes: &[ClassInfo]) -> Vec<String> {
     let note = |class: &ClassInfo| match class.samples {
         0 => Some(format!(
-            "{}: no sample, it will never be recognised",
+            "{}: has no sample and will never be recognised",
             class.name
         )),
         1 => Some(format!(
-            "{}: a single sample; give more, by several people",
+            "{}: has a single sample; add more, by several people",
             class.name
         )),
         _ => None,

@@ -56,7 +56,7 @@ impl TrainOptions {
         match named.find(|name| !classes.contains(name)) {
             None => Ok(()),
             Some(name) => Err(format!(
-                "no class is called {name:?}; there are {}",
+                "no class is called {name:?}; the classes are {}",
                 classes.join(", ")
             )),
         }

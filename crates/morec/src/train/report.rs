@@ -78,7 +78,7 @@ fn long_gesture_note(
         .collect();
     (!names.is_empty()).then(|| {
         format!(
-            "recognised as a gesture: {}; name it with --activities if it goes on or is repeated",
+            "recognised as a gesture: {}; list it in --activities if it is continuous or repeated",
             names.join(", ")
         )
     })
@@ -102,7 +102,7 @@ fn outlier_note(
     let outliers: Vec<String> = outliers.collect();
     (!outliers.is_empty()).then(|| {
         format!(
-            "a label is more than three times as long as most of its class: {}; does it contain several samples?",
+            "a label is more than three times as long as most labels of its class: {}; does it contain several samples?",
             outliers.join(", ")
         )
     })
@@ -121,8 +121,8 @@ fn no_activity_note(trained: &TrainedTemplates, params: &TrainParams) -> Option<
     let names: Vec<&str> = named.map(|(name, _)| name.as_str()).collect();
     (!names.is_empty()).then(|| {
         format!(
-            "recognised as a gesture, though named an activity: {}; an activity takes a body and other motion to tell it from: \
-             unlabelled parts, background, made everyday motion",
+            "recognised as a gesture, although listed as an activity: {}; an activity needs a body and other motion to compare \
+             with: unlabelled parts, background, or built-in everyday motion",
             names.join(", ")
         )
     })
@@ -196,13 +196,14 @@ impl TrainingReport {
         let profile = Profile::of(prepared.bones);
         if profile != Profile::Body {
             notes.push(format!(
-                "the index is of {}: it looks at {}",
+                "the index recognises {}: it uses {}",
                 profile.words(),
                 Vec::<String>::from(prepared.bones).join(", ")
             ));
         } else if prepared.hipless > 0 {
             notes.push(format!(
-                "{} of {} training clips show no hips: the shoulders give the heading, in every stream; the index uses {}",
+                "{} of {} training clips have no hips, so the heading is taken from the shoulders in every stream; the index \
+                 uses {}",
                 prepared.hipless,
                 prepared.teaching,
                 Vec::<String>::from(prepared.bones).join(", ")
@@ -210,7 +211,7 @@ impl TrainingReport {
         }
         if let Some(held) = &trained.model.held {
             notes.push(format!(
-                "recognised by a pose that is held for {:.1} s or longer, and reported when it is left: {}",
+                "recognised by a pose that is held for {:.1} s or longer, and reported when the pose ends: {}",
                 held.least_ticks as f64 / tick_hz,
                 class_names(&held.poses, &classes)
             ));
@@ -223,7 +224,7 @@ impl TrainingReport {
         notes.extend(outlier_note(trained, prepared, params));
         if !prepared.lacking.is_empty() {
             notes.push(format!(
-                "left out because they lack bones that the labelled clips have: {}",
+                "left out because bones of the labelled clips are missing: {}",
                 prepared.lacking.join(", ")
             ));
         }
@@ -236,7 +237,7 @@ impl TrainingReport {
         notes.extend(trained.alike.iter().map(|pair| alike_note(pair, &classes)));
         if streams.iter().all(|s| s.source == StreamKind::Labelled) {
             notes.push(
-                "no background clips and no everyday motion: the threshold is a general value; name background clips"
+                "no background clips and no everyday motion, so the threshold is a general value: add background clips"
                     .to_owned(),
             );
         }
@@ -270,7 +271,7 @@ impl TrainingReport {
 /// Note about a sample that hardly moves.
 fn quiet_note(sample: &TrainSample, prepared: &Prepared, tick_hz: f64) -> String {
     format!(
-        "{}: the sample in {} from {:.2} to {:.2} s hardly moves and is not used; check its label",
+        "{}: the sample in {} from {:.2} to {:.2} s contains almost no motion and is not used; check its label",
         prepared.set.classes[sample.class.index()],
         prepared.set.streams[sample.stream].name,
         sample.ticks.start as f64 / tick_hz,
@@ -301,12 +302,12 @@ fn own_note(own: &[OwnSample], classes: &[ClassInfo]) -> Option<String> {
     let mistakes = match taken.is_empty() {
         true => String::new(),
         false => format!(
-            "; taken for another class: {}. Teach more samples of these classes, or merge two that show the same motion",
+            "; mistaken for another class: {}. Add samples of these classes, or merge classes that show the same motion",
             taken.join(", ")
         ),
     };
     Some(format!(
-        "leave one out: {right} of {} samples are recognised as their class by the other samples{mistakes}",
+        "leave-one-out test: {right} of {} samples are recognised as their class by the other samples{mistakes}",
         judged.len()
     ))
 }
@@ -321,7 +322,8 @@ fn one_teacher_note(classes: &[ClassInfo]) -> Option<String> {
     match alone.len() {
         0 => None,
         n if n == classes.len() => Some(
-            "all samples are by one person: other people are recognised less often than with samples by several people".to_owned(),
+            "all samples are by one person: motions of other people will be recognised less often than with samples by several \
+             people".to_owned(),
         ),
         _ => Some(format!("samples by one person only: {}", alone.join(", "))),
     }
@@ -334,7 +336,8 @@ fn alike_note(pair: &AlikeClasses, classes: &[ClassInfo]) -> String {
         &classes[pair.other.index()].name,
     );
     format!(
-        "{class} and {other} have similar samples: {} of {} samples of {class} are as near to {other}; a motion near to both is not reported. Check the labels, or make one class of the two",
+        "{class} and {other} have similar samples: {} of {} samples of {class} are as near to {other}, and a motion near to both \
+         is not reported. Check the labels, or merge the two classes",
         pair.samples, pair.of
     )
 }

@@ -342,7 +342,7 @@ impl TrainingContext<'_> {
         Operating {
             threshold,
             from: stream.map_or_else(
-                || "its upper bound, as no background comes near".to_owned(),
+                || "its upper bound, because no background comes near".to_owned(),
                 |stream| format!("background clip {}", self.set.streams[stream].name),
             ),
             points: ALARM_RATES.map(point).to_vec(),

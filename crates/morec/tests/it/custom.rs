@@ -113,7 +113,7 @@ fn another_kind_of_performer_is_refused_in_words() {
     let bones = all_bones_of_clip(&person, &roles, &(0..0));
     let error = index.recognizer(bones).unwrap_err();
     assert!(matches!(error, StartError::OtherProfile { .. }));
-    let said = "this index is of a custom skeleton; what is shown here is a body";
+    let said = "this index recognises a custom skeleton, but the input shows a body";
     assert_eq!(error.to_string(), said);
     // In a stream, once enough was seen of it.
     let take = morec::Take::new(person).unwrap();

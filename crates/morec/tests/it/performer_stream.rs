@@ -106,7 +106,7 @@ fn points_and_skeletons_in_any_axes_give_the_same_events() {
     );
     let error = PerformerStream::of_points(&index(), &strange, &options).unwrap_err();
     assert!(
-        error.to_string().starts_with("points: no known set"),
+        error.to_string().starts_with("points: neither a known set"),
         "{error}"
     );
     let ends = by_points(&names, Quat::identity(), &StreamOptions::default());

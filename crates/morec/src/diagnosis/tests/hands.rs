@@ -101,7 +101,7 @@ fn hands_that_change_places_are_told() {
     }
     assert!(two.findings().iter().any(|f| {
         f.to_string()
-            .starts_with("left and right hand change places 18 times a minute")
+            .starts_with("left and right hand are exchanged 18 times a minute")
     }));
 }
 

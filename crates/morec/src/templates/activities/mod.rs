@@ -62,7 +62,9 @@ impl Activities {
         self.windows
             .check(what, Self::statistics(layout), classes)?;
         if self.windows.rows.is_empty() || self.windows.others.is_empty() {
-            return Err("activities without windows, or without any of anything else".to_owned());
+            return Err(
+                "activities without windows, or without windows of other motion".to_owned(),
+            );
         }
         if !(1..=Self::MOST_TICKS).contains(&self.window_ticks) {
             return Err(format!(

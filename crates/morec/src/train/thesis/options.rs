@@ -57,7 +57,7 @@ impl Pivots {
                     let name = names.iter().find(|n| unknown(n, &sets[0])).cloned();
                     let known = sets[0].pivots().iter().map(|p| p.name.as_str());
                     format!(
-                        "there is no pivot {}; there are {}, or the parts of `pivots=roles`",
+                        "there is no pivot {}; the pivots are {}, or the body parts of `pivots=roles`",
                         name.unwrap_or_default(),
                         known.collect::<Vec<_>>().join(", ")
                     )

@@ -34,13 +34,13 @@ pub(super) fn of(
     let mut notes = class_notes(&classes);
     notes.extend(material.left_out.iter().filter(|class| class.samples > 0).map(|class| {
         format!(
-            "{}: no sample of it can be described, it will never be recognised; each needs some motion inside its clip",
+            "{}: none of its samples can be used, so it will never be recognised; each needs some motion inside its clip",
             class.name
         )
     }));
     if !material.missing.is_empty() {
         notes.push(format!(
-            "joints that a clip lacks turn with their parents there: {}",
+            "joints missing in a clip, which turn with their parents there: {}",
             material.missing.join("; ")
         ));
     }
@@ -53,7 +53,7 @@ pub(super) fn of(
         .filter(|(_, mean)| **mean < shortest);
     notes.extend(short.map(|(class, mean)| {
         format!(
-            "{}: {mean:.2} s on average, the shortest segment looked at is {shortest:.2} s",
+            "{}: {mean:.2} s on average, the shortest segment considered is {shortest:.2} s",
             class.name
         )
     }));

@@ -26,7 +26,7 @@ pub fn tree_of_samples(
     if !possible.contains(&dim) {
         let (least, most) = possible.into_inner();
         let message =
-            format!("rows have {dim} values, the tree of samples takes {least} to {most}");
+            format!("rows have {dim} values, the tree of samples needs {least} to {most}");
         return Err(TrainError::Params(message));
     }
     let described: Vec<_> = (samples.iter().enumerate())
