@@ -35,11 +35,11 @@ pub enum FitError {
     HasRotations,
     /// Too little of a body is known.
     #[error(
-        "{0} is not known among its points, and without it no skeleton can be laid into them: say with roles which it is"
+        "no skeleton can be fitted, because none of its points is known to be the {0}: name the point with roles"
     )]
     Missing(Role),
     /// No frame shows the body.
-    #[error("no frame shows the hips")]
+    #[error("no frame contains the hips")]
     Unseen,
 }
 

@@ -32,7 +32,9 @@ impl FileReader {
             && error.is_of_memory()
             && (container::is_gzip(bytes) || container::is_zip(bytes))
         {
-            error.found.push_str("; unpack it and give the files in it");
+            error
+                .found
+                .push_str("; unpack it and give the files that it contains");
         }
         let chosen = parsed.and_then(|parsed| choose(parsed, choice.as_deref()));
         chosen.map_err(|kind| kind.at(path))
@@ -92,7 +94,7 @@ impl FileReader {
         };
         if bare.len() < bytes.len() {
             let note = format!(
-                "{} zero bytes behind the text left out",
+                "{} zero bytes after the text left out",
                 bytes.len() - bare.len()
             );
             opened.warnings.push(Warning::new(Place::File, note));
@@ -236,11 +238,7 @@ fn nothing_in(bytes: &[u8], refused: &[String]) -> ParseError {
         }
     } else {
         let shown: Vec<&str> = refused.iter().take(5).map(String::as_str).collect();
-        format!(
-            "{} that cannot be read: {}",
-            refused.len(),
-            shown.join("; ")
-        )
+        format!("{} unreadable: {}", refused.len(), shown.join("; "))
     };
     ParseError::new(Place::File, "a zip archive with motions", found)
 }

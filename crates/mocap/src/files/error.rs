@@ -51,23 +51,23 @@ pub enum FileErrorKind {
     },
     /// There is no skeleton near an AMC motion.
     #[error(
-        "an AMC motion needs its ASF skeleton, and there is none in its folder or a folder above; give --skeleton"
+        "an AMC motion needs its ASF skeleton, but its folder and the folders above contain none; name it with --skeleton"
     )]
     NoSkeleton,
     /// There is no model near an OpenSim motion.
     #[error(
-        "OpenSim's joint angles (MOT, STO) need their model, and there is no .osim beside them or a \
-         folder above; give --skeleton MODEL.osim, or the TRC they came from"
+        "OpenSim's joint angles (MOT, STO) need their model, but their folder and the folders above contain no .osim file; give \
+         --skeleton MODEL.osim, or the TRC file that the angles were computed from"
     )]
     NoModel,
     /// An OpenSim model, which holds no motion.
-    #[error("an OpenSim model without motion; give the MOT or STO of joint angles")]
+    #[error("an OpenSim model without motion; give the MOT or STO file of joint angles")]
     OnlyModel,
     /// A file in a folder that holds motion in a format that is not read: its format and what to do.
     #[error("{0}")]
     NotRead(String),
     /// A folder in which no clip can be read, with the first reasons.
-    #[error("no clip that can be read in this folder or below{0}")]
+    #[error("no readable clip in this folder or its subfolders{0}")]
     NoClip(String),
 }
 

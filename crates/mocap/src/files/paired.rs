@@ -126,8 +126,8 @@ fn likeliest(
     let path = &best.skeleton.path;
     if best.skeleton.kinship == 0 && alike > 1 {
         let note = format!(
-            "{alike} skeletons fit and no name says which is right; {} is taken, with which the feet are nearest to the \
-             floor (--skeleton names another)",
+            "{alike} skeletons fit and no file name decides between them; {} is used, because it brings the feet nearest to the \
+             floor (--skeleton FILE chooses another)",
             path.display()
         );
         best.loaded.warnings.push(Warning::new(Place::File, note));

@@ -145,8 +145,7 @@ pub fn read(bytes: &[u8], name: &str, limits: &Limits) -> Result<Loaded, ParseEr
         return Err(ParseError::new(Place::File, expected, "none"));
     }
     if spoiled > 0 {
-        let text =
-            format!("{spoiled} frames lack numbers or hold no rotations, and are interpolated");
+        let text = format!("{spoiled} frames lack numbers or valid rotations and are interpolated");
         warnings.push(Warning::new(Place::File, text));
     }
     let rate_hz = rate(&durations, stated, &mut warnings);
@@ -212,7 +211,7 @@ fn rate(durations: &[f64], stated: Option<f64>, warnings: &mut Vec<Warning>) -> 
     if let (Some(least), Some(most)) = (known.first(), known.last())
         && *most > least * 1.02
     {
-        let text = format!("frames last {least:.4} to {most:.4} s; {secs:.4} s is taken for all");
+        let text = format!("frames last {least:.4} to {most:.4} s; {secs:.4} s is used for all");
         warnings.push(Warning::new(Place::File, text));
     }
     // Six digits of a duration tell the rate to some thousandths.
@@ -227,8 +226,8 @@ fn rate(durations: &[f64], stated: Option<f64>, warnings: &mut Vec<Warning>) -> 
 fn another_body(width: usize) -> ParseError {
     let expected = format!("frames of {VALUES} numbers, as DeepMimic's humanoid has");
     let found = match width {
-        0 => "frames that are no lists of numbers".to_owned(),
-        19 | 20 => format!("{width}: a motion of a quadruped robot, which shows no person"),
+        0 => "frames that are not lists of numbers".to_owned(),
+        19 | 20 => format!("{width}: a motion of a quadruped robot, not of a person"),
         _ => format!("{width}: a motion of another body, whose skeleton is not in the file"),
     };
     ParseError::new(Place::File, expected, found)

@@ -16,7 +16,8 @@ pub(super) fn read(bytes: &[u8], warnings: &mut Vec<Warning>) -> Result<Value, P
     };
     let saved = error.is_eof().then(|| closed(bytes)).flatten();
     if let Some(document) = saved.and_then(|text| serde_json::from_slice(&text).ok()) {
-        let text = "the document breaks off; it is read up to the last whole element of its list";
+        let text =
+            "the document is incomplete and is read up to the last complete element of its list";
         warnings.push(Warning::new(line(&error), text));
         return Ok(document);
     }

@@ -292,7 +292,7 @@ fn turned(
         roots.push(root);
     }
     if ignored > 0 {
-        let text = format!("{ignored} rotations of no role, or of no use, left out");
+        let text = format!("{ignored} rotations without a role, or invalid, left out");
         warnings.push(Warning::new(Place::File, text));
     }
     if let Some(places) = &schedule.places {

@@ -53,7 +53,7 @@ impl KeyGrid {
     pub(super) fn warn_if_uneven(&self, name: &str, warnings: &mut Vec<Warning>) {
         if !self.exact {
             let text = format!(
-                "{name}: the keys lie at no steady rate; sampled at {} Hz",
+                "{name}: keyframes are irregular in time; sampled at {} Hz",
                 self.rate_hz
             );
             warnings.push(Warning::new(Place::File, text));

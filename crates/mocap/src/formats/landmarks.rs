@@ -192,8 +192,8 @@ fn no_frames(document: &Value) -> ParseError {
     }
     if let Some(count) = rows::unknown(document) {
         let found = format!(
-            "{count} numbers in a row, which are no set of points that is known: give each point as [x, y, z], or the names of \
-             all in a list `joint_names`"
+            "{count} numbers in a row, which match no known set of points: give each point as [x, y, z], or all names in a list \
+             `joint_names`"
         );
         return ParseError::new(Place::File, expected, found);
     }

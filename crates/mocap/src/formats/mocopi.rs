@@ -73,7 +73,7 @@ pub fn read(bytes: &[u8], name: &str, limits: &Limits) -> Result<Loaded, ParseEr
         if recording.frames.is_empty() {
             return Err(error);
         }
-        let text = format!("the recording breaks off: {}", error.found);
+        let text = format!("the recording is incomplete: {}", error.found);
         warnings.push(Warning::new(error.at, text));
     }
     if recording.frames.is_empty() {
@@ -84,7 +84,7 @@ pub fn read(bytes: &[u8], name: &str, limits: &Limits) -> Result<Loaded, ParseEr
     let bones = match recording.skeleton.take() {
         Some(bones) => bones,
         None => {
-            let text = "no packet with the skeleton (`skdf`); mocopi's usual one is taken";
+            let text = "no packet with the skeleton (`skdf`); mocopi's default skeleton is used";
             warnings.push(Warning::new(Place::File, text));
             usual(&recording.frames[0])
         }

@@ -180,7 +180,8 @@ impl ArrayArchive {
         let array = npy::read(bytes).map_err(|error| ParseError {
             expected: format!("{} in `{key}`", error.expected),
             found: match npy::is_of_objects(bytes) {
-                true => "objects of Python, which can run programs when they are opened: save plain arrays".to_owned(),
+                true => "Python objects (pickle), which can execute code when opened and are not read: save plain \
+                    arrays".to_owned(),
                 false => error.found.clone(),
             },
             ..error

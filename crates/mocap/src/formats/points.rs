@@ -53,15 +53,15 @@ impl PointTable {
         self.keep_body(&mut warnings);
         self.leave_out(&mut warnings);
         if self.is_in_picture() {
-            let text = "these are places in a picture, with a guess at depth or none: directions of limbs are wrong; \
-                give places in the world (MediaPipe's `pose_world_landmarks`)";
+            let text = "these are image coordinates with estimated depth or none, so directions of limbs are wrong; give world \
+                coordinates (MediaPipe's `pose_world_landmarks`)";
             warnings.push(Warning::new(Place::File, text));
         }
         if self.points.is_empty() {
             return Err(ParseError::new(
                 Place::File,
-                "at least one point that was seen",
-                "none; the file holds no motion",
+                "at least one point with a position",
+                "none; the file contains no motion",
             ));
         }
         let clips = self
@@ -97,7 +97,7 @@ impl PointTable {
             }
         }
         if nines > 0 {
-            let text = format!("{nines} places of nines alone (9999, -9999) are gaps");
+            let text = format!("{nines} coordinates of nines only (9999, -9999) are read as gaps");
             warnings.push(Warning::new(Place::File, text));
         }
     }

@@ -321,8 +321,8 @@ pub(super) fn sample(
     if !finite {
         return Err(ParseError::new(
             Place::File,
-            "finite places of joints",
-            "places out of all bounds",
+            "finite positions of joints",
+            "positions out of range",
         ));
     }
     let mut builder = ClipBuilder::new(joints);

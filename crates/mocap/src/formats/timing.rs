@@ -152,7 +152,7 @@ impl Schedule {
         let mut rate_hz = said.unwrap_or_else(|| {
             let stepped = stepped(&stamps.secs);
             warn(match stepped {
-                Some(rate) => format!("the usual step of the times makes {rate:.4} Hz"),
+                Some(rate) => format!("the most frequent time step gives {rate:.4} Hz"),
                 None => {
                     let assumed = clock.assumed_hz;
                     format!("no rate and no usable times; {assumed} Hz is assumed")
@@ -171,13 +171,15 @@ impl Schedule {
                     rate_hz = clock.given_hz.unwrap_or(rate_hz / each);
                 }
                 if ordered.is_too_long(each) {
-                    warn("numbers of frames leave out too many; frames follow each other".into());
+                    warn("frame numbers have too many gaps; frames are read as consecutive".into());
                 }
                 let places = ordered.by_steps(each);
                 let all = places.as_ref().map_or(0, Vec::len);
                 if all > ordered.frames.len() {
                     let left_out = all - ordered.frames.len();
-                    warn(format!("{left_out} frames are left out by their numbers"));
+                    warn(format!(
+                        "{left_out} frames are missing according to the frame numbers"
+                    ));
                 }
                 places
             }

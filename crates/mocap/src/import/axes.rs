@@ -20,7 +20,7 @@ pub(super) fn choose(
         // Who crawls or lies through the whole clip is on the floor of the axis that is stated.
         Some(up) if up != stated && !lies(body, stated, up) => {
             notes.push(format!(
-                "by the file's format {stated} is up, but the body stands along {up}, which is taken"
+                "the file's format has {stated} up, but the body stands along {up}, which is used (--up AXIS overrides it)"
             ));
             up
         }
@@ -40,11 +40,12 @@ fn infer_up(clip: &Clip, body: &BodyMeasures, notes: &mut Vec<String>) -> Signed
         }
         if let Some(up) = floor(clip) {
             notes.push(format!(
-                "no head above feet to tell which way is up; along {up} alone everything lies above 0, so it is taken"
+                "the up axis is unknown, because no head is above feet; {up} is used, because all points are above 0 along it \
+                 only (--up AXIS overrides it)"
             ));
             return up;
         }
-        notes.push("no head above feet to tell which way is up; Y is assumed".to_owned());
+        notes.push("the up axis is unknown, because no head is above feet; Y is assumed (--up AXIS overrides it)".to_owned());
         return SignedAxis::Y;
     }
     let Some(up) = standing(body) else {
@@ -63,7 +64,8 @@ fn infer_up(clip: &Clip, body: &BodyMeasures, notes: &mut Vec<String>) -> Signed
     match (floors.next(), floors.next()) {
         (Some(floor), None) => {
             notes.push(format!(
-                "the body is longest along {up}, but stays on the floor along {floor}, which is taken to be up (--up AXIS overrides it)"
+                "the body is longest along {up}, but stays on the floor along {floor}, which is used as the up axis (--up AXIS \
+                 overrides it)"
             ));
             floor
         }

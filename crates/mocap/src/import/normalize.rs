@@ -129,7 +129,7 @@ impl Take {
         let mut take = normalize(clips.next().ok_or_else(none)?, &ImportOptions::default())?;
         take.warnings = loaded.warnings;
         for other in clips {
-            let text = format!("a second character, {}; left out", other.name);
+            let text = format!("a second character, {}, left out", other.name);
             take.warnings.push(Warning::new(Place::File, text));
         }
         Ok(take.named("clip"))

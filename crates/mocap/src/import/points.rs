@@ -16,8 +16,9 @@ const LOOKED_AT: usize = 8;
 const HANDS_LOOKED_AT: usize = 64;
 
 /// The doubt about a clip of points that belong to no known set.
-pub(super) const UNKNOWN: &str = "no known set of points, so no body is known: say with --roles which of them are joints, as in \
-    `left_knee<TAB>LKNE+LKNM` for the middle of two (`morec inspect CLIP --roles-template` begins such a file), or leave the clip out if it shows no person";
+pub(super) const UNKNOWN: &str = "the points match no known set, so no body is found: assign roles with --roles FILE, as in \
+    `left_knee<TAB>LKNE+LKNM` for the middle of two points (`morec inspect CLIP --roles-template` writes such a file), or leave \
+    the clip out if it shows no person";
 
 /// The roles of a clip of points by tables of known sets, and the set's name.
 pub(super) fn find_roles(clip: &mut Clip) -> (RoleMap, Option<&'static str>) {

@@ -43,8 +43,8 @@ pub(super) fn choose(
     }
     if let Some((unit, metres)) = taken_for_metres(body, up, stated) {
         notes.push(format!(
-            "the file's unit is {}, but in it the body is {:.3} m tall; its lengths are those of a person if they were in {unit} and \
-             a program took them for metres, which is assumed (--unit {stated} keeps the file's)",
+            "the file's unit is {}, but then the body is {:.3} m tall; the lengths fit a person if they are in {unit} and a \
+             program exported them as metres, which is assumed (--unit {stated} keeps the file's unit)",
             name(stated).unwrap_or("stated"),
             height * stated,
         ));
@@ -56,7 +56,7 @@ pub(super) fn choose(
         return stated;
     }
     notes.push(format!(
-        "the file's unit is {}, but in it the body is {:.3} m tall; {} is taken (--unit {} keeps the file's)",
+        "the file's unit is {}, but then the body is {:.3} m tall; {} is used (--unit {} keeps the file's unit)",
         name(stated).unwrap_or("stated"),
         height * stated,
         name(inferred).unwrap_or("another"),
@@ -148,14 +148,14 @@ fn nearest_known(size: f64) -> (&'static str, f64) {
 /// The known unit in which the body comes nearest to a person's size.
 pub(super) fn infer(body: &BodyMeasures, up: SignedAxis, notes: &mut Vec<String>) -> f64 {
     let Some(size) = size(body, up) else {
-        notes.push("no body to measure; lengths are taken as metres".to_owned());
+        notes.push("no body to measure; lengths are read as metres".to_owned());
         return 1.0;
     };
     let (unit, metres) = nearest_known(size);
     let tall = size * metres * HEIGHT;
     if !TALL.contains(&tall) {
         notes.push(format!(
-            "in {unit}, the nearest known unit, limbs and trunk are those of a person {tall:.2} m tall"
+            "{unit} is the best-fitting unit, but then limbs and trunk are those of a person {tall:.2} m tall"
         ));
     }
     metres
@@ -166,7 +166,7 @@ pub(super) fn doubt(body: &BodyMeasures, metres_per_unit: f64) -> Option<String>
     let leg = body.leg? * metres_per_unit;
     (!(0.3..=1.3).contains(&leg)).then(|| {
         format!(
-            "legs of {leg:.3} m are no person's: say the unit with --unit METRES, or the joints with --roles FILE"
+            "legs of {leg:.3} m do not fit a person: give the unit with --unit METRES, or the joints with --roles FILE"
         )
     })
 }

@@ -334,7 +334,7 @@ impl std::str::FromStr for BoneSet {
                 None => Self::try_from(vec![name.to_owned()]).map_err(|error| {
                     let sets = Self::NAMED.map(|(name, _)| name).join(", ");
                     let bones = ALL_BONES.map(|bone| bone.name).join(", ");
-                    format!("{error}; there are the sets {sets}, and {bones}")
+                    format!("{error}; the sets are {sets}, the bones {bones}")
                 })?,
             });
         }

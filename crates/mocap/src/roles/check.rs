@@ -9,7 +9,7 @@ use crate::math::Vec3;
 use crate::pose::Profile;
 
 /// Advice at the end of every sentence about wrong roles.
-const REMEDY: &str = "say with --roles FILE which joints they are";
+const REMEDY: &str = "assign the joints with --roles FILE";
 
 /// Looks for what cannot be true of a person's body in `map`, in a few poses of it (world positions of each joint, any
 /// unit and axes). O(poses × roles²).
@@ -127,7 +127,7 @@ impl PosedBody<'_> {
         };
         let (a, b) = pairs.into_iter().find(together)?;
         Some(format!(
-            "{a} (`{}`) and {b} (`{}`) are in one point, which they are in no person: {REMEDY}",
+            "{a} (`{}`) and {b} (`{}`) are at the same point, which is impossible in a person: {REMEDY}",
             self.name(a),
             self.name(b)
         ))
@@ -168,8 +168,8 @@ impl PosedBody<'_> {
             }
         }
         (count >= LEAST_POSES && sum / f64::from(u32::try_from(count).ok()?) < -0.5).then(|| {
-            "the knees bend backwards: left and right are exchanged, or one axis of the file points the other way; \
-             exchange the names with --roles FILE, or the axis where the file was written"
+            "the knees bend backwards: left and right are exchanged, or one axis of the file is reversed; exchange the names \
+             with --roles FILE, or export the file again with the other axis direction"
                 .to_owned()
         })
     }
@@ -216,7 +216,7 @@ impl PosedBody<'_> {
         });
         let (left, right, a, b) = unequal.next()?;
         Some(format!(
-            "{left} (`{}`) is {a:.3} long and {right} (`{}`) {b:.3}, which is no person: {REMEDY}",
+            "{left} (`{}`) is {a:.3} long and {right} (`{}`) {b:.3}, which does not fit a person: {REMEDY}",
             self.name(left),
             self.name(right)
         ))
@@ -231,8 +231,8 @@ impl PosedBody<'_> {
             .or_else(|| self.on_all_fours())
             .or_else(|| self.out_of_proportion())?;
         Some(format!(
-            "this hardly is a human body: {why}. It would be compared with people's motion all the same; leave it out, or, \
-             if it is a person, name the joints with --roles FILE"
+            "this is probably not a human body: {why}. It is compared with human motion nevertheless: leave the clip out or, if \
+             it shows a person, assign the joints with --roles FILE"
         ))
     }
 

@@ -236,7 +236,7 @@ const MADE_BY: [(&str, &str); 9] = [
     ),
     (
         "thigh",
-        "the hip joint: from the pelvis by itself, else the trochanter (GTR) or a joint centre (HJC)",
+        "the hip joint: computed from the pelvis, else the trochanter (GTR) or a joint centre (HJC)",
     ),
     (
         "shin",
@@ -291,7 +291,7 @@ pub fn template(names: &[&str]) -> String {
                 };
                 match is_middle {
                     true => writeln!(text, "{role}\t{}", of.join("+")),
-                    false => writeln!(text, "# {role} is found from {}", of.join(", ")),
+                    false => writeln!(text, "# {role} is computed from {}", of.join(", ")),
                 }
             }
             (None, Some((_, how))) => writeln!(text, "# {role}\t{how}"),
@@ -319,7 +319,10 @@ mod tests {
         let text = template(&names);
         assert!(text.contains("\nhips\tLASI+RASI+LPSI+RPSI\n"), "{text}");
         assert!(text.contains("\nleft_shin\tLKNE+LKNM\n"), "{text}");
-        assert!(text.contains("# left_thigh is found from LASI"), "{text}");
+        assert!(
+            text.contains("# left_thigh is computed from LASI"),
+            "{text}"
+        );
         assert!(text.contains("# left_hand\tthe wrist"), "{text}");
         assert!(text.contains("without a role: M7"), "{text}");
         let mapping = Mapping::read(text.as_bytes()).unwrap();

@@ -91,7 +91,8 @@ impl SideCues {
         } else {
             Side::Right
         };
-        let note = "left and right inferred from the toes; the joint names give no side";
+        let note =
+            "left and right are inferred from the toes, because the joint names give no side";
         (side, Some(note.to_owned()))
     }
 
@@ -109,7 +110,8 @@ impl SideCues {
             *side = side.other();
         }
         notes.push(
-            "the names have left and right the other way round than toes and knees point; the body is believed (--roles overrides it)"
+            "left and right in the joint names contradict the direction of toes and knees; the body's direction is used (--roles \
+             overrides it)"
                 .to_owned(),
         );
     }

@@ -134,7 +134,7 @@ impl Trunk<'_> {
             return None;
         }
         notes.push(format!(
-            "there is no joint for the neck; `{}`, where the arms begin, is used",
+            "the skeleton has no neck joint; `{}`, where the arms begin, is used",
             self.tree.skeleton.joints()[top].name
         ));
         Some(top)

@@ -100,7 +100,7 @@ pub enum SmoothError {
     },
     /// The bound on world positions was not reached, however small the errors of single joints were made.
     #[error(
-        "joints within {bound_metres} m of where they were: {reached_metres} m is as near as it came"
+        "joints within {bound_metres} m of their original positions: the best reached is {reached_metres} m"
     )]
     Bound {
         /// The bound asked for, metres.

@@ -159,7 +159,7 @@ fn what_is_understood_with_a_warning() {
             "glued-numbers",
             &[(24, "`0.0-7.5` (and 1 more like it, the last on line 25)")],
         ),
-        ("wrapped-lines", &[(24, "one stream")]),
+        ("wrapped-lines", &[(24, "one sequence")]),
         (
             "frames-declared-too-few",
             &[(23, "1 frames declared, 4 found")],
@@ -208,12 +208,8 @@ fn frame_times() {
             30.0,
             &[(23, "`fast`"), (23, "no Frame Time")],
         ),
-        ("frame-time-one", 1.0, &[(23, "hardly right")]),
-        (
-            "frame-time-three-tenths",
-            1.0 / 0.3,
-            &[(23, "hardly right")],
-        ),
+        ("frame-time-one", 1.0, &[(23, "unlikely")]),
+        ("frame-time-three-tenths", 1.0 / 0.3, &[(23, "unlikely")]),
     ] {
         assert_eq!(
             clip(file, warnings),
@@ -442,7 +438,7 @@ fn unusable_samples_are_interpolated_for_their_joint() {
     assert_eq!(first.rotations[1], plain.rotations[4]);
     let always = clip(
         "sample-nan-always",
-        &[(24, "value 1 is no usable number"), (0, "4 frames")],
+        &[(24, "value 1 is not a usable number"), (0, "4 frames")],
     );
     assert_eq!(
         (always.repaired.as_slice(), always.rotations[7]),

@@ -67,6 +67,10 @@ fn the_version_names_the_commit_where_there_is_one() {
 fn errors_are_said_once() {
     let folder = Folder::with(&[("x.vmd", "Vocaloid Motion Data 0002\0\0")]);
     let ran = folder.morec(&["inspect", "x.vmd"]);
-    assert_eq!(ran.err.matches("which is not read").count(), 1, "{ran:?}");
+    assert_eq!(
+        ran.err.matches("which is not supported").count(),
+        1,
+        "{ran:?}"
+    );
     assert!(ran.err.contains("MikuMikuDance"), "{ran:?}");
 }

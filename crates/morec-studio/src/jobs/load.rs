@@ -121,7 +121,7 @@ fn speeds(rows: &morec::features::Rows, layout: RowLayout) -> Vec<f32> {
 }
 
 /// How [`roles::check`] begins what it says of an animal or a thing.
-const NOT_HUMAN: &str = "this hardly is a human body";
+const NOT_HUMAN: &str = "this is probably not a human body";
 
 /// What no person's body has, in some frames; nothing of points of which none is known.
 fn doubts(clip: &Clip, roles: &RoleMap, rest: &std::ops::Range<usize>) -> Vec<String> {

@@ -176,7 +176,7 @@ fn animals_are_named_as_inspect_names_them_and_get_no_limbs_of_a_person() {
         let (_folder, path, mut person) = with(name, bvh(&joints).as_bytes());
         let takes = morec::files::open_all(&path).unwrap();
         let doubts = takes[0].report.doubts.iter();
-        let told = |doubt: &&String| doubt.contains("hardly is a human body");
+        let told = |doubt: &&String| doubt.contains("probably not a human body");
         let inspected = doubts.clone().find(told);
         let inspected = inspected.unwrap_or_else(|| panic!("{name}: {doubts:?}"));
         // The reason; the remedy is a click here.
@@ -195,7 +195,7 @@ fn animals_are_named_as_inspect_names_them_and_get_no_limbs_of_a_person() {
 fn a_person_is_not_doubted_and_is_drawn_as_one() {
     let folder = tempfile::tempdir().unwrap();
     let person = Person::before(&[made(folder.path(), 0)]);
-    assert!(!person.sees_part("hardly is a human body"));
+    assert!(!person.sees_part("probably not a human body"));
     let motion = person.state().player.motion.clone().unwrap();
     assert!(motion.doubts.is_empty(), "{:?}", motion.doubts);
     assert!(thickest(&motion.body) > 0.05);

@@ -281,7 +281,7 @@ impl<'a> AmcReader<'a> {
         self.rows.degrees = self.degrees;
         if self.rows.drop_unfinished_frame() {
             let note = format!(
-                "the last frame, from line {}, is cut off and is left out",
+                "the last frame, from line {}, is incomplete and left out",
                 self.frame_line
             );
             self.warnings
@@ -292,7 +292,7 @@ impl<'a> AmcReader<'a> {
             _ => {}
         }
         if self.spoiled > SHOWN {
-            let note = format!("{} rows could not be read in all", self.spoiled);
+            let note = format!("{} rows in all could not be read", self.spoiled);
             self.warnings.push(Warning::new(Place::File, note));
         }
         Ok((self.rows, self.warnings))
@@ -311,16 +311,16 @@ fn rate(name: &str, options: &AmcOptions, warnings: &mut Vec<Warning>) -> f64 {
     match options.rate_hz {
         Some(rate_hz) if rate_hz.is_finite() && rate_hz > 0.0 => return rate_hz,
         Some(rate_hz) => {
-            let note = format!("a rate of {rate_hz} Hz cannot be and is not used");
+            let note = format!("a rate of {rate_hz} Hz is invalid and not used");
             warnings.push(Warning::new(Place::File, note));
         }
         None => {}
     }
     let (rate_hz, why) = match rate_in_name(name) {
         Some(rate_hz) => (rate_hz, "as its name says"),
-        None => (DEFAULT_RATE_HZ, "as is usual"),
+        None => (DEFAULT_RATE_HZ, "the usual rate"),
     };
-    let note = format!("AMC files do not say their frame rate; {rate_hz} Hz is assumed, {why}");
+    let note = format!("AMC files do not state their frame rate; {rate_hz} Hz is assumed, {why}");
     warnings.push(Warning::new(Place::File, note));
     rate_hz
 }

@@ -339,7 +339,8 @@ impl<'a> AsfReader<'a> {
         }
         let orientation = self.rotation(&self.root_axes, self.root_orientation);
         if self.root_position != Vec3::zeros() || self.root_orientation != Vec3::zeros() {
-            let note = "the root has a pre-set position or orientation; every frame is moved by it";
+            let note =
+                "the root has a preset position or orientation, which is applied to every frame";
             self.warnings.push(Warning::new(Place::File, note));
         }
         let root = Root {
@@ -410,7 +411,7 @@ impl<'a> AsfReader<'a> {
             .filter(|(_, line)| line.is_none())
         {
             let name = self.bones[b].name.as_deref().unwrap_or_default();
-            let note = format!("bone {name} has no place in the hierarchy and is left out");
+            let note = format!("bone {name} is missing from the hierarchy and left out");
             self.warnings.push(Warning::new(Place::File, note));
         }
         Ok(order)

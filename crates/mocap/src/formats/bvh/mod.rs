@@ -296,7 +296,7 @@ fn find_hierarchy<'a>(
             if let Some((at, junk)) = first {
                 notes.add(
                     at,
-                    format!("skipped what stands before HIERARCHY, {}", show(Some(junk))),
+                    format!("text before HIERARCHY skipped, {}", show(Some(junk))),
                 );
             }
             return Ok(cursor);
@@ -417,7 +417,7 @@ fn note_repairs(repaired: &[Span], rate_hz: f64, notes: &mut Notes) {
     }
     let longest = repaired.iter().map(Span::len).max().unwrap_or(0) as f64 / rate_hz;
     let doubt = if longest > LONG_GAP_SECS {
-        format!(", the longest over {longest:.1} s: do not trust it")
+        format!(", the longest {longest:.1} s, which is unreliable")
     } else {
         String::new()
     };

@@ -142,7 +142,7 @@ pub(super) fn table(
     } = table.by_line(text, request, notes)?;
     if tally.flows(width, request.declared) {
         characters.iter_mut().for_each(Character::clear);
-        let words = "the frames are not one to a line; the numbers are read as one stream, as their count fits";
+        let words = "frames are not on one line each; the numbers are read as one sequence, because their count fits";
         notes.add(Place::Line(tally.first_line), words);
         let table = MotionTable {
             width,
@@ -274,7 +274,7 @@ fn note_missing(values: &[f64], line: u64, notes: &mut Notes) {
     if let Some(column) = values.iter().position(|v| v.is_nan()) {
         let text = || {
             format!(
-                "value {} is no usable number; such samples are interpolated",
+                "value {} is not a usable number; such values are interpolated",
                 column + 1
             )
         };
@@ -396,7 +396,7 @@ pub(super) fn compare_counts(header: &MotionHeader, frames: usize, notes: &mut N
         Some(declared) if declared != frames as u64 => {
             notes.add(
                 header.at,
-                format!("{declared} frames declared, {frames} found; all found are read"),
+                format!("{declared} frames declared, {frames} found; all {frames} are read"),
             );
         }
         Some(_) => {}

@@ -50,7 +50,7 @@ pub(super) fn rate_hz(frame_time_secs: Option<f64>, at: Place, notes: &mut Notes
     if !(1e-9..=1e9).contains(&secs) {
         notes.add(
             at,
-            format!("Frame Time {secs} is no frame time, {ASSUMED_HZ} Hz assumed"),
+            format!("Frame Time {secs} is invalid, {ASSUMED_HZ} Hz assumed"),
         );
         return ASSUMED_HZ;
     }
@@ -65,7 +65,7 @@ pub(super) fn rate_hz(frame_time_secs: Option<f64>, at: Place, notes: &mut Notes
     if !(5.0..=1000.0).contains(&rate) {
         notes.add(
             at,
-            format!("Frame Time {secs} means {rate:.3} Hz, which is hardly right"),
+            format!("Frame Time {secs} means {rate:.3} Hz, which is unlikely"),
         );
     }
     rate

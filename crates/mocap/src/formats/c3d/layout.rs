@@ -80,7 +80,7 @@ impl C3dLayout {
 fn no_points(parameters: &Parameters) -> ParseError {
     let channels = parameters.number("ANALOG", "USED").unwrap_or(0.0);
     let found = if channels > 0.0 {
-        format!("none, but {channels} analog channels: no motion can be read from it")
+        format!("none, but {channels} analog channels, which contain no motion")
     } else {
         "none".to_owned()
     };
@@ -188,14 +188,13 @@ fn note(first: &C3dLayout, chosen: &C3dLayout, warnings: &mut Vec<Warning>) {
     for (what, said, taken) in pairs {
         if said != taken && said > 0 {
             let text = format!(
-                "header and parameters disagree about {what}: {said} is said, {taken} fits the file"
+                "header and parameters disagree about {what}: {said} is stated, {taken} fits the file and is used"
             );
             warnings.push(Warning::new(Place::File, text));
         }
     }
     if first.floats != chosen.floats {
-        let text =
-            "header and parameters disagree whether points are integers; the file's length decides";
+        let text = "header and parameters disagree on whether points are integers; the file's length decides";
         warnings.push(Warning::new(Place::File, text));
     }
 }

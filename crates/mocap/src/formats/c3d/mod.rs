@@ -178,7 +178,7 @@ fn parameter_section(
         )
     };
     if let Some(processor) = processor_at(BLOCK) {
-        warnings.push(text("those of block 2 are taken"));
+        warnings.push(text("those of block 2 are used"));
         return Ok((BLOCK, processor));
     }
     let start = if stated > 0 { stated } else { BLOCK };
@@ -207,7 +207,7 @@ fn rate(header: &C3dHeader, parameters: &Parameters, warnings: &mut Vec<Warning>
         && (stated / in_header - 1.0).abs() > 1e-3
     {
         let text = format!(
-            "POINT:RATE is {stated} Hz, in the header it is {in_header} Hz; the first is taken"
+            "POINT:RATE is {stated} Hz, the header states {in_header} Hz; POINT:RATE is used"
         );
         warnings.push(Warning::new(Place::Byte(20), text));
     }
@@ -238,7 +238,7 @@ fn scale(
         && (stated / in_header - 1.0).abs() > 1e-3
     {
         let text =
-            format!("POINT:SCALE is {stated}, in the header it is {in_header}; the first is taken");
+            format!("POINT:SCALE is {stated}, the header states {in_header}; POINT:SCALE is used");
         warnings.push(Warning::new(Place::Byte(12), text));
     }
     stated.or(in_header).unwrap_or_else(|| {

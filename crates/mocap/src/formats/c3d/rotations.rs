@@ -78,7 +78,7 @@ pub(super) fn origins(
         positions: (0..frames).map(|frame| place(frame, segment)).collect(),
     };
     let text = format!(
-        "no points, but {segments} segments; where they begin is read, how they are turned is not"
+        "no points, but {segments} segments, of which the origins are read and the rotations are not"
     );
     warnings.push(Warning::new(Place::File, text));
     Ok(Some(((0..segments).map(point).collect(), ratio as f64)))

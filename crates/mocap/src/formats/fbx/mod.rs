@@ -144,7 +144,7 @@ fn load(bytes: &[u8], limits: &Limits) -> Result<ufbx::SceneRoot, ParseError> {
         let what: &str = &error.description;
         let found = match (error.type_, version(bytes)) {
             (ufbx::ErrorType::UnsupportedVersion, Some(version)) => {
-                format!("FBX {version}, which cannot be read; save it as FBX 2014 or newer")
+                format!("FBX {version}, which is not supported; save the file as FBX 2014 or newer")
             }
             _ => format!("FBX that cannot be read: {what}"),
         };
@@ -345,9 +345,8 @@ fn grid(
     if trimmed && begin < last && end > first {
         times = shown;
         times.extend([begin.max(first), end.min(last)]);
-        let text = format!(
-            "{clip_name}: keys outside of the take's {begin:.3} s to {end:.3} s are left out"
-        );
+        let text =
+            format!("{clip_name}: keys outside the take, {begin:.3} s to {end:.3} s, are left out");
         warnings.push(Warning::new(Place::File, text));
     }
     if let Some(rate_hz) = take.rate_hz {

@@ -171,8 +171,7 @@ impl<'a> Buffers<'a> {
         let view = document.list("bufferViews").get(view);
         let view = view.ok_or_else(|| fail(number, "a bufferView", "none"))?;
         if view["extensions"]["EXT_meshopt_compression"].is_object() {
-            let found =
-                "one compressed by EXT_meshopt_compression; unpack it, as with `gltf-transform`";
+            let found = "one compressed by EXT_meshopt_compression; decompress it first, for instance with `gltf-transform`";
             return Err(fail(number, "a plain bufferView", found));
         }
         let buffer = index(&view["buffer"]).ok_or_else(|| fail(number, "a buffer", "none"))?;

@@ -108,7 +108,7 @@ fn read_at(
         });
     }
     if animations.is_empty() {
-        let what = ", only with others (of shapes, of cameras)";
+        let what = "; its animations are of other things (shapes, cameras)";
         return Err(without_animation(&document, &stage, what));
     }
     let clips = clips(

@@ -234,7 +234,7 @@ fn one_a_skin(
     }
     let count = keep.iter().filter(|keep| !**keep).count();
     if count > 0 {
-        let text = format!("{count} trees of joints beside a body, of the same skin, are left out");
+        let text = format!("{count} separate joint trees of the body's skin are left out");
         warnings.push(Warning::new(Place::File, text));
     }
     let mut keep = keep.into_iter();

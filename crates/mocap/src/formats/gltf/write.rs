@@ -36,7 +36,7 @@ pub fn write_vrma(clip: &Clip, roles: &RoleMap, out: &mut dyn Write) -> io::Resu
     let refused = |what: String| io::Error::new(io::ErrorKind::InvalidInput, what);
     if !clip.has_rotations() {
         return Err(refused(
-            "a VRM animation needs rotations, and a clip of points has none".to_owned(),
+            "a VRM animation needs rotations, which a clip of points does not have; convert it with --fit first".to_owned(),
         ));
     }
     let missing = BONES
@@ -44,7 +44,7 @@ pub fn write_vrma(clip: &Clip, roles: &RoleMap, out: &mut dyn Write) -> io::Resu
         .find(|bone| bone.required && roles.joint(bone.role).is_none());
     if let Some(bone) = missing {
         return Err(refused(format!(
-            "a VRM animation needs {}, which no joint plays (--roles FILE names it)",
+            "a VRM animation needs {}, but no joint has this role (assign it with --roles FILE)",
             bone.role
         )));
     }

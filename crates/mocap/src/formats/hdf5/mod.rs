@@ -112,7 +112,7 @@ fn no_poses(tree: &Hdf5Contents) -> ParseError {
     let expected = "a table of pandas (DeepLabCut, Anipose), poses of NWB or an array of positions (`tracks`, `positions`)";
     let ends = |name: &str| tree.arrays.iter().any(|path| path == name);
     let found = if ends("instances") && ends("frames") {
-        "labels of SLEAP, whose points lie in pictures: triangulate them (sleap-anipose), or export the analysis".to_owned()
+        "labels of SLEAP, whose points are image coordinates: triangulate them (sleap-anipose), or export the analysis".to_owned()
     } else if tree.arrays.is_empty() {
         "no array".to_owned()
     } else {

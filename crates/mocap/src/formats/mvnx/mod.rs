@@ -275,14 +275,16 @@ fn rate(subject: Node<'_, '_>, frames: &[Node<'_, '_>], warnings: &mut Vec<Warni
     match (stated, timed) {
         (Some(stated), Some(timed)) if frames.len() > 20 && (timed / stated - 1.0).abs() > 0.1 => {
             let text = format!(
-                "frameRate says {stated} Hz, the times of the frames {timed:.2} Hz; the file's rate is kept, --file-rate overrides it"
+                "frameRate is {stated} Hz, but the times of the frames give {timed:.2} Hz; frameRate is used (--file-rate \
+                 overrides it)"
             );
             warnings.push(Warning::new(at, text));
             stated
         }
         (Some(stated), _) => stated,
         (None, Some(timed)) => {
-            let text = format!("no frameRate; the times of the frames say {timed:.2} Hz");
+            let text =
+                format!("no frameRate; the times of the frames give {timed:.2} Hz, which is used");
             warnings.push(Warning::new(at, text));
             timed
         }

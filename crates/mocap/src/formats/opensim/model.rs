@@ -301,7 +301,7 @@ fn order(
     tree.sort_unstable();
     if count > 1 {
         let text = format!(
-            "{count} trees of bodies; the one with most limbs is read, {} bodies",
+            "{count} trees of bodies; only the tree with the most limbs is read, {} bodies",
             tree.len()
         );
         warnings.push(Warning::new(Place::File, text));

@@ -223,8 +223,7 @@ impl CoordinateTable {
         let is_large = |row: &Vec<f64>| angles().any(|k| row[k].abs() > MOST_RADIANS);
         let degrees = self.rows.iter().flatten().any(is_large);
         let unit = if degrees { "degrees" } else { "radians" };
-        let text =
-            format!("the header does not say `inDegrees`; by their size the angles are {unit}");
+        let text = format!("the header lacks `inDegrees`; by their size the angles are {unit}");
         warnings.push(Warning::new(Place::File, text));
         degrees
     }
@@ -310,8 +309,7 @@ fn refuse_other(rows: &[(u64, &str)]) -> Result<(), ParseError> {
     let is_turned =
         |(_, text): &&(u64, &str)| text.trim().eq_ignore_ascii_case("DataType=Quaternion");
     if let Some((line, _)) = rows.iter().take(20).find(is_turned) {
-        let found =
-            "orientations of sensors, which place nothing: give the joint angles made of them";
+        let found = "orientations of sensors, which contain no positions: give the joint angles computed from them";
         return Err(ParseError::new(
             Place::Line(*line),
             "a table of coordinates",
@@ -324,7 +322,7 @@ fn refuse_other(rows: &[(u64, &str)]) -> Result<(), ParseError> {
         return Ok(());
     }
     let found = format!(
-        "a table of `{}`, which is no motion",
+        "a table of `{}`, which is not motion",
         shortened(title.trim())
     );
     let expected = "a table of coordinates (OpenSim's `Coordinates`, `…_q.sto`)";
@@ -339,7 +337,9 @@ fn shown_columns(columns: &[&str]) -> String {
     };
     let most = |ends: &[&str]| ends.iter().map(|end| count(end)).sum::<usize>() * 3 > columns.len();
     let what = match () {
-        () if count("_ox") > 0 => "places and turns of bodies' centres of mass (BodyKinematics)",
+        () if count("_ox") > 0 => {
+            "positions and rotations of bodies' centres of mass (BodyKinematics)"
+        }
         () if most(&["_moment", "_force"]) => "forces and moments of joints (inverse dynamics)",
         () if most(&["_vx", "_px", "_vy", "_py", "_torque_x"]) => "forces of the ground",
         () if most(&["/speed"]) => "speeds of coordinates",
@@ -349,7 +349,7 @@ fn shown_columns(columns: &[&str]) -> String {
             return shortened(&names.join(", ")).into_owned();
         }
     };
-    format!("{what}: give the coordinates of the model")
+    format!("{what}: give the model's coordinates instead")
 }
 
 /// Column and number of each coordinate that the table has: named as in the model, or by its path (`/jointset/hip_r/hip_flexion_r/value`).
@@ -387,7 +387,7 @@ fn coordinates_of(
         .collect();
     if !missing.is_empty() {
         let text = format!(
-            "no column for {} of {} coordinates of the model, which keep its default: {}",
+            "{} of {} coordinates of the model have no column and keep their default: {}",
             missing.len(),
             model.coordinates.len(),
             shortened(&missing.join(", "))

@@ -65,7 +65,7 @@ impl Filled {
             .collect();
         let more = if longest.len() > SHOWN { ", …" } else { "" };
         let text = format!(
-            "{} gaps too long to fill, or at an end of the clip: {}{more}",
+            "{} gaps not filled, because they are too long or at an end of the clip: {}{more}",
             longest.len(),
             shown.join(", ")
         );

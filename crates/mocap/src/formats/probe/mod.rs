@@ -20,8 +20,8 @@ pub fn probe(bytes: &[u8], name: &str) -> Result<Format, ParseError> {
         let (name, advice) = (unread.name, unread.advice);
         return Err(ParseError::new(
             Place::File,
-            "a motion format that is read",
-            format!("what looks like {name}, which is not read: {advice}"),
+            "a supported motion format",
+            format!("content that looks like {name}, which is not supported: {advice}"),
         ));
     }
     // What is wrong with a broken C3D file is reported by its reader.
@@ -32,10 +32,10 @@ pub fn probe(bytes: &[u8], name: &str) -> Result<Format, ParseError> {
     let (_, ending) = name.rsplit_once('.').unwrap_or_default();
     if let Some(unread) = unread::of_ending(ending).filter(|_| !bytes.is_empty()) {
         let (name, advice) = (unread.name, unread.advice);
-        let found = format!("what by its name is {name}, which is not read: {advice}");
+        let found = format!("a file that by its name is {name}, which is not supported: {advice}");
         return Err(ParseError::new(
             Place::File,
-            "a motion format that is read",
+            "a supported motion format",
             found,
         ));
     }
@@ -50,7 +50,7 @@ pub fn probe(bytes: &[u8], name: &str) -> Result<Format, ParseError> {
     };
     let expected = match format_of_name(name) {
         // What it is called and is not.
-        Some(format) => format!("{}, as its name says", format.name()),
+        Some(format) => format!("{}, according to its name", format.name()),
         None => {
             let titles: Vec<&str> = READ.iter().map(|(_, known)| known.title).collect();
             titles.join(", ")
@@ -167,7 +167,7 @@ mod tests {
         }
         let called = probe(b"\x01\x02\0\0", "a.glb").unwrap_err();
         assert!(
-            called.expected.contains("gltf, as its name says"),
+            called.expected.contains("gltf, according to its name"),
             "{called}"
         );
         assert!(probe(b"\x01\x02\0\0", "a.bvh").is_err());

@@ -118,10 +118,11 @@ pub fn read(bytes: &[u8], name: &str, limits: &Limits) -> Result<Loaded, ParseEr
         scaling.filter(|scale| scale.is_finite() && *scale > 0.0 && *scale != 1.0)
     {
         places.iter_mut().for_each(|place| *place /= scaling);
-        let text = format!("places are divided by the {scaling} of `smpl_scaling`");
+        let text = format!("positions are divided by {scaling} (`smpl_scaling`)");
         warnings.push(Warning::new(Place::File, text));
     }
-    let note = "rotations are the file's; bone lengths are those of an average person of 1.70 m, not of the one recorded, and the hips lie at `trans`, up to 0.3 m from where the body model has them";
+    let note = "rotations are exact, but bone lengths are those of an average person of 1.70 m, not of the person recorded, and \
+        the hips are at `trans`, up to 0.3 m from their position in the body model";
     warnings.push(Warning::new(Place::File, note));
     let clip = clip(&frames, &places).finish(name.to_owned(), rate_hz)?;
     Ok(Loaded {
@@ -301,7 +302,7 @@ fn places(
     warnings: &mut Vec<Warning>,
 ) -> Result<Vec<Vec3>, ParseError> {
     let Some(trans) = trans else {
-        let text = "no `trans`: the hips stay in one place";
+        let text = "no `trans`: the hips stay at one position";
         warnings.push(Warning::new(Place::File, text));
         return Ok(vec![Vec3::zeros(); frames]);
     };

@@ -223,7 +223,7 @@ fn no_columns(rows: &[TableLine]) -> ParseError {
     };
     if motive::begins(rows) {
         let expected = "positions of bones, rigid bodies or markers in the export of Motive";
-        let found = "none: export positions, too, in global coordinates";
+        let found = "none: export positions as well, in global coordinates";
         return ParseError::new(Place::Line(*line), expected, found);
     }
     if let Some(found) = measured(rows) {
@@ -231,7 +231,7 @@ fn no_columns(rows: &[TableLine]) -> ParseError {
     }
     if nexus::begins(rows) {
         let expected = "a section `Trajectories` or `Segments` in the export of Vicon";
-        let found = format!("`{}` without it: export trajectories, too", first[0]);
+        let found = format!("`{}` without it: export trajectories as well", first[0]);
         return ParseError::new(Place::Line(*line), expected, found);
     }
     if first
@@ -239,7 +239,7 @@ fn no_columns(rows: &[TableLine]) -> ParseError {
         .all(|cell| number(cell, Decimal::Either).is_some())
     {
         let found = format!(
-            "numbers alone, {} to a line, which is no known set of points: put a row of names above them",
+            "only numbers, {} on each line, which match no known set of points: add a header row with names",
             first.len()
         );
         return ParseError::new(Place::Line(*line), expected, found);
@@ -276,7 +276,7 @@ fn measured(rows: &[TableLine]) -> Option<&'static str> {
     }
     let above = columns::header_above(rows).is_some_and(quantities::says_other_above);
     (above || quantities::is_turned(&labels)).then_some(
-        "angles, rotations or what sensors measure: without a skeleton they place nothing (give positions, or BVH)",
+        "angles, rotations or sensor readings, which contain no positions: give positions, or BVH",
     )
 }
 
@@ -302,7 +302,7 @@ pub(super) fn what_it_is(head: &[u8]) -> Option<String> {
     let (_, first) = cells.first()?;
     let has = |name: &str| first.iter().any(|cell| cell.eq_ignore_ascii_case(name));
     if (has("clip") || has("file")) && (has("class") || has("label")) {
-        return Some("a table of labels: give it where labels are asked for".to_owned());
+        return Some("a table of labels: give it where labels are expected".to_owned());
     }
     let is_number = |cell: &&str| cell.is_empty() || number(cell, Decimal::Either).is_some();
     let numbers =
@@ -310,7 +310,7 @@ pub(super) fn what_it_is(head: &[u8]) -> Option<String> {
     let whole = &cells[..cells.len().saturating_sub(1)];
     (whole.len() >= LEAST_ROWS && first.len() >= LEAST_NUMBERS && whole.iter().all(numbers)).then(|| {
         format!(
-            "rows of {} numbers without names, as many as no known set of points has: put a row of names above them",
+            "rows of {} numbers without names, which match no known set of points: add a header row with names",
             first.len()
         )
     })
@@ -353,7 +353,7 @@ fn wide(
             && cells.iter().all(|cell| cell.is_empty() || is_value(cell));
         if !is_frame && !has_number && !is_unseen {
             let text = format!(
-                "a row that begins with `{}` is no frame and left out",
+                "a row that begins with `{}` is not a frame and is left out",
                 cells[0]
             );
             warnings.push(Warning::new(Place::Line(*line), text));

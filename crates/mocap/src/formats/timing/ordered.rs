@@ -47,7 +47,7 @@ impl OrderedFrames {
         }
         let moved = stamped.len() - rising.len();
         if 4 * moved > stamped.len().max(4) || 2 * stamped.len() < values.len() {
-            let text = "times or numbers of frames run back, or are not there, too often to put frames in order by them";
+            let text = "times or frame numbers decrease or are missing too often to order the frames by them";
             return Err(Some(text.to_owned()));
         }
         // One far ahead of its place, or behind it, would move all others.
@@ -74,9 +74,9 @@ impl OrderedFrames {
     /// What was done to frames, if anything was.
     pub(super) fn said(&self, what: &str) -> Option<String> {
         let counts = [
-            (self.moved, "out of order, put in order"),
-            (self.repeated, "repeated, of which the first is kept"),
-            (self.without, "missing or far off, left out"),
+            (self.moved, "out of order, sorted"),
+            (self.repeated, "repeated, the first kept"),
+            (self.without, "missing or far out of range, left out"),
         ];
         let done = counts.iter().filter(|(count, _)| *count > 0);
         let done: Vec<String> = done.map(|(n, done)| format!("{n} {done}")).collect();
@@ -109,7 +109,9 @@ impl OrderedFrames {
                 let places = self.by_steps(secs);
                 if places.is_some() {
                     let left_out = count - steps.len() as f64;
-                    warn(format!("{left_out} frames are left out by their times"));
+                    warn(format!(
+                        "{left_out} frames are missing according to the times"
+                    ));
                     return Schedule { rate_hz, places };
                 }
             }

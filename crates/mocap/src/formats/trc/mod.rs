@@ -74,7 +74,7 @@ pub fn read(
         return Err(ParseError::new(
             Place::Line(rows[at].0),
             "names of points in the TRC file",
-            "none: it holds no points",
+            "none: the file contains no points",
         ));
     }
     if let Some(stated) = heading.points.filter(|&n| n != columns.len() as f64) {
@@ -250,7 +250,7 @@ fn frames(
         let frame = number(cells[0], decimal);
         if frame.is_none() {
             let text = format!(
-                "a row that begins with `{}` and no frame's number is left out",
+                "a row that begins with `{}` instead of a frame number is left out",
                 cells[0]
             );
             warnings.push(Warning::new(Place::Line(*line), text));
