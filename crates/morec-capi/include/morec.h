@@ -94,7 +94,7 @@ enum MorecStatus
      */
     MOREC_STATUS_FILE = 7,
     /**
-     * Bytes are not an index that this release reads.
+     * Bytes are not an index that this release can read.
      */
     MOREC_STATUS_BAD_INDEX = 8,
     /**

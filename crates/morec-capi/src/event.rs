@@ -123,7 +123,7 @@ pub unsafe extern "C" fn morec_bone_name(
     guard(|| {
         let bone = ALL_BONES.get(bone as usize).ok_or_else(|| {
             CallError::invalid(format!(
-                "bone {bone}: there are {}, numbered from 0",
+                "bone {bone}: the event has {} bones, numbered from 0",
                 ALL_BONES.len()
             ))
         })?;

@@ -116,7 +116,7 @@ impl CheckedFrame<'_> {
         }
         let seen = |p: &Vec3| p.iter().all(|c| c.is_finite());
         if !frame.pose.positions.iter().any(seen) {
-            return Err(CallError::invalid("the frame shows no joint at all"));
+            return Err(CallError::invalid("the frame contains no joint"));
         }
         Ok(())
     }
@@ -188,7 +188,7 @@ fn position(joint: usize, p: [f64; 3]) -> Result<Option<Vec3>, CallError> {
         Ok(Some(p))
     } else {
         Err(CallError::invalid(format!(
-            "joint {joint} is nowhere: {p:?}"
+            "joint {joint}: the position is not finite: {p:?}"
         )))
     }
 }
@@ -204,7 +204,7 @@ fn rotation(joint: usize, [x, y, z, w]: [f64; 4]) -> Result<Quat, CallError> {
         Ok(Quat::new_unchecked(q / length))
     } else {
         Err(CallError::invalid(format!(
-            "the rotation of joint {joint} has the length {length}"
+            "joint {joint}: the rotation has the length {length}, expected 1"
         )))
     }
 }

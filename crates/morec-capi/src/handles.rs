@@ -129,7 +129,7 @@ pub(crate) fn take_back<H: Handle>(handle: *const H) -> Result<(), CallError> {
 fn other_kind<H: Handle>() -> CallError {
     CallError::new(
         MorecStatus::BadHandle,
-        format!("this handle is not of {}", H::NAME),
+        format!("this handle does not belong to {}", H::NAME),
     )
 }
 
@@ -144,7 +144,7 @@ fn unknown<H: Handle>(table: &HandleTable, number: usize) -> CallError {
     let text = if was {
         "this handle was destroyed"
     } else {
-        "this is no handle of morec's"
+        "this is not a handle that morec created"
     };
     CallError::new(MorecStatus::BadHandle, text)
 }

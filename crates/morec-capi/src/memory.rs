@@ -136,7 +136,10 @@ pub(crate) unsafe fn read_struct<T: Versioned>(pointer: *const T) -> Result<T, C
     let bytes = unsafe { std::slice::from_raw_parts(pointer.cast::<u8>(), size) };
     let known = size.min(size_of::<T>());
     if bytes[known..].iter().any(|byte| *byte != 0) {
-        let text = format!("{} has fields set that this release does not know", T::NAME);
+        let text = format!(
+            "{}: fields that this release does not know are set",
+            T::NAME
+        );
         return Err(CallError::new(MorecStatus::StructSize, text));
     }
     let mut value = std::mem::MaybeUninit::<T>::zeroed();
@@ -192,7 +195,7 @@ impl<T: Copy> Places<T> {
         }
         if !(first_size..=LONGEST_STRUCT).contains(&size) || !size.is_multiple_of(align_of::<T>()) {
             let text = format!(
-                "{what}: the size of one is given as {size}, in this release it is {}",
+                "{what}: the element size is given as {size}, in this release it is {}",
                 size_of::<T>()
             );
             return Err(CallError::new(MorecStatus::StructSize, text));

@@ -120,7 +120,7 @@ pub unsafe extern "C" fn morec_recognizer_create(
             unsafe { skeleton::read(c.skeleton, &convention, &index) }?
         } else {
             return Err(CallError::invalid(
-                "roles is for streams without a skeleton; a skeleton has its own",
+                "roles: only for streams without a skeleton; a skeleton has roles of its own",
             ));
         };
         let stream = Stream::new(&index, declared, convention, &options, c.event_capacity)?;
@@ -138,7 +138,7 @@ fn stream_options(c: &MorecOptions) -> Result<StreamOptions, CallError> {
         | MOREC_PERFORMER_TEACHER;
     if c.flags & !known != 0 {
         return Err(CallError::invalid(format!(
-            "flags is {:#x}, which this release does not know",
+            "flags: {:#x} contains bits that this release does not know",
             c.flags
         )));
     }

@@ -175,7 +175,7 @@ fn joints(
         });
         if !is_place(&offset) {
             return Err(CallError::invalid(format!(
-                "the offset of joint {j} is not a place"
+                "the offset of joint {j} is not finite"
             )));
         }
         let offset = convention.position(offset, parent.is_none());
@@ -214,9 +214,7 @@ fn given_roles(roles: &[i32]) -> Result<RoleMap, CallError> {
             continue;
         }
         let role = words::role(number).ok_or_else(|| {
-            CallError::invalid(format!(
-                "joint {joint} has role {number}, which does not exist"
-            ))
+            CallError::invalid(format!("joint {joint}: role {number} does not exist"))
         })?;
         if let Some(other) = map.joint(role) {
             return Err(CallError::invalid(format!(

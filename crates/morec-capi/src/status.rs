@@ -25,7 +25,7 @@ pub enum MorecStatus {
     QueueFull = 6,
     /// A file cannot be read.
     File = 7,
-    /// Bytes are not an index that this release reads.
+    /// Bytes are not an index that this release can read.
     BadIndex = 8,
     /// The index and what the stream shows of a body have no bone in common.
     NothingInCommon = 9,
@@ -42,17 +42,17 @@ impl MorecStatus {
         match self {
             MorecStatus::Ok => c"done",
             MorecStatus::NullPointer => c"a pointer is null",
-            MorecStatus::BadHandle => c"not a handle, or one that was destroyed",
-            MorecStatus::InvalidValue => c"a value that cannot be",
+            MorecStatus::BadHandle => c"not a handle, or a destroyed one",
+            MorecStatus::InvalidValue => c"an invalid value",
             MorecStatus::BufferTooSmall => c"the buffer is too small",
             MorecStatus::Busy => c"another thread is using this recogniser",
-            MorecStatus::QueueFull => c"events wait to be polled, and there is no room for more",
+            MorecStatus::QueueFull => c"the event queue is full: poll events first",
             MorecStatus::File => c"a file cannot be read",
-            MorecStatus::BadIndex => c"not an index that this release reads",
-            MorecStatus::NothingInCommon => c"the stream shows none of the index's bones",
+            MorecStatus::BadIndex => c"not an index that this release can read",
+            MorecStatus::NothingInCommon => c"the stream has none of the index's bones",
             MorecStatus::WrongOrder => c"another call must come first",
             MorecStatus::StructSize => c"a struct of the wrong size",
-            MorecStatus::Internal => c"a fault in morec itself",
+            MorecStatus::Internal => c"an internal error of morec; please report it",
         }
     }
 
@@ -160,7 +160,7 @@ mod tests {
     #[test]
     fn no_panic_comes_out() {
         assert_eq!(guard(|| panic!("on purpose")), MorecStatus::Internal);
-        assert_eq!(last(), "a fault in morec itself");
+        assert_eq!(last(), "an internal error of morec; please report it");
     }
 
     #[test]

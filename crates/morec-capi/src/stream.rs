@@ -74,8 +74,7 @@ impl Stream {
             }
         };
         if index.model.needs_rotations() && declared.rig == skeleton::body() {
-            let text =
-                "the index looks at how joints are turned: declare a skeleton and give rotations";
+            let text = "the index needs joint rotations: declare a skeleton and give rotations";
             return Err(CallError::new(
                 MorecStatus::NothingInCommon,
                 text.to_owned(),

@@ -206,7 +206,9 @@ impl MotionDb {
             let clip = find(conn, from)?;
             let sql = "SELECT 1 FROM clips WHERE name = ?1 AND id <> ?2";
             if conn.prepare(sql)?.exists(params![to, clip.id.0])? {
-                return Err(DbError::Invalid(format!("there is a clip {to} already")));
+                return Err(DbError::Invalid(format!(
+                    "a clip called {to} exists already"
+                )));
             }
             let sql = "UPDATE clips SET name = ?2 WHERE id = ?1";
             conn.execute(sql, params![clip.id.0, to])?;

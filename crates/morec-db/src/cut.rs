@@ -134,7 +134,7 @@ impl MotionDb {
         let (kept, clips): (Vec<ClipInfo>, Vec<ClipInfo>) =
             clips.iter().cloned().partition(by_hand);
         let rows = self.rows(&FeatureParams::default(), progress)?;
-        let left = |clip: ClipInfo| (clip.name, "it was cut by hand".to_owned());
+        let left = |clip: ClipInfo| (clip.name, "its cuts were set by hand".to_owned());
         let mut report = CutReport {
             left: kept.into_iter().map(left).collect(),
             ..CutReport::default()
@@ -189,7 +189,7 @@ impl MotionDb {
                 (false, _) => before,
                 (true, Some(found)) => found,
                 (true, None) => {
-                    let why = "another program removed its cuts meanwhile: nothing was done";
+                    let why = "another program has removed its cuts: nothing was changed";
                     return Err(DbError::Invalid(format!("{}: {why}", clip.name)));
                 }
             };

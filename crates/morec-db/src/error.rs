@@ -10,10 +10,10 @@ use rusqlite::ErrorCode;
 #[derive(Debug, thiserror::Error)]
 pub enum DbError {
     /// A database was to be made where something is.
-    #[error("{0}: there is a file already")]
+    #[error("{0}: a file of this name exists already")]
     Exists(PathBuf),
     /// There is no such file.
-    #[error("{0}: no such file; make a database with `morec db init`")]
+    #[error("{0}: no such file; create a database with `morec db init`")]
     Missing(PathBuf),
     /// The file is no SQLite database.
     #[error("{}: expected a motion database, found {}", .0.display(), kind_of(.0))]
@@ -38,7 +38,7 @@ pub enum DbError {
     },
     /// The file was written by a newer version.
     #[error(
-        "{path}: schema {found} is newer than this program knows ({known}); a newer morec reads it"
+        "{path}: schema {found} is newer than this morec supports ({known}): use a newer morec"
     )]
     Newer {
         /// Path of the database.
@@ -49,7 +49,9 @@ pub enum DbError {
         known: i32,
     },
     /// The file was written by an older version and is open for reading only.
-    #[error("{path}: schema {found} must be brought to {known} first: open it once for writing")]
+    #[error(
+        "{path}: schema {found} must be upgraded to {known}: open the database once for writing"
+    )]
     Older {
         /// Path of the database.
         path: PathBuf,
@@ -65,7 +67,9 @@ pub enum DbError {
     #[error("the database cannot be written: its disk is read-only")]
     ReadOnlyDisk,
     /// Another program writes for longer than was waited.
-    #[error("the database is busy: another program is writing to it; try again when it is done")]
+    #[error(
+        "the database is busy because another program is writing to it; try again when that has finished"
+    )]
     Busy,
     /// No room is left.
     #[error("the disk is full: the last change was rolled back")]
@@ -74,7 +78,7 @@ pub enum DbError {
     #[error("the database is damaged: {0}")]
     Damaged(String),
     /// Reading or writing the disk failed.
-    #[error("the disk could not be read or written: {0}")]
+    #[error("the disk cannot be read or written: {0}")]
     Disk(String),
     /// A name that is not there.
     #[error("no {kind} is called {name:?}{hint}")]

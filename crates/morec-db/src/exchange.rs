@@ -123,7 +123,7 @@ pub fn write(
             .any(|pair| pair[0].clip != pair[1].clip)
     {
         return Err(format!(
-            "{} holds the labels of one clip: write a file for each",
+            "{} holds the labels of one clip only: write one file for each clip",
             form.name()
         ));
     }

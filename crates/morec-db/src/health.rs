@@ -34,7 +34,7 @@ impl MotionDb {
         )?);
         for table in digest::faults(&self.conn)? {
             faults.push(format!(
-                "the table of {table} is not as morec left it: damaged, or changed by another program"
+                "the table of {table} does not match its checksum: it is damaged or was changed by another program"
             ));
         }
         let clips = self.clips(&ClipFilter::default())?;
@@ -51,7 +51,7 @@ impl MotionDb {
             let clip = clips.iter().find(|clip| clip.id == id);
             let name = clip.map_or_else(|| format!("#{}", id.0), |clip| clip.name.clone());
             faults.push(format!(
-                "clip {name}: its feature rows are damaged; they can be made again"
+                "clip {name}: its feature rows are damaged; they can be rebuilt with --repair"
             ));
         }
         let indexes = self.indexes()?;

@@ -388,7 +388,7 @@ fn store(conn: &Connection, path: &Path, made: PreparedFile) -> Result<ImportOut
 /// Adds the clips of one file, unless the file's content is there.
 fn add_file(conn: &Connection, path: &Path, clips: &[KeptClip]) -> Result<ImportOutcome, DbError> {
     let Some(first) = clips.first() else {
-        let reason = "there is no clip in it".to_owned();
+        let reason = "the file contains no clip".to_owned();
         return Ok(ImportOutcome::Refused(Refused { reason }));
     };
     let shown = path.to_string_lossy();
@@ -429,7 +429,7 @@ fn insert(
         let name = free_name(conn, path, &clip.name)?;
         if clip.name.len() > LONGEST_NAME {
             warnings.push(format!(
-                "a name of {} bytes, of which a clip has at most {LONGEST_NAME}: it is called {name}",
+                "the name has {} bytes, a clip's at most {LONGEST_NAME}: the clip is called {name}",
                 clip.name.len()
             ));
         }

@@ -189,7 +189,7 @@ impl KeptClip {
         let kept = clips.map(|(character, clip)| Self::new(clip, character, &file, &options));
         let kept: Vec<Self> = kept.collect::<Result<_, _>>()?;
         match kept.is_empty() {
-            true => Err("there is no clip in it".to_owned()),
+            true => Err("the file contains no clip".to_owned()),
             false => Ok(kept),
         }
     }

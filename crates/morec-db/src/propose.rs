@@ -117,7 +117,7 @@ impl MotionDb {
         let material = ProposalData::new(rows, &clips, &samples, params.tick_hz());
         if material.classes.is_empty() {
             return Err(DbError::Invalid(
-                "no accepted sample to go by: label a few first".to_owned(),
+                "no accepted sample: label a few motions first".to_owned(),
             ));
         }
         let seen = look(&material, options, progress)?;

@@ -53,14 +53,14 @@ impl MotionDb {
                     "SELECT coalesce(group_concat(name, ', '), '') FROM clips WHERE file = ?1";
                 let names: String = self.conn.query_row(sql, params![file], |row| row.get(0))?;
                 return refuse(format!(
-                    "its content is in the database already, as {names}"
+                    "the database contains this motion already, as {names}"
                 ));
             }
             PreparedFile::New(mut clips) if clips.len() == 1 => clips.remove(0),
             PreparedFile::New(clips) => {
                 let count = clips.len();
                 return refuse(format!(
-                    "expected one clip, found {count}; FILE#2 chooses one"
+                    "expected one clip, found {count}; choose one, as in FILE#2"
                 ));
             }
         };

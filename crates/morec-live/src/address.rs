@@ -73,7 +73,7 @@ impl Address {
             .place
             .to_socket_addrs()
             .with_context(|| format!("{self}: expected HOST:PORT, as 127.0.0.1:39539"))?;
-        let none = || LiveError::Address(format!("{self}: this name has no address"));
+        let none = || LiveError::Address(format!("{self}: no address found for this host name"));
         found.next().ok_or_else(none)
     }
 
@@ -115,7 +115,10 @@ impl Address {
         };
         Err(LiveError::Address(match known {
             [] => format!("{self}: takes no options, found {name}"),
-            _ => format!("{self}: no option {name}; there are {}", known.join(", ")),
+            _ => format!(
+                "{self}: no option {name}; the options are {}",
+                known.join(", ")
+            ),
         }))
     }
 }
@@ -125,7 +128,7 @@ pub(crate) fn openness(at: SocketAddr) -> Option<String> {
     at.ip().is_unspecified().then(|| {
         let port = at.port();
         format!(
-            "{at} listens to every machine that can reach this one; 127.0.0.1:{port} listens to this one only"
+            "{at} accepts data from every machine that can reach this one; 127.0.0.1:{port} accepts data from this machine only"
         )
     })
 }

@@ -132,13 +132,16 @@ fn who(source: &str, actor: usize) -> String {
 fn silence(status: &Status) -> String {
     let counts = &status.source;
     if counts.packets == 0 {
-        "nothing has arrived yet: is the tracker sending, and to this address and port? (a firewall may be in the way)".to_owned()
+        "nothing has arrived yet: check that the tracker is sending, that it sends to this address and port, and that no \
+         firewall blocks it".to_owned()
     } else if counts.not_motion > 0 {
-        "only a rest pose arrives: the tracker sees nobody (--keep-t-pose if the performer really stands in a T-pose)".to_owned()
+        "only a rest pose arrives: the tracker sees no person (give --keep-t-pose if the performer really stands in a \
+         T-pose)".to_owned()
     } else if counts.malformed * 2 > counts.packets {
-        "packets arrive but cannot be read: is this the sender's protocol?".to_owned()
+        "packets arrive but cannot be read: check that the sender uses this protocol".to_owned()
     } else {
-        "something arrives, but no pose: switch on the sending of bones in the tracker".to_owned()
+        "packets arrive, but without poses: switch on the sending of bones in the tracker"
+            .to_owned()
     }
 }
 
@@ -293,7 +296,7 @@ mod tests {
         let mut status = Status::default();
         assert!(advice_of_status(&status, &index)[0].contains("nothing has arrived"));
         status.source.packets = 9;
-        assert!(advice_of_status(&status, &index)[0].contains("no pose"));
+        assert!(advice_of_status(&status, &index)[0].contains("without poses"));
         status.source.malformed = 8;
         assert!(advice_of_status(&status, &index)[0].contains("cannot be read"));
         status.source.not_motion = 3;

@@ -108,7 +108,7 @@ impl PoseLine {
             if let Some(name) = pose.unknown.first() {
                 return Err(no_part("positions", name));
             }
-            let text = "expected `positions`, `points` or `rotations` of some part of the body, found none";
+            let text = "expected `positions`, `points` or `rotations` of at least one body part, found none";
             return Err(text.to_owned());
         }
         Ok(pose)
@@ -119,7 +119,7 @@ impl PoseLine {
         let first = self.unknown.first()?;
         let more = match self.unknown.len() - 1 {
             0 => String::new(),
-            more => format!(" (and {more} more names are left out)"),
+            more => format!(" (and {more} more names left out)"),
         };
         Some(format!("left out: {}{more}", no_part("positions", first)))
     }
@@ -141,7 +141,7 @@ impl PoseLine {
                 Ok(Some(role))
             }
             (None, Some(_)) => Err(format!(
-                "positions.{0}: no point of a hand is called {0}; there are {1}",
+                "positions.{0}: no point of a hand is called {0}; the points are {1}",
                 shown(name),
                 hand_names()
             )),
@@ -256,7 +256,8 @@ fn hand_names() -> String {
 fn no_part(key: &str, name: &str) -> String {
     let names = Role::BODY.map(Role::name).join(", ");
     format!(
-        "{key}.{name}: no part of the body is called {name}; there are {names}, and points of hands from left_palm to right_little_tip"
+        "{key}.{name}: no body part is called {name}; the names are {names}, and points of hands from left_palm to \
+         right_little_tip"
     )
 }
 
@@ -270,7 +271,7 @@ fn shown(text: &str) -> String {
 fn explain(text: &str, otherwise: &str) -> String {
     let value: Value = match serde_json::from_str(text) {
         Ok(value) => value,
-        Err(error) => return format!("column {}: no JSON: {error}", error.column()),
+        Err(error) => return format!("column {}: invalid JSON: {error}", error.column()),
     };
     let Some(object) = value.as_object() else {
         return format!("expected an object {{…}}, found {}", kind(&value));
@@ -316,7 +317,7 @@ fn parts<'v>(
     expected: &'static str,
 ) -> Option<(String, &'static str, &'v Value)> {
     let Some(parts) = value.as_object() else {
-        return Some((String::new(), "an object of parts of the body", value));
+        return Some((String::new(), "an object of body parts", value));
     };
     parts
         .iter()
@@ -343,7 +344,7 @@ fn numbered(value: &Value) -> Option<(String, &'static str, &Value)> {
         }),
         _ => Some((
             String::new(),
-            "a list of [x, y, z], or those of left and right",
+            "a list of [x, y, z], or such lists for left and right",
             value,
         )),
     }
@@ -469,7 +470,7 @@ mod tests {
             ("[1,2]", "expected an object {…}, found 2 numbers"),
             (
                 r#"{"positions": {"tail": [0,0,0]}}"#,
-                "positions.tail: no part of the body is called tail; there are hips, left_thigh",
+                "positions.tail: no body part is called tail; the names are hips, left_thigh",
             ),
             (
                 r#"{"positions": {"head": [0,0]}}"#,
@@ -481,7 +482,7 @@ mod tests {
             ),
             (
                 r#"{"positions": 5}"#,
-                "positions: expected an object of parts of the body, found 5",
+                "positions: expected an object of body parts, found 5",
             ),
             (
                 r#"{"rotations": {"head": [0,0,0,0]}}"#,

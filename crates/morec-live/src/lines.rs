@@ -113,7 +113,7 @@ fn spawn(name: &str, job: impl FnOnce() + Send + 'static) -> Result<(), LiveErro
     thread::Builder::new()
         .name(name.to_owned())
         .spawn(job)
-        .with_context(|| format!("no thread for {name}"))?;
+        .with_context(|| format!("cannot start a thread for {name}"))?;
     Ok(())
 }
 
@@ -135,7 +135,7 @@ fn accept(
         };
         if !places.take(number, copy, from.ip(), Instant::now()) {
             notices.tell(format!(
-                "a connection from {} is refused: {CONNECTIONS} others show bodies or have just come",
+                "a connection from {} is refused: {CONNECTIONS} others are in use",
                 from.ip()
             ));
             continue;

@@ -31,7 +31,7 @@ impl Notices {
         if left.known.len() == MAX_SHOWN {
             left.full = true;
             left.texts
-                .push("further mistakes are counted and not shown".to_owned());
+                .push("further errors are counted but not shown".to_owned());
             return;
         }
         left.texts.push(format!("{}: {text}", place()));

@@ -56,8 +56,8 @@ fn load_file(
     let ready = |mut take: Take| {
         if index.is_some_and(|index| index.model.needs_rotations()) && !take.clip.has_rotations() {
             return Err(LiveError::Clip(format!(
-                "{}: a clip of points has no rotations, and this index looks at nothing else (it is of the method of \
-                 2009); train one without --method svrdm",
+                "{}: a clip of points has no rotations, which this index (method svrdm) needs; train an index without --method \
+                 svrdm",
                 path.display()
             )));
         }

@@ -38,7 +38,7 @@ pub fn open_sink(address: &Address) -> Result<OpenSink, LiveError> {
             })
         }
         other => Err(LiveError::Address(format!(
-            "{address}: no sink is called {other}; there are terminal:-, json:-, json:FILE, osc://HOST:PORT, ws://HOST:PORT"
+            "{address}: no sink is called {other}; the sinks are terminal:-, json:-, json:FILE, osc://HOST:PORT, ws://HOST:PORT"
         ))),
     }
 }

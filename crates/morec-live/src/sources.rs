@@ -139,7 +139,8 @@ pub fn open_source(
             ))
         }
         other => Err(LiveError::Address(format!(
-            "{address}: no source is called {other}; there are vmc://HOST:PORT, axis://HOST:PORT, axis+udp://HOST:PORT, json:-, json+tcp://HOST:PORT, webcam, clip://FILE"
+            "{address}: no source is called {other}; the sources are vmc://HOST:PORT, axis://HOST:PORT, axis+udp://HOST:PORT, \
+             json:-, json+tcp://HOST:PORT, webcam, clip://FILE"
         ))),
     }
 }

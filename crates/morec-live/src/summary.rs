@@ -13,18 +13,24 @@ pub fn summary(source: &str, status: &Status) -> String {
         (counts.packets, "packets"),
         (counts.malformed, "malformed packets"),
         (counts.late, "late packets"),
-        (counts.refused, "packets of senders beyond --actors"),
+        (
+            counts.refused,
+            "packets of senders beyond the limit of --actors",
+        ),
         (counts.incomplete, "incomplete frames"),
         (
             counts.not_motion,
-            "frames of a rest pose or without tracking",
+            "frames in a rest pose or without tracking",
         ),
         (counts.interruptions, "interruptions"),
         (
             status.dropped_frames,
-            "frames dropped: recognition too slow",
+            "frames dropped because recognition is too slow",
         ),
-        (status.unusable_frames, "frames without a bone of the index"),
+        (
+            status.unusable_frames,
+            "frames without any bone of the index",
+        ),
         (status.dropped_events, "events dropped"),
         (status.suppressed, "motions within the refractory time"),
     ];

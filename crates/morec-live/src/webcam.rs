@@ -62,7 +62,8 @@ pub fn webcam(
     let at = address.socket()?;
     if !at.ip().is_loopback() {
         return Err(LiveError::Address(format!(
-            "{address}: browsers give the camera to pages of this machine only, as webcam://127.0.0.1:8000"
+            "{address}: browsers allow the camera only for pages from this machine: use an address such as \
+             webcam://127.0.0.1:8000"
         )));
     }
     let named = address.text("mediapipe").map(Path::new);
@@ -78,9 +79,9 @@ pub fn webcam(
 }
 
 fn with_mediapipe(folder: Option<&Path>) -> Result<PathBuf, LiveError> {
-    const HOW: &str = "the page needs MediaPipe's files, which do not come with morec: `npm pack @mediapipe/pose` (or `@mediapipe/hands`) gets \
-        them as mediapipe-pose-….tgz, `tar xzf` unpacks that into the folder `package`, and `--mediapipe package`, or webcam?mediapipe=package, \
-        names it";
+    const HOW: &str = "the page needs MediaPipe's files, which are not part of morec: download mediapipe-pose-….tgz with `npm \
+        pack @mediapipe/pose` (or `@mediapipe/hands`), unpack it with `tar xzf` into the folder `package`, and give `--mediapipe \
+        package` or webcam?mediapipe=package";
     match folder {
         Some(folder) if KNOWN_BY.iter().any(|name| folder.join(name).is_file()) => {
             Ok(folder.to_owned())

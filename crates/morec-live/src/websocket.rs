@@ -78,7 +78,7 @@ impl WebSocketSink {
         thread::Builder::new()
             .name("listeners".to_owned())
             .spawn(move || accept(&listener, &open, origin.as_deref()))
-            .context("no thread for listeners")?;
+            .context("cannot start a thread for listeners")?;
         Ok((Self { hall }, at))
     }
 }

@@ -145,8 +145,8 @@ impl CrossvalSettings {
         match (self.by, one) {
             (LeftOut::Person, Some(person)) if data.tests.is_none() => {
                 return Err(OperationError::Settings(format!(
-                    "all labels are by one person, {person}: without them nothing is left to learn from. Divide by clip or by half instead \
-                     of by person"
+                    "all labels are by one person, {person}, so nothing is left to train on without this person: divide by clip \
+                     or by half instead"
                 )));
             }
             _ => {}
@@ -157,7 +157,7 @@ impl CrossvalSettings {
         };
         Ok(match (self.by, named.len(), unnamed) {
             (LeftOut::Person, 0, _) => format!(
-                "each clip in turn, {}, as no person is named: add a column `person` to the labels, or a table of people",
+                "each clip in turn, {}, because no persons are named: add a column `person` to the labels, or a table of people",
                 clips(unnamed)
             ),
             (LeftOut::Person, people, 0) => format!("{}, {people} people", self.by.said()),

@@ -216,7 +216,7 @@ fn advice(points: &[CurvePoint]) -> Vec<String> {
             .filter(|most| gain(most) > 0.0)
         {
             advice.push(format!(
-                "{} gains most by more samples: {:.0} % more of its samples are found",
+                "{} gains most from more samples: {:.0} % more of its samples are found",
                 most.0,
                 100.0 * gain(most)
             ));
@@ -227,7 +227,10 @@ fn advice(points: &[CurvePoint]) -> Vec<String> {
         .min_by(|a, b| a.1.total_cmp(&b.1))
         .filter(|least| least.1 < 0.95)
     {
-        advice.push(format!("{class} needs more samples first: {:.0} % of its samples are found with all that there are", 100.0 * recall));
+        advice.push(format!(
+            "{class} needs more samples most: with all its samples, {:.0} % are found",
+            100.0 * recall
+        ));
     }
     advice
 }
@@ -281,11 +284,11 @@ mod tests {
             "from at most 2 samples to all, F1 of events goes from 0.600 to 0.700"
         );
         assert!(
-            advice[1].starts_with("jump gains most by more samples: 40 %"),
+            advice[1].starts_with("jump gains most from more samples: 40 %"),
             "{advice:?}"
         );
         assert!(
-            advice[2].starts_with("jump needs more samples first: 60 %"),
+            advice[2].starts_with("jump needs more samples most: with all its samples, 60 %"),
             "{advice:?}"
         );
     }

@@ -229,11 +229,11 @@ impl DiscoveredSets {
         self.sets.iter().flat_map(of_set).collect()
     }
 
-    /// `87 repetitions in 12 sets, 83 % of what moves; seen once: 14 stretches`.
+    /// `87 repetitions in 12 sets, 83 % of all motion; 14 stretches seen only once`.
     pub fn summary(&self) -> String {
         let instances: usize = self.sets.iter().map(|set| set.instances.len()).sum();
         format!(
-            "{instances} repetitions in {} sets, {:.0} % of what moves; seen once: {} stretches",
+            "{instances} repetitions in {} sets, {:.0} % of all motion; {} stretches seen only once",
             self.sets.len(),
             100.0 * self.share_in_sets,
             self.alone.len()

@@ -98,7 +98,7 @@ impl EvaluateSettings {
         if !lost.is_empty() {
             let count = lost.len();
             notes.push(format!(
-                "{count} labels lie in clips that are named as unknown; left out"
+                "{count} labels are in clips given as unknown; left out"
             ));
         }
         let truths: Vec<GroundTruth> = kept.into_iter().map(GroundTruth::from).collect();
@@ -110,7 +110,7 @@ impl EvaluateSettings {
             let names = some_of(unlabelled.iter().map(|(name, _)| *name));
             let count = unlabelled.len();
             notes.push(format!(
-                "{count} clips have no label; left out (if they contain no class, name them with --unknown): {names}"
+                "{count} clips have no label; left out (if they contain no class, give them as --unknown): {names}"
             ));
         }
         let streams = used.into_iter().map(|(name, length)| StreamInfo {
@@ -120,7 +120,7 @@ impl EvaluateSettings {
         });
         let streams: Vec<StreamInfo> = streams.filter(|s| s.duration_secs > 0.0).collect();
         if streams.is_empty() {
-            let why = "nothing to measure: no clip has labels, and none is named with --unknown";
+            let why = "nothing to measure: no clip has labels, and none is given as --unknown";
             return Err(OperationError::Settings(why.to_owned()));
         }
         Ok(LabelledStreams {
@@ -138,7 +138,7 @@ impl EvaluateSettings {
         let known: Vec<String> = known.into_iter().cloned().collect();
         let hint = hint(class, &known);
         Err(OperationError::Settings(format!(
-            "the class {class} is to count, but no label of these clips has it{hint}"
+            "no label of these clips has the requested class {class}{hint}"
         )))
     }
 }
@@ -263,7 +263,7 @@ mod tests {
         let known = [("a", false), ("b", true), ("c", true)];
         assert_eq!(streams(&with_unknown), known);
         assert_eq!(with_unknown.truths.len(), 1);
-        let said = "1 labels lie in clips that are named as unknown";
+        let said = "1 labels are in clips given as unknown";
         assert!(with_unknown.notes.iter().any(|n| n.starts_with(said)));
     }
 

@@ -326,7 +326,7 @@ impl GroupSettings {
     pub fn tree(&self, rows: &[&Rows]) -> Result<Hierarchy, OperationError> {
         if rows.len() > MOST_IN_TREE {
             return Err(OperationError::Settings(format!(
-                "tree: {} stretches, at most {MOST_IN_TREE} can be grouped (--classes chooses)",
+                "tree: expected at most {MOST_IN_TREE} stretches, found {}; choose some with --classes",
                 rows.len()
             )));
         }
@@ -347,7 +347,7 @@ impl GroupSettings {
             group.map(|(node, _)| *node).ok_or_else(|| {
                 let (number, count) = (*number, groups.len());
                 OperationError::Settings(format!(
-                    "{option} {number}: there are groups 1 to {count}"
+                    "{option} {number}: the groups are numbered 1 to {count}"
                 ))
             })
         };
@@ -366,7 +366,7 @@ impl GroupSettings {
     /// No direction counts.
     pub fn kwas(&self) -> Result<KwasParams, OperationError> {
         if self.k == 0 {
-            let none = "k is 0: at least one direction must count";
+            let none = "k must be 1 or more, found 0";
             return Err(OperationError::Settings(none.to_owned()));
         }
         let form = match self.normalised {

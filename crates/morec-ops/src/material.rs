@@ -90,7 +90,7 @@ pub fn training_data(
     data.notes.extend(errors_of(&data.clips));
     if !marked.labelled.is_empty() {
         data.notes.push(format!(
-            "{} clips have the tag {BACKGROUND}, but have samples of the classes: they are used as labelled clips: {}",
+            "{} clips with the tag {BACKGROUND} have samples of the classes and are used as labelled clips: {}",
             marked.labelled.len(),
             some_of(marked.labelled.iter().map(|info| &info.name))
         ));

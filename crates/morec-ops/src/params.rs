@@ -97,7 +97,7 @@ pub(crate) fn with<P: Serialize + DeserializeOwned>(
     let unknown = |param: &Param| {
         let known: Vec<String> = leaves(&usual).into_iter().map(|(path, _)| path).collect();
         let (name, hint) = (&param.name, nearest(&param.name, &known));
-        of(param, format!("there is no parameter {name}{hint}"))
+        of(param, format!("no parameter is called {name}{hint}"))
     };
     for param in given {
         if !put(&mut tree, &usual, param) {
@@ -108,7 +108,7 @@ pub(crate) fn with<P: Serialize + DeserializeOwned>(
             // A rule's fields may make sense together only: the first mistake stands unless what follows mends it.
             Err(error) => {
                 let was = at(&usual, &param.name).filter(|was| !was.is_null());
-                let was = was.map_or(String::new(), |was| format!(" (it is {was})"));
+                let was = was.map_or(String::new(), |was| format!(" (its value is {was})"));
                 mistake.get_or_insert_with(|| of(param, format!("{error}{was}")));
             }
         }

@@ -25,7 +25,7 @@ pub struct RecognizeSettings {
     /// points and older indexes, auto relaxes matching after four motions by a performer unlike the training subject,
     /// anyone from the start, teacher never [default: auto].
     #[cfg_attr(feature = "clap", arg(long, value_parser = choices::<PerformerKind>([
-        ("auto", "Judged by the motions so far"),
+        ("auto", "Decided by the motions recognised so far"),
         ("teacher", "The training subject"),
         ("anyone", "Other people"),
     ])))]

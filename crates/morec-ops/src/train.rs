@@ -59,7 +59,7 @@ pub struct TrainSettings {
     /// Parameters of --method svrdm
     #[cfg_attr(feature = "clap", arg(hide_short_help = true, long, default_value = "tuned", value_parser = choices::<Setting>([
         ("faithful", "The values of the thesis"),
-        ("tuned", "Values that generalise better"),
+        ("tuned", "Values that generalise better to other people"),
     ])))]
     pub svrdm: Setting,
     /// Use unlabelled parts of labelled clips as background, or ignore them
@@ -69,7 +69,7 @@ pub struct TrainSettings {
     ///
     /// Not with --method svrdm. The motion is synthetic and real.
     #[cfg_attr(feature = "clap", arg(hide_short_help = true, long, default_value = "always", value_parser = choices::<Everyday>([
-        ("auto", "If --background holds less than a minute"),
+        ("auto", "Only if --background has less than 1 minute"),
         ("always", "Always"),
         ("never", "Never"),
     ])))]
@@ -78,7 +78,7 @@ pub struct TrainSettings {
     ///
     /// Not with --method svrdm.
     #[cfg_attr(feature = "clap", arg(long, default_value = "auto", value_parser = choices::<Mirror>([
-        ("auto", "Between classes named as two sides of a motion: wave_left, wave_right"),
+        ("auto", "Between pairs of classes named for a side, such as wave_left and wave_right"),
         ("yes", "All classes but those of --one-sided"),
         ("no", "Never"),
     ])))]
@@ -194,7 +194,7 @@ impl TrainSettings {
     fn check_kinds(&self) -> Result<(), OperationError> {
         let names_kinds = !self.activities.is_empty() || !self.gestures.is_empty();
         if names_kinds && self.method != Method::Auto {
-            let why = "activities and gestures are for the method auto";
+            let why = "activities and gestures apply to the method auto only";
             return Err(OperationError::Settings(why.to_owned()));
         }
         Ok(())

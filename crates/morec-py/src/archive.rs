@@ -61,7 +61,7 @@ fn row<'py>(py: Python<'py>, clip: &KeptClip) -> PyResult<Bound<'py, PyDict>> {
 fn kept(row: &Bound<'_, PyDict>) -> PyResult<KeptClip> {
     let get = |name: &str| -> PyResult<Bound<'_, PyAny>> {
         let value = row.get_item(name)?;
-        value.ok_or_else(|| value_error(format!("a row of clips without the column {name}")))
+        value.ok_or_else(|| value_error(format!("a row of clips lacks the column {name}")))
     };
     let hash = |name: &str| -> PyResult<[u8; 32]> {
         let bytes: Vec<u8> = get(name)?.extract()?;

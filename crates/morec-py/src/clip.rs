@@ -224,7 +224,7 @@ impl PyClip {
         })?;
         if !slice.getattr("step")?.is_none() {
             return Err(value_error(
-                "a slice of a clip has no step; see Clip.resampled",
+                "a slice of a clip cannot have a step; use Clip.resampled",
             ));
         }
         let clip = &self.data.clip;
@@ -392,7 +392,7 @@ fn from_positions(
     let loaded =
         clip_of_positions(name, rate_hz, points, unit, &Limits::default()).map_err(morec_error)?;
     let clip = loaded.clips.into_iter().next();
-    let clip = clip.ok_or_else(|| morec_error("no performer in these positions"))?;
+    let clip = clip.ok_or_else(|| morec_error("these positions contain no performer"))?;
     let mut data = ClipData::from(normalize(clip, &options).map_err(morec_error)?);
     data.warnings = loaded.warnings.iter().map(|w| w.text.clone()).collect();
     Ok(data.into())

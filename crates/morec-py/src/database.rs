@@ -421,7 +421,7 @@ impl PyDatabase {
             report
                 .left
                 .iter()
-                .map(|(clip, why)| format!("left as it is: {clip}: {why}")),
+                .map(|(clip, why)| format!("not changed: {clip}: {why}")),
         )?;
         let mut rows = Vec::new();
         for cut in &report.cuts {

@@ -18,13 +18,13 @@ create_exception!(
     morec,
     MorecError,
     PyException,
-    "What a file, a label or a motion has that morec cannot use, with its place."
+    "An unusable file, label, motion or setting; the message says where and what was expected."
 );
 create_exception!(
     morec,
     MorecWarning,
     PyUserWarning,
-    "Something was repaired, left out or looks wrong; the result is there all the same."
+    "Input was repaired, left out or is doubtful; the result is returned nevertheless."
 );
 
 /// Adds the types to the module.

@@ -39,7 +39,7 @@ pub fn features<'py>(
     if bones.is_empty() {
         let name = &clip.data.clip.name;
         return Err(value_error(format!(
-            "{name}: no bone of the body is known, so there are no features; see Clip.roles"
+            "{name}: no joint has a role, so no features can be computed; see Clip.roles"
         )));
     }
     let params = FeatureParams::default();

@@ -66,7 +66,7 @@ fn lacks(index: &MotionIndex, data: &ClipData) -> Option<String> {
     }
     let names = lacking.join(", ");
     Some(format!(
-        "{}: the index uses bones that this clip does not show (missing: {names}); recognising without them",
+        "{}: bones of the index are missing in this clip and not used: {names}",
         data.clip.name
     ))
 }

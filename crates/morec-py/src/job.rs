@@ -90,7 +90,7 @@ pub fn run<T: Send>(
     match result {
         Some(Ok(value)) => Ok(value),
         _ => Err(morec_error(
-            "an internal error; please report it with what was given",
+            "an internal error; please report it together with the input",
         )),
     }
 }

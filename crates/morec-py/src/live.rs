@@ -84,7 +84,7 @@ impl LiveSession {
         let reader = readers.into_iter().next();
         Ok(Self {
             open: Mutex::new(Some(session)),
-            reader: Mutex::new(reader.ok_or_else(|| morec_error("no reader of events"))?),
+            reader: Mutex::new(reader.ok_or_else(|| morec_error("no events are being read"))?),
             index,
             advice: Mutex::new(Advice::new([opened.name.clone()])),
             address: opened.name,

@@ -11,7 +11,7 @@ pub fn templates(index: &MotionIndex) -> PyResult<&TemplateModel> {
     match &index.model {
         Model::Templates(model) => Ok(model),
         Model::Svrdm(_) => Err(PyValueError::new_err(
-            "an index of the method svrdm cannot be divided: its tree needs all classes; it is small, so give parts=1",
+            "an index of the method svrdm cannot be divided, because its tree needs all classes; it is small: give parts=1",
         )),
     }
 }

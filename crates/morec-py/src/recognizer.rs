@@ -72,9 +72,9 @@ pub fn stream_options(given: Option<&Bound<'_, PyDict>>) -> PyResult<StreamOptio
 fn stream_error(error: StreamError) -> PyErr {
     match error {
         StreamError::Option(_) | StreamError::Roles(_) | StreamError::NoParts => value_error(error),
-        StreamError::NoRotations { .. } => morec_error(format!(
-            "{error}; Index.recognize plays whole clips through it"
-        )),
+        StreamError::NoRotations { .. } => {
+            morec_error(format!("{error}; Index.recognize recognises whole clips"))
+        }
         error => morec_error(error),
     }
 }

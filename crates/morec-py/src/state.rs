@@ -72,12 +72,12 @@ pub fn state<'py>(py: Python<'py>, take: &ClipData) -> PyResult<Bound<'py, PyDic
 pub fn restored(state: &Bound<'_, PyDict>) -> PyResult<ClipData> {
     let get = |name: &str| -> PyResult<Bound<'_, PyAny>> {
         let value = state.get_item(name)?;
-        value.ok_or_else(|| PyKeyError::new_err(format!("a pickled clip without {name}")))
+        value.ok_or_else(|| PyKeyError::new_err(format!("the pickled clip lacks {name}")))
     };
     let version: u32 = get("version")?.extract()?;
     if version != VERSION {
         return Err(value_error(format!(
-            "a clip pickled in version {version}; this morec reads version {VERSION}"
+            "the clip was pickled in version {version}; this morec reads version {VERSION}"
         )));
     }
     let frames: usize = get("frames")?.extract()?;
@@ -104,7 +104,7 @@ pub fn restored(state: &Bound<'_, PyDict>) -> PyResult<ClipData> {
     let inside = moved.iter().all(|joint| *joint < skeleton.len());
     if rotations.len() != count || tracks.len() != moved.len() * frames * 3 || !inside {
         return Err(value_error(
-            "a pickled clip whose arrays do not fit together",
+            "the arrays of the pickled clip do not fit together",
         ));
     }
     let track = |(number, joint): (usize, usize)| JointTrack {

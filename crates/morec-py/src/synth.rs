@@ -47,7 +47,7 @@ pub fn synth_database(
             known.ok_or_else(|| {
                 let known: Vec<_> = motions_of(MotionKind::Gesture).map(|m| m.name()).collect();
                 value_error(format!(
-                    "no gesture is called {name:?}; there are {}",
+                    "no gesture is called {name:?}; the gestures are {}",
                     known.join(", ")
                 ))
             })

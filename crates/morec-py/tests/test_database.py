@@ -96,7 +96,7 @@ def test_mistakes_are_plain_errors(db: morec.Database, tmp_path: Path) -> None:
         db.propose(classes=["nothing"])
     with pytest.raises(KeyError):
         db.group(of="labels", classes=["nothing"])
-    with pytest.raises(ValueError, match="at least one direction"):
+    with pytest.raises(ValueError, match="k must be 1 or more"):
         db.group(of="clips", method="kwas", k=0)
     with pytest.raises(FileNotFoundError):
         morec.Database(tmp_path / "nowhere.mdb")

@@ -173,7 +173,7 @@ pub(crate) fn copy(positions: &JsValue, values: &mut [f64]) -> Result<(), JsErro
 /// `value` as objects, arrays and numbers.
 pub(crate) fn to_js(value: &impl Serialize) -> Result<JsValue, JsError> {
     let text = serde_json::to_string(value)?;
-    JSON::parse(&text).map_err(|_| JsError::new("an internal error: no JSON"))
+    JSON::parse(&text).map_err(|_| JsError::new("an internal error: invalid JSON"))
 }
 
 /// What was given as `name`, as text; `None` if nothing was.
@@ -183,7 +183,7 @@ fn json(name: &str, value: &JsValue) -> Result<Option<String>, JsError> {
     }
     let text: Option<JsString> = JSON::stringify(value).ok();
     let text = text.and_then(|text| text.as_string());
-    let text = text.ok_or_else(|| JsError::new(&format!("{name}: no plain object")))?;
+    let text = text.ok_or_else(|| JsError::new(&format!("{name}: expected a plain object")))?;
     Ok(Some(text))
 }
 

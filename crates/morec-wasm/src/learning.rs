@@ -64,7 +64,7 @@ impl JsClip {
         let mut clips = loaded.clips.into_iter();
         let clip = clips
             .next()
-            .ok_or_else(|| JsError::new("positions: no performer in them"))?;
+            .ok_or_else(|| JsError::new("positions: contain no performer"))?;
         let options = ImportOptions {
             up: up.map(|up| up.parse::<SignedAxis>()).transpose()?,
             ..ImportOptions::default()

@@ -25,7 +25,7 @@ pub(super) fn load(path: &Path, index: &MotionIndex) -> Result<Take, CallError> 
     let takes = files::open(path);
     let takes = takes.map_err(|error| file_error(&error.path, error.kind))?;
     let take = takes.into_iter().find(|take| take.clip.frames > 0);
-    let mut take = take.ok_or_else(|| file_error(path, "no frame of motion in it"))?;
+    let mut take = take.ok_or_else(|| file_error(path, "the file contains no frame of motion"))?;
     if index.model.needs_rotations() && !take.clip.has_rotations() {
         return Err(file_error(path, NoPivots::Rotations));
     }

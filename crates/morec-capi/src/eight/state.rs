@@ -64,7 +64,7 @@ impl ThesisState {
     pub(super) fn init(&mut self, path: &Path) -> Result<(), CallError> {
         if self.index.is_some() {
             return Err(out_of_order(
-                "there is an index already: call mrTerminate first",
+                "an index is loaded already: call mrTerminate first",
             ));
         }
         self.index = Some(index::load(path)?);
@@ -83,12 +83,12 @@ impl ThesisState {
             .ok_or_else(|| out_of_order("call mrInit first"))?;
         if self.source.is_some() {
             return Err(out_of_order(
-                "there is a data source already: call mrStopDataSource first",
+                "a data source is set already: call mrStopDataSource first",
             ));
         }
         if self.run.is_some() {
             return Err(out_of_order(
-                "recognition of another data source goes on: call mrStop first",
+                "recognition of another data source is running: call mrStop first",
             ));
         }
         let take = Arc::new(clips::load(path, index)?);
@@ -115,7 +115,7 @@ impl ThesisState {
     pub(super) fn stop_source(&mut self) -> Result<(), CallError> {
         if self.source.take().is_none() {
             return Err(out_of_order(
-                "there is no data source: call mrSetDataSource first",
+                "no data source is set: call mrSetDataSource first",
             ));
         }
         if let Some(run) = &self.run {
@@ -147,12 +147,12 @@ impl ThesisState {
             .ok_or_else(|| out_of_order("call mrInit first"))?;
         if self.run.is_some() {
             return Err(out_of_order(
-                "recognition goes on already: call mrStop first",
+                "recognition is running already: call mrStop first",
             ));
         }
         let Some(source) = &mut self.source else {
             return Err(out_of_order(
-                "there is no data source: call mrSetDataSource first",
+                "no data source is set: call mrSetDataSource first",
             ));
         };
         Recognizer::new(&index.model, source.take.bones())
@@ -183,7 +183,7 @@ impl ThesisState {
     pub(super) fn stop(&mut self) -> Result<(), CallError> {
         let Some(run) = &self.run else {
             return Err(out_of_order(
-                "there is no recognition to stop: call mrStart first",
+                "recognition is not running: call mrStart first",
             ));
         };
         run.control.stop.store(true, Relaxed);

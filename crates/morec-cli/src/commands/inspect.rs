@@ -169,7 +169,7 @@ fn roles_template(paths: &[PathBuf], read: &ReadArgs, options: &ImportOptions) -
     for path in paths {
         let opened = files::open_with(path, read, options.mapping.as_ref())?;
         let Some(clip) = opened.clips.first() else {
-            bail!("{}: there is no clip in it", path.display());
+            bail!("{}: contains no clip", path.display());
         };
         let text = if clip.points.is_some() {
             mapping::template(&clip.skeleton.names().collect::<Vec<_>>())

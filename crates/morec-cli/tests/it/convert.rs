@@ -91,7 +91,7 @@ fn positions_go_through_every_format_of_points() {
         from = to;
     }
     let refused = folder.morec(&["cut", "points.c3d", "--method", "ppca"]);
-    assert!(refused.err.contains("positions alone"), "{refused:?}");
+    assert!(refused.err.contains("positions only"), "{refused:?}");
 }
 
 #[test]

@@ -65,11 +65,7 @@ fn repetitions_of_clips_and_of_a_database_are_found_and_proposed() {
         "{}",
         table.out
     );
-    assert!(
-        table.err.contains("% of what moves; seen once: "),
-        "{}",
-        table.err
-    );
+    assert!(table.err.contains("% of all motion; "), "{}", table.err);
     let one = json(
         &folder,
         &[

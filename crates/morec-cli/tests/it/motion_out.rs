@@ -198,7 +198,7 @@ fn kinds_of_classes_are_of_classes_that_there_are() {
         (&["--one-sided", "jump"], "no class is called \"jump\""),
         (
             &["--method", "templates", "--gestures", "wave"],
-            "activities and gestures are for the method auto",
+            "activities and gestures apply to the method auto only",
         ),
     ] {
         let ran = train(options);

@@ -351,7 +351,7 @@ fn what_cannot_be_done_is_said() {
         ),
         (
             &["reduce", "wave.bvh", "--pivots", "pelvis.json"],
-            "no joint plays the root pivot Pelvis",
+            "no joint for the root pivot Pelvis",
         ),
     ];
     let tau = folder.morec(&["group", "clips", "--tau", "2"]);

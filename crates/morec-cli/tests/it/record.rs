@@ -375,7 +375,7 @@ fn live_says_what_is_wrong_with_a_stream_and_with_its_lines() {
     );
     assert!(
         said.contains(
-            "json:-: line 2: positions.paw: no part of the body is called paw; there are hips"
+            "json:-: line 2: positions.paw: no body part is called paw; the names are hips"
         ),
         "{said}"
     );

@@ -9,7 +9,7 @@ pub fn read(text: &str, clip: Option<&str>, tiers: &[String]) -> Result<ReadLabe
     let clip = clip.ok_or_else(|| {
         ParseError::new(
             Place::File,
-            "to be given the clip (a label track does not name it)",
+            "the clip as an option (a label track does not name it)",
             "no clip given",
         )
     })?;

@@ -49,8 +49,9 @@ pub fn read(bytes: &[u8]) -> Result<ReadLabels, ParseError> {
         }
     }
     if summed_up > 0 {
-        let text =
-            format!("{summed_up} labels of whole sequences repeat those of their parts; left out");
+        let text = format!(
+            "{summed_up} labels of whole sequences repeat the labels of their parts; left out"
+        );
         read.warnings.push(Warning::new(Place::File, text));
     }
     Ok(read)

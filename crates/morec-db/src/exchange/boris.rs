@@ -67,7 +67,7 @@ pub(super) fn read(records: &[Record], context: &LabelContext) -> Result<ReadLab
             "START" => open.push((class, who, secs, *line)),
             "STOP" => {
                 let Some(begun) = open.iter().position(is_it) else {
-                    let text = format!("`{class}` stops and never started; left out");
+                    let text = format!("`{class}` stops but has no start; left out");
                     read.warnings.push(Warning::new(Place::Line(*line), text));
                     continue;
                 };
@@ -100,7 +100,7 @@ pub(super) fn read(records: &[Record], context: &LabelContext) -> Result<ReadLab
         }
     }
     for (class, _, start, line) in open {
-        let text = format!("`{class}` starts at {start} s and never stops; left out");
+        let text = format!("`{class}` starts at {start} s but has no stop; left out");
         read.warnings.push(Warning::new(Place::Line(line), text));
     }
     Ok(read)

@@ -66,7 +66,7 @@ pub fn read(bytes: &[u8], context: &LabelContext) -> Result<ReadLabels, ParseErr
             });
         }
         for ([_, code, _], start) in open {
-            let text = format!("{id}: `{code}` starts at {start} s and never stops; left out");
+            let text = format!("{id}: `{code}` starts at {start} s but has no stop; left out");
             read.warnings.push(Warning::new(Place::File, text));
         }
     }

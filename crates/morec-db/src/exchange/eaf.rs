@@ -42,7 +42,7 @@ pub fn read(text: &str, context: &LabelContext) -> Result<ReadLabels, ParseError
         None => {
             return Err(ParseError::new(
                 Place::File,
-                "to be given the clip",
+                "the clip as an option",
                 "no media file and no clip given",
             ));
         }

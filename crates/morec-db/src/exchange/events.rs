@@ -39,9 +39,8 @@ pub(super) fn read(bytes: &[u8], clip: &str) -> Result<ReadLabels, ParseError> {
                     .push(Annotation::accepted(clip, class, (*start, *stop)));
             }
             _ => {
-                let text = format!(
-                    "`{name}` at {start:.3} s is an event without another one behind it; left out"
-                );
+                let text =
+                    format!("`{name}` at {start:.3} s is not followed by another event; left out");
                 read.warnings.push(Warning::new(Place::File, text));
             }
         }

@@ -75,7 +75,8 @@ fn results_of(task: &Value, read: &mut ReadLabels) -> Vec<(Value, SampleState)> 
     let is_cancelled = |set: &&Value| set["was_cancelled"].as_bool() == Some(true);
     let cancelled = set("annotations").filter(is_cancelled).count();
     if cancelled > 0 {
-        let text = format!("{cancelled} annotations of a task were skipped and are no labels");
+        let text =
+            format!("{cancelled} annotations were skipped by their annotator and are left out");
         read.warnings.push(Warning::new(Place::File, text));
     }
     if task["annotations"].is_null() && task["predictions"].is_null() {
@@ -136,7 +137,8 @@ fn stretches_of(value: &Value, rate_hz: Option<f64>) -> Result<Vec<(f64, f64)>, 
         };
     }
     if let Some(ranges) = value["ranges"].as_array() {
-        let rate_hz = rate_hz.ok_or("frames of a video, whose rate is not known (--label-rate)")?;
+        let rate_hz =
+            rate_hz.ok_or("frames of a video of unknown rate (give it with --label-rate)")?;
         // Frames count from one, and the last belongs to the label.
         let range = |range: &Value| {
             let (start, end) = (range["start"].as_f64()?, range["end"].as_f64()?);
@@ -152,7 +154,7 @@ fn stretches_of(value: &Value, rate_hz: Option<f64>) -> Result<Vec<(f64, f64)>, 
     for key in sequence {
         let by_frame = || Some((key["frame"].as_f64()? - 1.0) / rate_hz?);
         let time = key["time"].as_f64().or_else(by_frame);
-        let time = time.ok_or("frames of a video, whose rate is not known (--label-rate)")?;
+        let time = time.ok_or("frames of a video of unknown rate (give it with --label-rate)")?;
         match (key["enabled"].as_bool(), open) {
             (Some(false), Some(start)) => {
                 stretches.push((start, time));

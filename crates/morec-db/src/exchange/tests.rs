@@ -636,8 +636,8 @@ fn a_project_of_boris() {
     let said: Vec<String> = labels.warnings.iter().map(ToString::to_string).collect();
     assert_eq!(said.len(), 3, "{said:?}");
     assert!(
-        said[0].contains("moment")
-            && said[1].contains("never stops")
+        said[0].contains("point in time")
+            && said[1].contains("has no stop")
             && said[2].contains("2 events have modifiers")
     );
 }

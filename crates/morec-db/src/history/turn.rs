@@ -110,11 +110,11 @@ fn find(conn: &Connection, way: Way, wanted: Option<i64>) -> Result<Option<Histo
     let found = found.ok_or_else(|| DbError::unknown("step", &id.to_string()))?;
     match (way, found.undone) {
         (Way::Undo, true) => Err(DbError::Invalid(format!(
-            "step {id} ({}) has been taken back already",
+            "step {id} ({}) has been undone already",
             found.what
         ))),
         (Way::Redo, false) => Err(DbError::Invalid(format!(
-            "step {id} ({}) has not been taken back",
+            "step {id} ({}) has not been undone",
             found.what
         ))),
         _ => Ok(Some(found)),
@@ -139,11 +139,11 @@ fn refusal(step: &HistoryStep, way: Way, why: &str, others: &[HistoryStep]) -> D
         .map(|other| format!("{} ({})", other.id, other.what))
         .collect();
     let (done, first) = match way {
-        Way::Undo => ("taken back", "take these back first"),
-        Way::Redo => ("done again", "take back or do again these first"),
+        Way::Undo => ("taken back", "undo these first"),
+        Way::Redo => ("done again", "undo or redo these first"),
     };
     DbError::Invalid(format!(
-        "step {} ({}) cannot be {done} by itself: {} {why}; {first}",
+        "step {} ({}) cannot be {done} alone: {} {why}; {first}",
         step.id,
         step.what,
         named.join(", ")
@@ -156,7 +156,7 @@ fn needed(step: &HistoryStep, error: DbError) -> DbError {
             if code.code == rusqlite::ErrorCode::ConstraintViolation =>
         {
             DbError::Invalid(format!(
-                "step {} ({}): its rows changed since or are in use; nothing was undone",
+                "step {} ({}): its rows have changed since or are in use; nothing was undone",
                 step.id, step.what
             ))
         }

@@ -102,7 +102,7 @@ impl MotionDb {
             let id = need(conn, from)?;
             if find(conn, to)?.is_some_and(|other| other != id) {
                 return Err(DbError::Invalid(format!(
-                    "there is a class {to} already: merge them instead"
+                    "a class called {to} exists already: merge the two instead"
                 )));
             }
             conn.execute(

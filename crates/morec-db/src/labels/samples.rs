@@ -17,7 +17,7 @@ fn need_unchanged(conn: &Connection, seen: &[DbSample]) -> Result<(), DbError> {
     for old in seen {
         if NewSample::from(&find(conn, old.id)?) != NewSample::from(old) {
             return Err(DbError::Invalid(format!(
-                "another program changed sample {} meanwhile: nothing was done",
+                "another program has changed sample {}: nothing was changed",
                 old.id.0
             )));
         }
@@ -180,7 +180,7 @@ impl MotionDb {
             let there: Option<i64> = there.optional()?;
             if let Some(other) = there {
                 return Err(DbError::Invalid(format!(
-                    "sample {} of {} is there already: number {other}",
+                    "sample {} of {} exists already, as number {other}",
                     old.class, old.clip_name
                 )));
             }

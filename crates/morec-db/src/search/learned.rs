@@ -84,7 +84,7 @@ impl SearchIndex {
         counts.retain(|_, of_class| of_class.len() > 1);
         if counts.len() < 2 {
             return Err(DbError::Invalid(format!(
-                "too little to learn from: expected accepted samples of at least 2 classes, 2 of each, found {} such \
+                "too few samples to learn a metric: expected at least 2 classes with 2 accepted samples each, found {} such \
                  classes",
                 counts.len()
             )));
@@ -98,7 +98,7 @@ impl SearchIndex {
             .collect();
         LearnedMetric::of(&seen, classes).ok_or_else(|| {
             DbError::Invalid(
-                "too little to learn from: the labelled samples do not differ".to_owned(),
+                "no metric can be learned: the labelled samples do not differ".to_owned(),
             )
         })
     }

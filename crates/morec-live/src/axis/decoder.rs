@@ -37,7 +37,7 @@ pub struct AxisFrame<'a> {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum AxisError {
     /// Bytes between frames, or what looked like one and was not.
-    #[error("byte {at}: expected a frame (FF DD …), found {skipped} bytes of something else")]
+    #[error("byte {at}: expected a frame (FF DD …), found {skipped} other bytes")]
     Rubbish {
         /// Place in the stream, bytes from its beginning.
         at: u64,

@@ -74,7 +74,7 @@ impl AxisSource {
                 let named = thread::Builder::new().name("axis".to_owned());
                 named
                     .spawn(move || connect(at, &sender, &closed))
-                    .context("no thread for a connection")?;
+                    .context("cannot start a thread for a connection")?;
                 (From::Tcp(came), address.to_string())
             }
         };
@@ -95,7 +95,7 @@ impl AxisSource {
         if let Some(error) = self.receiver.take_error().filter(|_| !self.complained) {
             self.complained = true;
             self.notices
-                .tell(format!("{error}; going on with the next frame"));
+                .tell(format!("{error}; continuing with the next frame"));
         }
     }
 
@@ -191,7 +191,7 @@ fn pass_on(mut stream: TcpStream, to: &SyncSender<Received>, closed: &AtomicBool
 pub fn axis_skeleton(path: &Path) -> Result<AxisSkeleton, LiveError> {
     let shown = path.display();
     let takes = files::open(path)?;
-    let none = || LiveError::Clip(format!("{shown}: no skeleton in it"));
+    let none = || LiveError::Clip(format!("{shown}: contains no skeleton"));
     let take = takes.first().ok_or_else(none)?;
     AxisSkeleton::of_clip(&take.clip.skeleton, &take.roles)
         .map_err(|error| LiveError::Clip(format!("{shown}: {error}")))

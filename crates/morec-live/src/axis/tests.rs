@@ -290,7 +290,7 @@ fn what_is_no_frame_is_said_with_its_place_and_the_next_frame_is_found() {
     ];
     assert_eq!(
         said[0],
-        "byte 0: expected a frame (FF DD …), found 5 bytes of something else"
+        "byte 0: expected a frame (FF DD …), found 5 other bytes"
     );
     assert_eq!(
         said[1],

@@ -57,7 +57,7 @@ impl VmcSource {
             return;
         };
         self.notices.tell(format!(
-            "{peer} shows a performer too, and all {} places are taken (--actors)",
+            "{peer} sends another performer, but the limit of {} is reached (raise it with --actors)",
             self.places
         ));
     }

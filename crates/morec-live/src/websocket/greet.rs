@@ -88,7 +88,7 @@ fn shake_hands<S: Read + Write>(
     let check = |request: &Request, response: Response| match may_listen(request, origin) {
         true => Ok(response),
         false => {
-            let why = "this page may not listen: start morec with ?origin=… of the page";
+            let why = "this page may not connect: start morec with ?origin=… of the page";
             let mut refusal = ErrorResponse::new(Some(why.to_owned()));
             *refusal.status_mut() = StatusCode::FORBIDDEN;
             Err(refusal)

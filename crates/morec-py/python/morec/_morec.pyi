@@ -21,10 +21,10 @@ _Roles = dict[str, str | None] | str | None
 _Array = npt.NDArray[np.float64]
 
 class MorecError(Exception):
-    """A fault of a file, a label or a motion that morec cannot use, with its place."""
+    """An unusable file, label, motion or setting; the message says where and what was expected."""
 
 class MorecWarning(UserWarning):
-    """Something was repaired, left out or looks wrong; the result is there all the same."""
+    """Input was repaired, left out or is doubtful; the result is returned nevertheless."""
 
 class Clip:
     """A motion-capture clip in metres, Y up: a skeleton, its frames, and which joint is which part of the body.

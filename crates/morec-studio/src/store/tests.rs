@@ -231,7 +231,10 @@ fn an_edit_leaves_what_another_program_made_of_a_label() {
     assert_eq!(class.as_deref(), Some("nod"));
     let (done, class) = changed_meanwhile(false, split);
     let why = done.unwrap_err().to_string();
-    assert!(why.starts_with("another program changed sample"), "{why}");
+    assert!(
+        why.starts_with("another program has changed sample"),
+        "{why}"
+    );
     assert_eq!(class.as_deref(), Some("nod"));
     for edit in [shift, split] as [fn(&Snapshot) -> Edit; 2] {
         let (done, class) = changed_meanwhile(true, edit);

@@ -27,7 +27,7 @@ pub struct Pca {
 pub enum PcaError {
     #[error("principal components need at least 2 rows, found {found}")]
     TooFewRows { found: u64 },
-    #[error("all {rows} rows are alike: there is no direction in which they differ")]
+    #[error("all {rows} rows are equal, so they have no principal components")]
     NoVariance { rows: u64 },
     #[error("a row contains a value that is not finite")]
     NotFinite,

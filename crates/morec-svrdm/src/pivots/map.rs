@@ -10,7 +10,7 @@ use super::{Pivot, PivotPose, PivotSet};
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum NoPivots {
     /// No joint plays the root pivot.
-    #[error("no joint plays the root pivot {pivot}: expected one of the joints [{}]{}", .joints.join(", "), role_hint(.role))]
+    #[error("no joint for the root pivot {pivot}: expected one of the joints [{}]{}", .joints.join(", "), role_hint(.role))]
     Root {
         /// The root pivot's name.
         pivot: String,
@@ -21,8 +21,7 @@ pub enum NoPivots {
     },
     /// The clip is one of points.
     #[error(
-        "the method of 2009 looks at how joints are turned, and what is shown has positions alone: \
-         use the templates, which look at positions"
+        "the method svrdm needs joint rotations, but the input has positions only: use the method templates"
     )]
     Rotations,
 }

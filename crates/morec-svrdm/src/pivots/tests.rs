@@ -248,7 +248,7 @@ fn a_skeleton_without_the_root_is_refused_by_name() {
     let error = PivotMap::resolve(&PivotSet::thesis(), &skeleton, &RoleMap::default()).unwrap_err();
     assert_eq!(
         error.to_string(),
-        "no joint plays the root pivot Hips: expected one of the joints [Hips, root] or the role hips"
+        "no joint for the root pivot Hips: expected one of the joints [Hips, root] or the role hips"
     );
 }
 
