@@ -71,7 +71,7 @@ test("the camera's page sends what MediaPipe sees, and the command recognises it
       const said = [];
       createInterface({ input: live.stderr }).on("line", (line) => {
         said.push(line);
-        if (line.includes("its page is ")) found(line.split("its page is ")[1]);
+        if (line.includes("the page of the webcam is ")) found(line.split("the page of the webcam is ")[1]);
       });
       live.once("exit", () => failed(new Error(said.join("; "))));
     });

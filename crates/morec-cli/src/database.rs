@@ -21,7 +21,7 @@ pub fn only(inputs: &[PathBuf]) -> Result<Option<&Path>> {
         [one] if is_database(one) => Ok(Some(one)),
         _ => match inputs.iter().find(|path| is_database(path)) {
             Some(path) => bail!(
-                "{}: a database stands alone; give either clips or one database",
+                "{}: clips and a database cannot be combined: give either clips or one database",
                 path.display()
             ),
             None => Ok(None),

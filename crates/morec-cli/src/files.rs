@@ -20,8 +20,8 @@ use crate::output;
 pub struct ReadArgs {
     /// ASF skeleton of AMC clips, or OSIM model of MOT and STO clips
     ///
-    /// By default, the file is searched for beside the clip and in the folders above: first the same stem (a.asf for
-    /// a.amc), then the subject's (13.asf for 13_29.amc), then the one that fits the motion best.
+    /// By default, the clip's folder and the folders above are searched: first for the same name (a.asf for a.amc), then for the
+    /// subject's name (13.asf for 13_29.amc), then for the skeleton that fits the motion best.
     #[arg(hide_short_help = true, long, value_name = "ASF")]
     pub skeleton: Option<PathBuf>,
     /// Frame rate, instead of the file's (AMC states none: 120 Hz)
@@ -74,7 +74,7 @@ pub fn say_left_out(listing: &Listing) -> bool {
         eprintln!("morec: {}: left out: {kind}", path.display());
     }
     if listing.others > 0 {
-        eprintln!("morec: {} other files are no motion", listing.others);
+        eprintln!("morec: {} other files are not motion", listing.others);
     }
     !listing.left_out.is_empty()
 }

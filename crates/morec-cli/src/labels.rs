@@ -26,7 +26,7 @@ pub struct LabelArgs {
     pub tier: Vec<String>,
     /// Seconds to add to the times of labels
     ///
-    /// For labels of a recording, such as a video, that began later than the clip.
+    /// For labels of another recording, such as a video, that began later than the clip.
     #[arg(
         long,
         hide_short_help = true,
@@ -104,7 +104,7 @@ impl LabelArgs {
             if let (Extent::Frames(frames), Some(&first)) = (&mut row.extent, first) {
                 if frames.start < first {
                     bail!(
-                        "{shown}: line {}: frame {} is before the first frame of {}, {first}",
+                        "{shown}: line {}: frame {} is before the first frame of {}, which is {first}",
                         row.line,
                         frames.start,
                         row.clip
@@ -176,7 +176,7 @@ pub fn files_of_labels(paths: &[PathBuf]) -> Result<Vec<PathBuf>> {
             file.is_file() && form.is_some() && !is_clip
         });
         if inside.is_empty() {
-            bail!("{}: no file of labels in this folder", path.display());
+            bail!("{}: the folder contains no label file", path.display());
         }
         inside.sort();
         all.append(&mut inside);
@@ -221,7 +221,10 @@ fn one(path: &Path, args: &LabelArgs, first_frames: &BTreeMap<String, usize>) ->
         .into_iter()
         .partition(|annotation| annotation.state == SampleState::Accepted);
     if !others.is_empty() {
-        let text = format!("{} labels are not accepted; left out", others.len());
+        let text = format!(
+            "{} labels do not have the state accepted; left out",
+            others.len()
+        );
         warnings.push(Warning::new(Place::File, text));
     }
     let rows = (1..).zip(accepted).filter_map(|(line, annotation)| {
@@ -262,7 +265,8 @@ pub fn doubt_of_none<'a>(classes: impl IntoIterator<Item = &'a str>) -> Option<S
     let is_none = |class: &&str| NONE.contains(&class.to_lowercase().as_str());
     let class = classes.into_iter().find(is_none)?;
     Some(format!(
-        "is `{class}` a class of motion? Where nothing happens needs no label: leave its rows out, or they are learnt as a motion"
+        "`{class}` does not look like a class of motion. Parts without a motion need no label: remove these rows, otherwise they \
+         are learned as a class"
     ))
 }
 

@@ -19,7 +19,7 @@ pub fn lengths(paths: &[PathBuf], read: &ReadArgs) -> anyhow::Result<BTreeMap<St
             let length = ClipLength::from(&clip);
             if lengths.insert(clip.name.clone(), length).is_some() {
                 bail!(
-                    "{}: a second clip called {}; names must differ",
+                    "{}: another clip is called {} too; names must differ",
                     file.display(),
                     clip.name
                 );

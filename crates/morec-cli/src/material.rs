@@ -26,22 +26,22 @@ pub struct MaterialArgs {
     pub clips: Vec<PathBuf>,
     /// Take clips and accepted samples from this database
     ///
-    /// In place of --clips and --labels. Its clips with the tag `background` are background (`morec db clips --add-tag
-    /// background`); --background can name its clips too.
+    /// Replaces --clips and --labels. Clips with the tag `background` are background (`morec db clips --add-tag background`);
+    /// --background accepts names of its clips, too.
     #[arg(long, value_name = "DB", conflicts_with_all = ["clips", "labels"])]
     pub db: Option<PathBuf>,
     /// Labels: a table, or a form that `morec db label` reads
     ///
-    /// Columns of a table: clip (file stem), class, and start, stop (frames, stop exclusive) or start_secs, stop_secs.
-    /// Without times the whole clip is one sample, its still ends trimmed.
+    /// Columns of a table: clip (file name without extension), class, and start, stop (frames, stop exclusive) or start_secs,
+    /// stop_secs. Without times, the whole clip is one sample, with still ends trimmed.
     #[arg(long, value_name = "FILE|DIR", required_unless_present = "db")]
     pub labels: Option<PathBuf>,
     /// Leave out these clips (file stems, separated by commas)
     #[arg(long, value_delimiter = ',', value_name = "CLIPS")]
     pub exclude: Vec<String>,
-    /// Persons of clips: a table with columns clip and person
+    /// Person of each clip: a table with the columns clip and person
     ///
-    /// Or give the labels a column person.
+    /// Alternatively, add a column person to the labels.
     #[arg(long, value_name = "TSV")]
     pub people: Option<PathBuf>,
     /// Background clips: motion of none of the classes; sets the threshold
@@ -208,7 +208,7 @@ impl MaterialArgs {
             match taught.iter().find(|t| t.file_stem() == Some(stem)) {
                 Some(clip) => paths.push(clip.clone()),
                 None => bail!(
-                    "{}: no such file or folder, and no clip of --clips has this name",
+                    "{}: neither a file, nor a folder, nor the name of a clip of --clips",
                     path.display()
                 ),
             }
@@ -257,7 +257,7 @@ pub fn load_clips(
         if let Some(other) = names.insert(&clip.clip.name, &clip.path) {
             let (a, b) = (other.display(), clip.path.display());
             bail!(
-                "{a} and {b} are both called {}: labels could not tell them apart",
+                "{a} and {b} are both called {}, so labels cannot distinguish them: rename one",
                 clip.clip.name
             );
         }

@@ -60,7 +60,7 @@ impl<'a> ReportMotion<'a> {
     pub fn into_reel(self) -> Option<Reel> {
         if self.left_out > 0 {
             eprintln!(
-                "morec: {} clips do not move in the report: it would be too large to open",
+                "morec: {} clips do not play in the report, to keep it small enough to open",
                 self.left_out
             );
         }

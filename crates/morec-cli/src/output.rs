@@ -65,7 +65,7 @@ pub fn check(path: &Path) -> Result<()> {
         .find(|read| read.is_file() && same(read))
     {
         bail!(
-            "this is the input {}: writing would destroy it; give the output another name",
+            "this is the input {}, which writing would destroy; give the output another name",
             read.display()
         );
     }
@@ -73,7 +73,7 @@ pub fn check(path: &Path) -> Result<()> {
     OpenOptions::new().write(true).open(path).map_err(named)?;
     if kind::of(&head(path)?) == Some(kind::DATABASE) {
         bail!(
-            "this is a database, which no output replaces; give another name, or delete it first"
+            "this is a database, which is never overwritten; give another name, or delete it first"
         );
     }
     Ok(())
@@ -95,7 +95,7 @@ pub fn check_ending(path: &Path, written: &str, own: &[&str]) -> Result<()> {
     let ending = ending.to_lowercase();
     if ENDINGS.contains(&ending.as_str()) && !own.contains(&ending.as_str()) {
         bail!(
-            "{}: {written} is written, not what .{ending} promises; let the name end in .{}",
+            "{}: the output is {written}, which does not fit the extension .{ending}; use .{}",
             path.display(),
             own[0]
         );
@@ -156,7 +156,7 @@ impl Output {
     /// Begins to write what will be the file `path`.
     ///
     /// # Errors
-    /// As [`check`]; its folder is not there or cannot be written.
+    /// As [`check`]; its folder does not exist or cannot be written.
     pub fn create(path: &Path) -> Result<Self> {
         check(path)?;
         let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
@@ -228,7 +228,7 @@ fn named(error: io::Error) -> io::Error {
     let said = match kind {
         io::ErrorKind::ReadOnlyFilesystem => "its disk is read-only",
         io::ErrorKind::PermissionDenied => "the file or its folder is read-only",
-        io::ErrorKind::NotFound => "its folder is not there",
+        io::ErrorKind::NotFound => "its folder does not exist",
         _ => return error,
     };
     io::Error::new(kind, said)
@@ -262,7 +262,7 @@ fn keep_other_kind(path: &Path, written: &[u8]) -> Result<()> {
     let kept = free_name(path);
     fs::rename(path, &kept)?;
     eprintln!(
-        "morec: {}: was {was}, now {is}; the old file is kept as {}",
+        "morec: {}: was {was}, is now {is}; the old file is kept as {}",
         path.display(),
         kept.display()
     );

@@ -18,8 +18,8 @@ use crate::progress::SlowProgress;
 pub struct PoseArgs {
     /// Joints whose rotations count: thesis, roles or a JSON file
     ///
-    /// thesis: 16, by the CMU skeleton's names, by role on others; roles: 12, by role alone; a JSON list of {"name",
-    /// "parent", "joints", "role"}.
+    /// thesis: 16 joints, by the names of the CMU skeleton, by role on other skeletons; roles: 12 joints, by role only; FILE: a
+    /// JSON list of {"name", "parent", "joints", "role"}.
     #[arg(
         hide_short_help = true,
         long,
@@ -136,7 +136,7 @@ impl PoseReader<'_> {
         let map = PivotMap::of_clip(&self.set, clip, &take.roles)?;
         if !map.missing().is_empty() {
             let missing = map.missing().join(", ");
-            let what = "no joint plays these pivots, they turn with their parents";
+            let what = "no joint for these pivots, which turn with their parents";
             progress.suspend(|| eprintln!("morec: {}: {what}: {missing}", clip.name));
         }
         let rows = pose_rows_of_clip(clip, &self.set, &map, take.rest(), &self.params);

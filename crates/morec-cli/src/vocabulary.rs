@@ -67,17 +67,14 @@ const MEANINGS: [(&str, &[&str]); 9] = [
     (
         "class",
         &[
-            "Clips that hold a sample of this class",
+            "Clips with a sample of this class",
             "Labelled stretches of this class only",
             "Set one sample of this class",
             "Samples of this class",
             "Labels of this class only",
         ],
     ),
-    (
-        "subject",
-        &["Person in the clips", "Clips in which this person is seen"],
-    ),
+    ("subject", &["Person in the clips", "Clips of this person"]),
 ];
 
 /// An option of a command: what it takes, and what its help says.

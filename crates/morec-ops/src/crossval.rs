@@ -33,7 +33,7 @@ pub struct CrossvalSettings {
     pub perturb: Vec<Perturbation>,
     /// Also test at these false alarms a minute, separated by commas
     ///
-    /// As of `morec recognize --sensitivity` [default with --report: 0.03 to 2].
+    /// As `morec recognize --sensitivity` [default with --report: 0.03 to 2].
     #[arg(long, value_delimiter = ',', value_name = "RATE")]
     pub sensitivities: Vec<f64>,
     /// Seed of the split into halves

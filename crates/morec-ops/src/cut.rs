@@ -19,7 +19,7 @@ pub struct CutSettings {
     /// Window length, seconds (kernel)
     #[arg(hide_short_help = true, long, value_name = "SECS", default_value_t = KernelParams::default().window_secs)]
     pub window: f64,
-    /// Price of a cut; higher gives fewer cuts (kernel)
+    /// Penalty for each cut; a higher value gives fewer cuts (kernel)
     #[arg(long, value_name = "P", default_value_t = KernelParams::default().penalty)]
     pub penalty: f64,
     /// Shortest segment, seconds (kernel)
@@ -27,16 +27,16 @@ pub struct CutSettings {
     pub least: f64,
     /// Direction of the passes (ppca)
     ///
-    /// Forward finds what begins, backward what ends.
+    /// The forward pass finds where behaviour begins, the backward pass where it ends.
     #[arg(hide_short_help = true, long, default_value = "both", value_parser = choices::<PassDirections>([
         ("forward", "From start to end"),
         ("backward", "From end to start"),
         ("both", "Both, and the cuts of either"),
     ]))]
     pub direction: PassDirections,
-    /// Rise of the misfit before a cut; higher gives fewer cuts (ppca)
+    /// Rise of the misfit before a cut; a higher value gives fewer cuts (ppca)
     ///
-    /// In multiples of the misfit of poses that fit.
+    /// In multiples of the misfit of poses that belong to the segment.
     #[arg(long, value_name = "R", default_value_t = PpcaParams::default().rise)]
     pub rise: f64,
     /// Share of the variance that a segment's model keeps (ppca)

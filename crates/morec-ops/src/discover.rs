@@ -18,12 +18,12 @@ use crate::OperationError;
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize, clap::Args)]
 #[serde(default, deny_unknown_fields)]
 pub struct DiscoverSettings {
-    /// Do not learn a metric from the first sets: half the time
+    /// Do not learn a metric from the first sets; takes half the time
     ///
-    /// The result is as good where people rest between motions.
+    /// If people rest between motions, the result is as good.
     #[arg(long)]
     pub plain: bool,
-    /// Join successive repetitions: walking is one stretch
+    /// Join successive repetitions, so that walking is one stretch
     #[arg(long)]
     pub runs: bool,
 }

@@ -22,7 +22,7 @@ use crate::OperationError;
 pub struct EvaluateSettings {
     /// Classes that count, separated by commas [default: all]
     ///
-    /// Samples of other classes are taken as unlabelled.
+    /// Samples of other classes count as unlabelled.
     #[arg(long, value_delimiter = ',', value_name = "CLASSES")]
     pub classes: Vec<String>,
 }

@@ -35,10 +35,10 @@ pub struct GroupSettings {
     /// Method of grouping
     #[arg(long, value_enum, default_value = "affinity")]
     pub method: GroupMethod,
-    /// Tendency to many groups, 0 to 1 (affinity)
+    /// Tendency towards many groups, 0 to 1 (affinity)
     ///
-    /// The preference of affinity propagation, which decides how many samples represent a group, given as a quantile of all similarities: 0.5 is
-    /// the median.
+    /// The preference of affinity propagation, as a quantile of all similarities: 0.5 is the median. A higher preference gives
+    /// more groups.
     #[arg(long, value_name = "Q", value_parser = share, default_value_t = AffinityParams::default().preference)]
     pub preference: f64,
     /// Number of groups (hierarchy, tree)
@@ -49,21 +49,21 @@ pub struct GroupSettings {
     pub height: Option<f64>,
     /// Divide these groups in two (hierarchy, tree)
     ///
-    /// Numbers of groups are those printed without this option.
+    /// Use the group numbers that are printed without this option.
     #[arg(long, value_delimiter = ',', value_name = "GROUPS")]
     pub divide: Vec<usize>,
     /// Join each of these groups with its sibling branch (hierarchy, tree)
     ///
-    /// Numbers of groups are those printed without this option.
+    /// Use the group numbers that are printed without this option.
     #[arg(long, value_delimiter = ',', value_name = "GROUPS")]
     pub join: Vec<usize>,
     /// Similarity above which two samples are in one group (kwas)
     #[arg(hide_short_help = true, long, value_name = "TAU", value_parser = share, default_value_t = KwasParams::default().tau)]
     pub tau: f64,
-    /// Principal directions of a sample that count (kwas)
+    /// Number of principal directions compared (kwas)
     #[arg(hide_short_help = true, short, long, value_name = "N", default_value_t = KwasParams::default().k)]
     pub k: usize,
-    /// Scale similarity so that a sample has 1 with itself (kwas)
+    /// Scale similarity so that each sample has 1 with itself (kwas)
     #[arg(hide_short_help = true, long)]
     pub normalised: bool,
     /// Centre of samples before comparison (kwas, tree)

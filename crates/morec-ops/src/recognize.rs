@@ -20,10 +20,10 @@ pub struct RecognizeSettings {
     pub sensitivity: Option<f64>,
     /// Expected performer, for indexes of one or two training subjects
     ///
-    /// auto: the score threshold rises to half of the performer's recent scores, from the fourth report on; teacher: it is
-    /// raised from the first frame, by the scores of the training samples; anyone: it is never raised. For hands, tracked
-    /// points and older indexes, auto relaxes matching after four motions by a performer unlike the training subject,
-    /// anyone from the start, teacher never [default: auto].
+    /// auto: after four reports, the score threshold rises to half of the performer's recent scores; teacher: it is raised from
+    /// the first frame, by the scores of the training samples; anyone: it is never raised. For hands, tracked points and older
+    /// indexes, auto relaxes matching after four motions by a performer unlike the training subject, anyone relaxes it from the
+    /// start, teacher never [default: auto].
     #[cfg_attr(feature = "clap", arg(long, value_parser = choices::<PerformerKind>([
         ("auto", "Decided by the motions recognised so far"),
         ("teacher", "The training subject"),
@@ -58,7 +58,7 @@ pub struct StreamSettings {
     /// Readiness to report motions.
     #[command(flatten)]
     pub recognition: RecognizeSettings,
-    /// Report motions that are under way too, tentatively
+    /// Also report motions before they end, tentatively
     ///
     /// Adds events of the phases start, update and cancel.
     #[arg(long)]
@@ -66,10 +66,10 @@ pub struct StreamSettings {
     /// Make each repetition of an activity an event of its own
     #[arg(long)]
     pub each_repetition: bool,
-    /// Say how far from the nearest sample each motion was performed
+    /// Report how each motion differs from the nearest sample
     ///
-    /// The mean angle, the pace, and the bone that differs most: of gestures, and with --each-repetition of each
-    /// repetition of an activity. Not of held signs and the method of 2009.
+    /// Mean angle, pace, and the bone that differs most, for gestures and, with --each-repetition, for each repetition of an
+    /// activity. Not available for held signs and the method svrdm.
     #[arg(long)]
     pub deviation: bool,
     /// Minimum seconds between two events of a class

@@ -67,7 +67,7 @@ pub struct TrainSettings {
     pub unlabelled: Unlabelled,
     /// Use the built-in everyday motion as background
     ///
-    /// Not with --method svrdm. The motion is synthetic and real.
+    /// Not with --method svrdm. The motion is partly synthetic, partly recorded.
     #[cfg_attr(feature = "clap", arg(hide_short_help = true, long, default_value = "always", value_parser = choices::<Everyday>([
         ("auto", "Only if --background has less than 1 minute"),
         ("always", "Always"),
@@ -85,7 +85,7 @@ pub struct TrainSettings {
     pub mirror: Mirror,
     /// Classes whose mirror image is a negative example (--mirror yes)
     ///
-    /// Separated by commas. The mirror image of such a class is another motion, as of `sweep_left`.
+    /// Separated by commas. For classes such as `sweep_left`, whose mirror image is another motion.
     #[cfg_attr(
         feature = "clap",
         arg(
@@ -109,7 +109,8 @@ pub struct TrainSettings {
     pub bones: BoneSet,
     /// Set a parameter, such as `rho=0.4`; can be repeated
     ///
-    /// By its path: `decode.lag_ticks=2`, `stages.scaling=unit_range`. docs/parameters.md lists those worth changing.
+    /// Nested parameters are given by path: `decode.lag_ticks=2`, `stages.scaling=unit_range`. docs/parameters.md lists the
+    /// parameters worth changing.
     #[cfg_attr(feature = "clap", arg(long = "param", value_name = "NAME=VALUE"))]
     #[serde(
         serialize_with = "params::to_table",

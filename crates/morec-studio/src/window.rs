@@ -19,8 +19,8 @@ const APP: &str = "morec-studio";
     name = "morec-studio",
     version,
     max_term_width = 100,
-    after_help = "Exit codes: 0 closed, or the picture is written; 1 no window can be opened, or no picture drawn; 2 wrong \
-    command line.\n\n\
+    after_help = "Exit codes: 0 the window was closed or the picture written; 1 no window can be opened or no picture drawn; 2 \
+        wrong command line.\n\n\
     Examples:\n  morec-studio\n  morec-studio moves.mdb\n  morec-studio takes/ walk.bvh\n  \
     morec-studio moves.mdb --screenshot label.png --panel label --at 12"
 )]
@@ -31,13 +31,13 @@ pub struct Args {
     /// Draw a panel into this file and end; needs no display
     #[arg(long, value_name = "FILE.png")]
     screenshot: Option<PathBuf>,
-    /// The panel that is shown: library, label, classes, train or live [default: library, or that of the last session]
+    /// The panel to show: library, label, classes, train or live [default: library, or the last session's panel]
     #[arg(long, value_name = "NAME", value_parser = panel)]
     panel: Option<Panel>,
     /// The clip that is shown in a screenshot
     #[arg(long, value_name = "CLIP", requires = "screenshot")]
     clip: Option<String>,
-    /// The moment that is shown in a screenshot, seconds
+    /// The time that is shown in a screenshot, seconds
     #[arg(
         long,
         value_name = "SECS",
@@ -45,16 +45,16 @@ pub struct Args {
         requires = "screenshot"
     )]
     at: f64,
-    /// Show in a screenshot what is like the clip's first label of this class, the nearest beside it
+    /// In a screenshot, search for the clip's first label of this class and compare the nearest hit
     #[arg(long, value_name = "CLASS", requires = "screenshot")]
     like: Option<String>,
-    /// Show in a screenshot of the panel train the tree of the method of 2009 in place of a cross-validation
+    /// In a screenshot of the panel train, show the tree of the method of 2009 instead of a cross-validation
     #[arg(long, requires = "screenshot")]
     tree: bool,
     /// Width and height of a screenshot, pixels
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = size, requires = "screenshot")]
     size: (usize, usize),
-    /// Pixels of a point in a screenshot, 0.5 to 4: 2 is a screen of high density
+    /// Pixels per point in a screenshot, 0.5 to 4; 2 is a high-density screen
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = scale, requires = "screenshot")]
     scale: f32,
     /// Begin with the light theme
@@ -115,7 +115,7 @@ fn picture(args: &Args, path: &std::path::Path) -> Result<(), String> {
 #[cfg(not(feature = "window"))]
 fn window(_: &Args) -> Result<(), String> {
     Err(
-        "this build has no window (feature `window`); `--screenshot` draws a panel without one"
+        "this program was built without a window (feature `window`); `--screenshot` draws a panel without a window"
             .to_owned(),
     )
 }
@@ -153,7 +153,7 @@ fn window(args: &Args) -> Result<(), String> {
         Ok(Box::new(studio) as Box<dyn eframe::App>)
     };
     eframe::run_native(APP, options, Box::new(make)).map_err(|error| {
-        format!("no window can be opened: {error}; `--screenshot` draws a panel without one")
+        format!("no window can be opened: {error}; `--screenshot` draws a panel without a window")
     })
 }
 

@@ -23,11 +23,12 @@ use crate::table::TextTable;
 
 /// Measure how far two annotators agree
 ///
-/// Compares two files of labels over the clips that both name: Cohen's kappa by units of time, event agreement beyond chance (events
-/// of the same class that overlap by half), and how far apart the starts and stops of matching events lie, class by class.
+/// Compares two label files over the clips that both contain. Prints Cohen's kappa by units of time, the event agreement beyond
+/// chance (events match if they have the same class and overlap by half), and for each class the differences between starts and
+/// stops of matching events.
 ///
-/// Kappa depends on the length of the unit, which is therefore printed. Agreement of events by chance is the mean F1 with the second
-/// annotator's events moved by random times.
+/// Kappa depends on the length of the unit, which is printed with it. The chance agreement of events is the mean F1 after moving
+/// the second annotator's events by random times.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -35,17 +36,17 @@ Examples:
   morec agree ann.eaf ben.eaf --tier gestures --time-unit 0.5
   morec agree boris_1.csv boris_2.csv --json
 
-Exit codes: 0 compared; 1 a file cannot be read or no clip is named by both; 2 wrong command line.")]
+Exit codes: 0 compared; 1 a file cannot be read or no clip is in both files; 2 wrong command line.")]
 pub struct Args {
-    /// Labels of the first annotator, in any form that is read
+    /// Labels of the first annotator, in any supported form
     #[arg(value_name = "A")]
     a: PathBuf,
     /// Labels of the second annotator
     #[arg(value_name = "B")]
     b: PathBuf,
-    /// The labelled clips, for their frame rates and lengths
+    /// The labelled clips, for frame rates and lengths
     ///
-    /// Without them, labels must be in seconds, and a clip ends with its last label.
+    /// Without this option, labels must be in seconds, and each clip ends with its last label.
     #[arg(long, value_name = "DIR|CLIP", num_args = 1..)]
     clips: Vec<PathBuf>,
     /// Length of the unit of time for kappa, seconds
@@ -56,7 +57,7 @@ pub struct Args {
     json: bool,
     /// Write a page of HTML too
     ///
-    /// Timelines show the labels of both, those of the second annotator in the place of detections.
+    /// Timelines show the labels of both annotators; the second annotator's are drawn as detections.
     #[arg(long, value_name = "HTML")]
     report: Option<PathBuf>,
     #[command(flatten)]
@@ -131,7 +132,7 @@ fn lengths_of_labels(files: &[(&PathBuf, &Labels)]) -> Result<BTreeMap<String, C
         for row in &labels.rows {
             let Extent::Secs(span) = &row.extent else {
                 bail!(
-                    "{}: line {}: this label is not in seconds: name the clips with --clips, or the rate of its frames with --label-rate",
+                    "{}: line {}: the label is in frames; give the clips with --clips, or the frame rate with --label-rate",
                     path.display(),
                     row.line
                 );
@@ -192,7 +193,7 @@ fn shared_streams(
         let alone: Vec<&str> = own.difference(other).map(String::as_str).collect();
         if !alone.is_empty() {
             let (count, names) = (alone.len(), some_of(&alone));
-            eprintln!("morec: {count} clips are labelled by {who} alone and left out: {names}");
+            eprintln!("morec: {count} clips are labelled by {who} only and left out: {names}");
         }
     }
     let shared: BTreeSet<String> = of_a.intersection(&of_b).cloned().collect();

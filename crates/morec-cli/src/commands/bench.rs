@@ -15,9 +15,9 @@ use crate::stats::Stats;
 
 /// Measure the speed of recognition, stage by stage.
 ///
-/// Recognises all clips repeatedly on one core and prints the pass with the median time: microseconds a frame, share of
-/// the whole and frames a second of each stage. Stages also run alone, so their sum differs from the whole. Other
-/// running programs affect the figures.
+/// Recognises all clips repeatedly on one core and prints, for the pass with the median time, each stage's microseconds per
+/// frame, share of the total and frames per second. Each stage is also measured alone, so the stages do not add up to the total.
+/// Other running programs affect the figures.
 #[derive(clap::Args)]
 #[command(after_help = "Example: morec bench signs.index new/")]
 pub struct Args {

@@ -17,15 +17,14 @@ use crate::progress::SlowProgress;
 
 /// Name the class of whole clips, each cut around one motion.
 ///
-/// Everything that moves in a clip is compared with the samples of every class. The nearest class is given if it is
-/// more probable than everything else, otherwise none. To find motions in longer clips, use `morec recognize`.
+/// The motion of each clip is compared with the samples of all classes. The result is the nearest class if it is more probable
+/// than all alternatives together, otherwise none. To find motions in longer clips, use `morec recognize`.
 ///
 /// Writes one line for each clip: clip, class (empty: none), its probability, the nearest class, and the probability of
 /// each class.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Exit codes: 0 all clips done; 1 something cannot be read (the others are done all the same); \
-    2 wrong command line.\n\n\
+    after_help = "Exit codes: 0 all clips done; 1 a file cannot be read (the others are done); 2 wrong command line.\n\n\
     Example: morec classify signs.index cut/ -o classes.tsv"
 )]
 pub struct Args {
@@ -34,7 +33,7 @@ pub struct Args {
     /// Clips, or folders of clips; - is standard input
     #[arg(required = true, value_name = "CLIP")]
     clips: Vec<PathBuf>,
-    /// Form of the output
+    /// Format of the output
     #[arg(long, value_enum, default_value = "tsv")]
     form: OutputFormat,
     /// File to write to [default: standard output]
@@ -99,7 +98,7 @@ fn classify_all(
     drop(progress);
     if !none.is_empty() {
         let names = some_of(&none);
-        eprintln!("morec: {} clips are given no class: {names}", none.len());
+        eprintln!("morec: {} clips have no class: {names}", none.len());
     }
     Ok(failed)
 }

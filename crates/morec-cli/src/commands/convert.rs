@@ -70,6 +70,6 @@ fn one_of(mut clips: Vec<Clip>, character: Option<usize>) -> Result<Clip> {
         None if count == 1 => Ok(clips.remove(0)),
         None => bail!("the file has {count} characters; choose one with --character"),
         Some(n) if (1..=count).contains(&n) => Ok(clips.remove(n - 1)),
-        Some(n) => bail!("there is no character {n}; the file has {count}"),
+        Some(n) => bail!("character {n} does not exist; the file has {count} characters"),
     }
 }

@@ -28,11 +28,11 @@ use crate::table::TextTable;
 /// --by half trains on half of each class's samples and recognises all clips; --by clip and --by person leave out each
 /// clip or person in turn. Prints what `morec evaluate` prints.
 ///
-/// A clip can be named both as --background and as --unknown: it is tested in the folds that leave its person out, and
-/// is background in the others.
+/// A clip can be given both as --background and as --unknown: it is tested in the folds that leave its person out, and is
+/// background in the other folds.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Exit codes: 0 measured; 1 something cannot be read or trained; 2 wrong command line.\n\n\
+    after_help = "Exit codes: 0 measured; 1 reading or training failed; 2 wrong command line.\n\n\
     Example: morec crossval --clips takes/ --labels labels.tsv --people people.tsv --by person --report report.html"
 )]
 pub struct Args {
@@ -42,7 +42,7 @@ pub struct Args {
     settings: CrossvalSettings,
     /// Test on these clips, each in the fold of its person
     ///
-    /// The clips of --clips and --labels then only train.
+    /// The clips of --clips and --labels are then used for training only.
     #[arg(long, value_name = "DIR|CLIP", num_args = 1.., requires = "test_labels")]
     test: Vec<PathBuf>,
     /// Labels of --test, with a column person
@@ -53,9 +53,10 @@ pub struct Args {
     /// Clips, folders, or file stems.
     #[arg(long, value_name = "DIR|CLIP", num_args = 1..)]
     unknown: Vec<PathBuf>,
-    /// Print a learning curve instead: what more samples are worth
+    /// Print a learning curve instead: F1 by number of samples and people
     ///
-    /// Cross-validations with 1, 2, 4 … samples of each class and with 1, 2, 4 … people, three draws each, and with all of them.
+    /// Cross-validates with 1, 2, 4 … samples of each class and with 1, 2, 4 … people, three random draws each, and with all
+    /// samples.
     #[arg(long, conflicts_with_all = ["report", "perturb", "sensitivities", "samples"], help_heading = "Output")]
     curve: bool,
     /// Draw the curve as SVG
@@ -76,7 +77,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     }
     if args.settings.by == LeftOut::Own && args.test.is_empty() {
         anyhow::bail!(
-            "--by own tests each person in other clips: name them with --test and --test-labels"
+            "--by own tests each person in other clips: give these with --test and --test-labels"
         );
     }
     let material = args.material.load(&args.unknown)?;
@@ -261,12 +262,12 @@ fn write_perturbed(
             figures::figure(e.thesis.accuracy),
         ]);
     }
-    writeln!(out, "\ncopies that are worse in one way")?;
+    writeln!(out, "\ncopies that are degraded in one way")?;
     write!(out, "{table}")
 }
 
 fn write_folds(out: &mut impl Write, folds: &[FoldReport]) -> std::io::Result<()> {
-    writeln!(out, "\nTraining, by what was left out")?;
+    writeln!(out, "\nTraining of each fold, by what was left out")?;
     for fold in folds {
         let training = &fold.training;
         let negatives: usize = training.negatives.values().sum();

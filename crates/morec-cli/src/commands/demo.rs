@@ -25,7 +25,7 @@ use folder::DemoFolder;
 /// Try everything in a few seconds, without your own clips.
 ///
 /// Unpacks clips of two basketball referees, other motion and labels; trains an index; recognises another recording,
-/// plays it in the terminal, and measures. Each step is printed as a command that you can repeat with your clips.
+/// plays it in the terminal, and measures. Each step is printed as a command that you can repeat with your own clips.
 ///
 /// The clips were obtained from mocap.cs.cmu.edu; the database was created with funding from NSF EIA-0196217. With
 /// --synthetic, seven synthetic people perform eight gestures instead, which takes about a minute.
@@ -65,7 +65,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         false => cast::real(),
         #[cfg(not(feature = "demo-clips"))]
         false => bail!(
-            "this morec was built without the clips of real people (feature demo-clips); `morec demo --synthetic` needs none"
+            "this morec was built without the clips of real people (feature demo-clips): use `morec demo --synthetic`"
         ),
     };
     println!("{}", cast.title);
@@ -83,7 +83,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     show(&folder, &cast, args)?;
     let measured = step("4. Measuring", &folder.evaluate(), evaluate::run)?;
     println!(
-        "\n{}\nAll of it took {:.0} s.",
+        "\n{}\nThe demo took {:.0} s.",
         folder.farewell(&cast),
         begun.elapsed().as_secs_f64()
     );
@@ -138,7 +138,7 @@ fn show(folder: &DemoFolder, cast: &Cast, args: &Args) -> Result<()> {
         said: &said,
     };
     println!(
-        "\nThe {:.0} s of {}, and what was reported when:\n",
+        "\nThe {:.0} s of {}, with the time of each report:\n",
         take.clip.duration_secs(),
         cast.whose
     );

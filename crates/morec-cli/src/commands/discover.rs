@@ -61,7 +61,7 @@ fn propose(db: &mut MotionDb, found: &DiscoveredSets, name: &str) -> Result<()> 
 
 fn of_files(paths: &[PathBuf], args: &Args) -> Result<()> {
     if args.name_as.is_some() || args.clip.is_some() {
-        bail!("--name-as and --clip are of databases (morec db import makes one of clips)");
+        bail!("--name-as and --clip need a database (create one with morec db import)");
     }
     let params = FeatureParams::default();
     let (mut clips, mut motions) = (Vec::new(), Vec::new());
@@ -85,7 +85,7 @@ fn of_files(paths: &[PathBuf], args: &Args) -> Result<()> {
         Ok(())
     })?;
     if let Some(twice) = page::name_of_two(&clips) {
-        bail!("two clips are called {twice}: sets could not distinguish them");
+        bail!("two clips are called {twice}, so sets cannot distinguish them: rename one");
     }
     let found = args.settings.of_clips(&clips, &StageBar::stoppable()?)?;
     if let Some(page) = &args.report {

@@ -30,8 +30,8 @@ use crate::output;
 /// delay, errors of starts and stops, P_C/P_E/P_R and the confusion matrix, over all clips and for each class.
 ///
 /// Tables are tab-separated with a header: `clip`, `class`, and `start`, `stop` (frames, stop exclusive) or
-/// `start_secs`, `stop_secs`. In a labelled clip, what has no label counts as none of the classes. Clips without labels
-/// are ignored, unless --unknown names them.
+/// `start_secs`, `stop_secs`. In a labelled clip, unlabelled motion counts as none of the classes. Clips without labels are
+/// ignored unless given as --unknown.
 #[derive(clap::Args)]
 #[command(
     after_help = "Exit codes: 0 measured; 1 a file cannot be read or nothing can be measured; 2 wrong command line.\n\n\
@@ -47,15 +47,15 @@ pub struct Args {
     /// Columns clip, class, start and stop are enough.
     #[arg(long, value_name = "TSV")]
     found: PathBuf,
-    /// Clips, or folders of clips, that were searched
+    /// The clips, or folders of clips, that were recognised
     #[arg(long, value_name = "DIR|CLIP", num_args = 1.., required = true)]
     clips: Vec<PathBuf>,
     /// Test clips without any class: every detection is a false alarm
     #[arg(long, value_name = "DIR|CLIP", num_args = 1..)]
     unknown: Vec<PathBuf>,
-    /// The index that recognised: gives reasons for missed samples
+    /// The index that was used: adds the reasons for missed samples
     ///
-    /// In the report also how well the others were performed.
+    /// The report then also compares recognised motions with the nearest sample.
     #[arg(long, value_name = "INDEX")]
     index: Option<PathBuf>,
     /// Print one JSON object instead of tables
@@ -94,9 +94,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         false => Vec::new(),
     };
     if measure_as_taught(&mut resolved.samples, &moving) > 0 {
-        eprintln!(
-            "morec: labels of whole clips are measured without their still ends, as in training"
-        );
+        eprintln!("morec: labels of whole clips are measured without still ends, as in training");
     }
     let (founds, absent) = table.resolve(&clips);
     warn(&args.found, &absent);

@@ -21,9 +21,9 @@ use report::{FileReport, InspectReport};
 
 /// Show a clip: skeleton, roles, rate, units, repairs
 ///
-/// One clip is shown joint by joint, several in a few lines each with a summary; a folder means all clips in it and
-/// below. Unit, up axis and rest pose are inferred from the motion, in the same way as by every other command. Exit
-/// code 1 if a file could not be read, or a folder holds motion in a format that is not read.
+/// One clip is shown joint by joint; several clips are shown in a few lines each, with a summary. A folder includes its
+/// subfolders. Unit, up axis and rest pose are inferred from the motion, as in every other command. Exit code 1 if a file cannot
+/// be read or a folder contains motion in an unsupported format.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -38,7 +38,7 @@ Examples:
 A roles file has one role a line, a tab, and the joint's name (or - for none):
   hips<TAB>Pelvis
   left_shoulder<TAB>-
-Names between + stand for the middle of these joints or markers:
+Names joined by + mean the middle of these joints or markers:
   left_knee<TAB>LKNE+LKNM")]
 pub struct Args {
     /// Clips, skeletons (ASF) or folders; - is standard input
@@ -88,7 +88,7 @@ pub fn run(args: Args) -> Result<ExitCode> {
         output::check_picture(output)?;
         if paths.len() != 1 {
             bail!(
-                "--output writes the picture of one clip; {} are named",
+                "--output writes the picture of one clip, but {} are given",
                 paths.len()
             );
         }
@@ -142,7 +142,7 @@ fn print(report: &FileReport, full: bool) -> Result<()> {
 
 /// Shows pictures on the terminal, or writes the first one as SVG.
 fn draw(drawings: &[Option<Drawing>], path: &Path, output: Option<&Path>) -> Result<()> {
-    let nobody = "there is no body to draw";
+    let nobody = "no body was found, so nothing can be drawn";
     if let (Some(output), Some(drawing)) = (output, drawings.first()) {
         let drawing = drawing
             .as_ref()

@@ -22,19 +22,19 @@ use morec_ops::StreamSettings;
 
 /// Recognise motions live, from a tracker to an event.
 ///
-/// A line of JSON is a pose:
+/// Each line of JSON is one pose:
 ///   {"t": 1.25, "positions": {"hips": [0, 0.92, 0], "left_hand": [0.7, 1.4, 0]}}
-/// t is in seconds; axes are right-handed, Y up, in any unit of length. Parts of
-/// the body are hips, torso, neck, head, and left_ and right_
-/// thigh, shin, foot, shoulder, arm, forearm, hand, each at its near end: thigh
-/// at the hip joint, shin at the knee, foot at the ankle, arm at the shoulder
-/// joint, forearm at the elbow, hand at the wrist.
+/// t is in seconds; axes are right-handed, Y up; lengths have any unit. Body
+/// parts are hips, torso, neck, head, and left_ and right_ thigh, shin, foot,
+/// shoulder, arm, forearm, hand. Each is given at its near end: thigh at the hip
+/// joint, shin at the knee, foot at the ankle, arm at the shoulder joint,
+/// forearm at the elbow, hand at the wrist.
 ///
-/// An event is the end of a motion, with score, start and stop, and is never
-/// taken back. With --tentative, a motion also has a start and updates with
-/// progress before its end, or a cancellation in its place. With
-/// --each-repetition, an activity also has a repetition (with its start and
-/// stop) each time one more is over. Ctrl-C ends the session.
+/// Each recognised motion gives an end event with score, start and stop, which
+/// is never revoked. With --tentative, a start event and updates with the
+/// progress come before it; if the motion is not confirmed, a cancel event comes
+/// instead of the end. With --each-repetition, an activity also gives an event,
+/// with start and stop, for each completed repetition. Ctrl-C ends the session.
 #[derive(clap::Args)]
 #[command(
     verbatim_doc_comment,
@@ -46,7 +46,7 @@ Sources (--listen):
   json:-                     poses as lines of JSON on standard input
   json+tcp://127.0.0.1:9000  the same over TCP connections
   webcam                     this machine's camera, by a page in the browser
-                             (webcam://127.0.0.1:8000 does not open it)
+                             (webcam://127.0.0.1:8000 does not open the page)
   clip://FILE                a clip; ?speed=4 (0: as fast as possible),
                              ?loop, ?loss=0.05, ?jitter=20
 
@@ -56,7 +56,7 @@ Sinks (--emit):
   osc://HOST:PORT            /morec/event and /VMC/Thru/morec/event
   ws://HOST:PORT             every WebSocket that connects
 
-Exit codes: 0 ended by Ctrl-C, --for or the end of every source; 1 something
+Exit codes: 0 ended by Ctrl-C, --for or the end of every source; 1 an address
 cannot be opened, or json:FILE lacks events; 2 wrong command line.
 
 Without a tracker, in two terminals:

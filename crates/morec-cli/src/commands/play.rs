@@ -26,8 +26,8 @@ use crate::show::{self, ShownClip};
 
 /// Play clips in the terminal, or write a page that plays them
 ///
-/// The body is shown from the front, with labels and detections below. With --output, one HTML file is written: the
-/// body can be turned and zoomed, time scrubbed, and a list leads to every label and detection.
+/// The body is shown from the front, with labels and detections below. With --output, one HTML file is written, in which you can
+/// turn and zoom the body, move in time, and go to each label and detection from a list.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -45,9 +45,9 @@ pub struct Args {
     /// Also show what this index recognises
     #[arg(long, value_name = "INDEX")]
     index: Option<PathBuf>,
-    /// Show each beside itself as N dimensions of its poses have it (page)
+    /// Also show each clip rebuilt from N dimensions (page)
     ///
-    /// Principal components of the poses of all these clips, as of `morec reduce`.
+    /// The dimensions are principal components of the poses of all these clips, as in `morec reduce`.
     #[arg(long, value_name = "N", requires = "output")]
     reduced: Option<usize>,
     /// Speed in the terminal; 1: as performed
@@ -136,7 +136,7 @@ fn labels(
         of_clip.entry(sample.clip).or_default().push(label);
     }
     if of_clip.is_empty() {
-        eprintln!("morec: {}: no label is of these clips", path.display());
+        eprintln!("morec: {}: no label belongs to these clips", path.display());
     }
     Ok(of_clip)
 }

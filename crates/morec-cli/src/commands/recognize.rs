@@ -28,15 +28,13 @@ use morec_live::PlayableClip;
 /// Recognise motions in clips, frame by frame as in a live stream.
 ///
 /// Writes one line for each motion: clip, start, stop and reported_at in frames of the clip (stop exclusive), class,
-/// score, and the times in seconds; with activities in the index also how often one was repeated, and the seconds of a
-/// repetition.
+/// score, and the times in seconds; if the index has activities, also the number of repetitions and the seconds of one.
 ///
 /// Score: Probability that the detection is right, 0 to 1. The lowest accepted score is 0.05 to 0.44, depending on the index. For
 /// held poses and indexes without calibration (svrdm, older files) it is the similarity to a sample instead.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Exit codes: 0 all clips done; 1 something cannot be read (the others are done all the same); \
-    2 wrong command line.\n\n\
+    after_help = "Exit codes: 0 all clips done; 1 a file cannot be read (the others are done); 2 wrong command line.\n\n\
     Example: morec recognize signs.index new/ -o found.tsv\n         \
     cat take.bvh | morec recognize signs.index -"
 )]
@@ -57,7 +55,7 @@ pub struct Args {
     /// File to write to [default: standard output]
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Print the speed of one core on standard error, by stage
+    /// Print the speed of each stage on one core to standard error
     #[arg(long)]
     stats: bool,
     #[command(flatten)]
@@ -189,7 +187,7 @@ fn recognize_all(
     if !without.is_empty() {
         let (count, all) = (without.len(), paths.len());
         let names = some_of(&without);
-        eprintln!("morec: nothing was found in {count} of {all} files: {names}");
+        eprintln!("morec: no motion was recognised in {count} of {all} files: {names}");
     }
     if args.stats {
         eprint!("{stats}");
@@ -322,7 +320,7 @@ pub fn adapt(imported: &mut Take, index: &MotionIndex, path: &Path, complete: bo
     }
     if !missing.is_empty() {
         eprintln!(
-            "morec: {}: the index uses {what} that this clip does not show (missing: {missing}); recognising without them",
+            "morec: {}: {what} of the index are missing in this clip and not used: {missing}",
             path.display()
         );
     }

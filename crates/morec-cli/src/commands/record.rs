@@ -15,14 +15,14 @@ use morec_live::Address;
 
 /// Record takes from a tracker as clips.
 ///
-/// Each take begins after a countdown and a bell. It ends with a bell: after --secs of stream, with Enter, when the
-/// performer leaves or the source ends, or with Ctrl-C. What was recorded until then is kept.
+/// Each take begins after a countdown and a bell. It ends, with a bell, after --secs of stream, on Enter, when the performer
+/// leaves or the source ends, or on Ctrl-C. The part recorded until then is kept.
 ///
 /// Sources (--listen) are those of `morec live`.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Exit codes: 0 every take that was recorded is kept; 1 nothing was recorded, or something cannot be opened or \
-    written; 2 wrong command line.\n\n\
+    after_help = "Exit codes: 0 every recorded take is kept; 1 nothing was recorded, or opening or writing failed; 2 wrong \
+        command line.\n\n\
     Examples:\n  \
     morec record --listen vmc://127.0.0.1:39539 -o take.bvh\n  \
     morec record --listen vmc://127.0.0.1:39539 -o wave.bvh --takes 3 --secs 4\n  \
@@ -63,7 +63,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let store = TakeStore::of(&args.output)?;
     if !args.tags.is_empty() && !matches!(store, TakeStore::Database(_)) {
         bail!(
-            "--tag: tags need a database, and {} is not one",
+            "--tag: tags need a database, but {} is not a database",
             args.output.display()
         );
     }
@@ -72,7 +72,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         .collect();
     if let Some(there) = files.iter().find(|file| file.exists() && !args.overwrite) {
         bail!(
-            "{}: is there already (--overwrite writes over it)",
+            "{}: the file exists already (--overwrite replaces it)",
             there.display()
         );
     }

@@ -19,8 +19,8 @@ use crate::table::TextTable;
 
 /// Show how many dimensions the poses of clips have
 ///
-/// Principal components of all poses of all clips. The table has the share of the variance that each number of
-/// dimensions keeps. Memory is that of the longest clip.
+/// Computes the principal components of all poses of all clips and prints the share of the variance that each number of
+/// dimensions keeps. Memory grows with the longest clip only.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -80,7 +80,12 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let pca = Pca::fit(&moments, keep)?;
     let table = pca.quality_table();
     if let Some(path) = &args.plot {
-        let svg = quality_chart(&table, pca.dims(), "Dimensions and what they keep").svg();
+        let svg = quality_chart(
+            &table,
+            pca.dims(),
+            "Dimensions and the share of the variance that they keep",
+        )
+        .svg();
         output::check_picture(path)?;
         output::write_whole(path, |out| out.write_all(svg.as_bytes()))
             .with_context(|| path.display().to_string())?;
@@ -147,7 +152,7 @@ impl Reduced<'_> {
         let (dims, percent) = (self.dims, 100.0 * self.quality);
         writeln!(
             out,
-            "{dims} dimensions keep {percent:.2} %, off by {:.4} a value",
+            "{dims} dimensions keep {percent:.2} % of the variance; root mean square error {:.4} per value",
             self.rms_error
         )?;
         writeln!(out)?;

@@ -13,13 +13,13 @@ use crate::table::TextTable;
 
 /// Run the evaluation of the thesis of 2009 on labelled clips.
 ///
-/// Cuts the clips (§5.1), groups the samples (§5.2), classifies cut-out samples (§5.3) and whole streams (§5.4) with
-/// trees that half of each class trained: with the thesis's values (faithful), and tuned. Writes a page with its tables
-/// beside yours. --param sets parameters of the setting that --svrdm names; --method, --everyday, --mirror and --bones
-/// are for the other method.
+/// Cuts the clips (§5.1), groups the samples (§5.2), classifies cut-out samples (§5.3) and whole streams (§5.4) with trees
+/// trained on half of each class, once with the thesis's values (faithful) and once with tuned ones. Writes a page with the
+/// thesis's tables beside yours. --param sets parameters of the setting chosen with --svrdm; --method, --everyday, --mirror and
+/// --bones apply to the method templates only.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Exit codes: 0 done; 1 something cannot be read or trained; 2 wrong command line.\n\n\
+    after_help = "Exit codes: 0 done; 1 reading or training failed; 2 wrong command line.\n\n\
     Example: morec reproduce --clips referee/clips --labels referee/labels.tsv --classes walk,traveling,no_score \\\n\
     \x20          --unknown exercises/clips -o reproduction/"
 )]

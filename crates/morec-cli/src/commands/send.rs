@@ -24,12 +24,11 @@ use morec_live::load;
 /// Play clips as a VMC sender or an Axis broadcast, to try receivers without a tracker.
 ///
 /// Each joint with a role, and each finger joint, is sent as the humanoid bone of that part, in Unity's left-handed
-/// axes. As a broadcast (--to axis://HOST:PORT) frames go to every program that connects over TCP, with positions or
-/// without (?positions=0), beginning with the first connection. Between clips there is a pause of a second. A bad
-/// network can be simulated.
+/// axes. As a broadcast (--to axis://HOST:PORT), sending starts with the first TCP connection and goes to every connected
+/// program, without positions if ?positions=0. Clips are separated by a pause of 1 second. A bad network can be simulated.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Exit codes: 0 everything was sent, or Ctrl-C; 1 something cannot be read or sent; 2 wrong command line.\n\n\
+    after_help = "Exit codes: 0 everything was sent, or Ctrl-C; 1 reading or sending failed; 2 wrong command line.\n\n\
     Example: morec send take.bvh --to vmc://127.0.0.1:39539 --loop\n         \
     morec send take.bvh --to axis://127.0.0.1:7001"
 )]
@@ -55,7 +54,7 @@ pub struct Args {
     looped: bool,
     /// Bundling of messages: whole, single or a number of bytes
     ///
-    /// whole: one bundle for each frame; single: each message alone; else the most bytes of a bundle.
+    /// whole: one bundle for each frame; single: each message alone; a number: at most so many bytes in a bundle.
     #[arg(long, value_name = "whole|single|BYTES", default_value = "1500", value_parser = bundling)]
     pub bundle: Bundling,
     /// Also send bones that the clip lacks, unmoved

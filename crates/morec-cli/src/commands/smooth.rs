@@ -23,23 +23,23 @@ use report::{CompressionReport, CompressionResult};
 
 /// Smooth clips into keyframes and Bézier curves
 ///
-/// Cubic Bézier curves replace each channel: the rotation of a joint, or the position of a joint that moves in its
-/// parent's frame. They are fitted by least squares and split until they are within the thresholds everywhere. Noise finer than that
-/// disappears, and the curves can be sampled at any rate.
+/// Each channel (the rotation of a joint, or the position of a joint that moves in its parent's frame) is replaced by cubic
+/// Bézier curves. The curves are fitted by least squares and split until they are within the thresholds everywhere. Noise below
+/// the thresholds disappears, and the curves can be sampled at any rate.
 ///
-/// Writes sampled BVH, or .mclip, the stored form, which every command reads. Prints sizes and errors: values are the
-/// numbers in control points against those in frames, bytes the stored form against the file.
+/// Writes sampled BVH, or .mclip, the stored form, which every command reads. Prints errors and sizes: values compares the
+/// numbers in control points with the numbers in frames, bytes the stored form with the file.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
-  morec smooth walk.bvh                         only say what it would come to
+  morec smooth walk.bvh                         only print sizes and errors
   morec smooth walk.bvh -o smooth.bvh --max-angle 1
   morec smooth jittery/ -o smooth/ --auto
   morec smooth recordings/ -o stored/ --form mclip --max-joint 5
   morec smooth walk.bvh --plot Hips hips.svg --plot LeftArm.x arm.svg
 
-Exit codes: 0 all clips done; 1 something could not be read or written (the others are done all the same);
-2 wrong command line.")]
+Exit codes: 0 all clips done; 1 a file cannot be read or written (the others are done); 2 wrong
+command line.")]
 pub struct Args {
     /// Clips (BVH, AMC, MCLIP) or folders of clips; - is standard input
     #[arg(required = true, value_name = "CLIP")]
@@ -55,7 +55,7 @@ pub struct Args {
     max_angle: f64,
     /// Set both thresholds from the clip's sensor noise
     ///
-    /// 3.5 standard deviations, at least 0.1 degrees and 0.5 mm, in place of --max-angle and --max-position.
+    /// 3.5 standard deviations of the noise, at least 0.1 degrees and 0.5 mm. Replaces --max-angle and --max-position.
     #[arg(long, conflicts_with_all = ["max_angle", "max_position"])]
     auto: bool,
     /// Largest error of a moving joint in its parent's frame, millimetres
@@ -74,8 +74,8 @@ pub struct Args {
     unit: Option<f64>,
     /// Draw a channel with its curves as SVG; can be repeated
     ///
-    /// A joint's name for its rotation, with .x .y .z or .w for one component and its control points, .position for its
-    /// position, .px .py or .pz for one of it.
+    /// The name of a joint draws its rotation; NAME.x, .y, .z or .w draws one component with its control points; NAME.position
+    /// draws the position, NAME.px, .py or .pz one coordinate.
     #[arg(long, num_args = 2, value_names = ["JOINT[.CHANNEL]", "SVG"])]
     plot: Vec<String>,
     /// Print one JSON array, with an object for each file

@@ -34,8 +34,8 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let program = beside.unwrap_or_else(|| PathBuf::from(PROGRAM));
     let status = match Command::new(&program).args(&args.arguments).status() {
         Err(error) if error.kind() == ErrorKind::NotFound => bail!(
-            "the window is a program of its own and is not installed; in a clone of the repository: cargo install \
-             --path crates/{PROGRAM} --features window, or cargo run --release -p {PROGRAM} --features window"
+            "the studio is a separate program and is not installed; install it from a clone of the repository with cargo install \
+             --path crates/{PROGRAM} --features window, or run it with cargo run --release -p {PROGRAM} --features window"
         ),
         started => started.with_context(|| program.display().to_string())?,
     };

@@ -21,7 +21,7 @@ use morec_live::NamedEvent;
 /// Teach gestures live: name one, perform it three times, see it recognised.
 ///
 /// Type a name and press Enter. Each repetition begins after a countdown and a bell and lasts --secs seconds, or until
-/// Enter. Then the index is retrained with everything taught before, and detections are shown until the next name. An
+/// Enter. Then the index is retrained with all gestures taught so far, and detections are shown until you type the next name. An
 /// empty name or Ctrl-C ends.
 ///
 /// The takes are BVH files in a folder beside the index (gestures.index: gestures.takes/), with labels.tsv: remove bad
@@ -29,8 +29,8 @@ use morec_live::NamedEvent;
 /// are those of `morec live`.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Exit codes: 0 ended by an empty name, Ctrl-C, --for or the end of the source; 1 something cannot be \
-    opened, written or trained; 2 wrong command line.\n\n\
+    after_help = "Exit codes: 0 ended by an empty name, Ctrl-C, --for or the end of the source; 1 opening, writing or training \
+        failed; 2 wrong command line.\n\n\
     Example: morec teach gestures.index --listen vmc://127.0.0.1:39539"
 )]
 pub struct Args {
@@ -119,7 +119,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 }
 
 fn ask() {
-    eprintln!("morec: which gesture? (a name and Enter; Enter alone ends)");
+    eprintln!("morec: name of the gesture, then Enter (Enter alone ends)");
 }
 
 /// Records the repetitions and trains; says whether there is a new index.

@@ -18,11 +18,11 @@ use crate::table::TextTable;
 
 /// Train an index from labelled clips.
 ///
-/// Prints classes, background, thresholds, and problems of the data. Background is the unlabelled parts of labelled
-/// clips, the clips named with --background, and built-in everyday motion.
+/// Prints classes, background, thresholds and problems of the data. The background consists of the unlabelled parts of labelled
+/// clips, the clips given with --background, and built-in everyday motion.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Exit codes: 0 trained; 1 something cannot be read or trained; 2 wrong command line.\n\n\
+    after_help = "Exit codes: 0 trained; 1 reading or training failed; 2 wrong command line.\n\n\
     Example: morec train --clips takes/ --labels labels.tsv --background walks/ -o signs.index"
 )]
 pub struct Args {
@@ -143,7 +143,7 @@ fn print_templates(report: &TrainingReport) {
     }
     if let Some(held_out) = report.held_out {
         println!(
-            "false alarms in background motion that did not set the score: {:.2} a minute, in {:.0} minutes",
+            "false alarms in background motion not used for the threshold: {:.2} a minute, in {:.0} minutes",
             held_out.per_minute, held_out.minutes
         );
     }
@@ -163,7 +163,7 @@ fn print_templates(report: &TrainingReport) {
     let verified = if report.verified {
         "yes"
     } else {
-        "no (that takes 5 samples of a class by three people, and named background)"
+        "no (needs 5 samples of a class by 3 people, and background clips)"
     };
     println!("candidates verified: {verified}");
 }
@@ -180,7 +180,7 @@ fn print_svrdm(report: &TrainingReport, svrdm: &SvrdmReport) {
         .map(|s| format!("{:.0} %", 100.0 * s))
         .collect();
     println!(
-        "samples whose sign is close to flipping, direction by direction: {}",
+        "samples whose sign is ambiguous, direction by direction: {}",
         unsure.join(", ")
     );
     let mut table = TextTable::new([

@@ -119,7 +119,7 @@ fn import(database: &Path, file: &Path, recording: &Recording, tags: &[String]) 
         match outcome {
             ImportOutcome::Refused(refused) => bail!("{}: {}", file.display(), refused.reason),
             ImportOutcome::Copy { of } => eprintln!(
-                "morec: {}: has the same take already, from {}",
+                "morec: {}: contains the same take already, from {}",
                 database.display(),
                 of.display()
             ),

@@ -70,7 +70,7 @@ impl ClassCommands {
             if self.running.len() >= MOST_AT_ONCE {
                 let program = &on.program;
                 wrong.push(format!(
-                    "--on {}: {program} is not run: {MOST_AT_ONCE} commands have not ended yet",
+                    "--on {}: {program} was not started, because {MOST_AT_ONCE} commands are still running",
                     on.class
                 ));
                 continue;

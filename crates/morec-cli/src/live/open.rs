@@ -32,7 +32,7 @@ pub struct TrackerArgs {
     pub mediapipe: Option<PathBuf>,
     /// Keep exact T-poses
     ///
-    /// By default they are dropped as those of a sender without tracking.
+    /// By default, exact T-poses are dropped, because senders without tracking send them.
     #[arg(hide_short_help = true, long)]
     pub keep_t_pose: bool,
     /// Roles of joints of clips, where inference fails: lines of `role<TAB>joint`
@@ -62,7 +62,7 @@ impl TrackerArgs {
         eprintln!("morec: listening to {}", opened.name);
         if let Some(at) = opened.name.strip_prefix("webcam://") {
             let page = format!("http://{at}/");
-            eprintln!("morec: its page is {page}");
+            eprintln!("morec: the page of the webcam is {page}");
             if address.to_string() == "webcam" {
                 show_page(&page);
             }

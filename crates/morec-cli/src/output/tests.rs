@@ -143,7 +143,7 @@ fn where_nothing_can_be_written_is_named() {
     let folder = TempDir::new().unwrap();
     let absent = folder.path().join("absent/x.index");
     let refused = write_whole(&absent, |_| Ok(())).unwrap_err();
-    assert_eq!(refused.to_string(), "its folder is not there");
+    assert_eq!(refused.to_string(), "its folder does not exist");
     // Before there is anything to write, and without a trace.
     check(&folder.path().join("x.index")).unwrap();
     assert!(names(folder.path()).is_empty());

@@ -405,7 +405,7 @@ fn an_interrupted_import_says_what_it_did() {
     }
     assert_eq!(done.status.code(), Some(130), "{said}");
     assert!(
-        said.contains("stopped: ") && said.contains("goes on where this one stopped"),
+        said.contains("stopped: ") && said.contains("the same command continues"),
         "{said}"
     );
     let clips = json(&folder, &["db", "info", "m.mdb"])["clips"]

@@ -172,7 +172,7 @@ fn synthetic_people_replace_real_ones() {
 #[test]
 fn other_peoples_folders_are_left_alone() {
     let folder = Folder::with(&[("mine/clip.bvh", "mine"), ("file", "mine")]);
-    for (given, said) in [("mine", "nothing was written"), ("file", "is a file")] {
+    for (given, said) in [("mine", "nothing was written"), ("file", "found a file")] {
         let ran = folder.morec(&["demo", "--quiet", "--folder", given]);
         assert_eq!(ran.code, Some(1), "{ran:?}");
         assert!(ran.err.contains(said), "{}", ran.err);

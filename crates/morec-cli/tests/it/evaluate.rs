@@ -164,7 +164,7 @@ fn labels_of_whole_clips_are_measured_as_they_teach() {
     fs::write(folder.path().join("found.tsv"), found).unwrap();
     let output = evaluate(folder.path(), &["--json"]);
     assert!(output.status.success(), "{}", text(&output.stderr));
-    assert!(text(&output.stderr).contains("without their still ends"));
+    assert!(text(&output.stderr).contains("without still ends"));
     let json: Value = serde_json::from_slice(&output.stdout).unwrap();
     let overlaps = json["overlap"].as_array().unwrap();
     let half = overlaps.iter().find(|o| o["min_iou"] == 0.5).unwrap();

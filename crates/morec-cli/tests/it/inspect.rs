@@ -256,7 +256,7 @@ fn the_body_is_drawn_in_the_terminal_and_as_a_picture() {
     // An arm alone has no hips, neck or head to draw it from.
     let ran = folder.morec(&["inspect", "arm.bvh", "--draw", "-o", "arm.svg"]);
     assert!(
-        ran.err.contains("no body to draw") && ran.code == Some(1),
+        ran.err.contains("no body was found") && ran.code == Some(1),
         "{ran:?}"
     );
     assert_eq!(
@@ -305,7 +305,10 @@ fn recognise_is_recognize_and_names_files_in_which_nothing_is_found() {
     morec::formats::bvh::write(&clip, &mut bytes).unwrap();
     std::fs::write(folder.path().join("still.bvh"), bytes).unwrap();
     let ran = folder.morec(&["recognise", "x.index", "still.bvh", "clips"]);
-    assert!(ran.err.contains("nothing was found in 1 of"), "{ran:?}");
+    assert!(
+        ran.err.contains("no motion was recognised in 1 of"),
+        "{ran:?}"
+    );
     assert!(ran.err.contains(": still.bvh"), "{ran:?}");
     ran.ok();
 }

@@ -122,7 +122,7 @@ fn changes_of_every_kind_are_taken_back_by_number() {
     );
     let would = folder.morec(&["db", "undo", "m.mdb", "--dry-run"]).ok();
     assert!(
-        would.contains("would be taken back") && would.contains("samples: "),
+        would.contains("would be undone") && would.contains("samples: "),
         "{would}"
     );
     folder.morec(&["db", "undo", "m.mdb"]).ok();

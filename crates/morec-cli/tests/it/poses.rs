@@ -160,7 +160,12 @@ fn a_database_is_cut_as_its_clips_are() {
     assert!(old.err.contains("is `morec cut` now"), "{old:?}");
     assert_eq!(json(&old.ok()), of_db);
     let mixed = folder.morec(&["cut", "m.mdb", "clips"]);
-    assert!(mixed.err.contains("a database stands alone"), "{mixed:?}");
+    assert!(
+        mixed
+            .err
+            .contains("clips and a database cannot be combined"),
+        "{mixed:?}"
+    );
 }
 
 #[test]

@@ -319,7 +319,8 @@ fn a_gesture_that_was_taught_is_recognised_at_once_and_beside_those_taught_later
     let ran = folder.morec(&[&["teach", "v1.index", "--name", "x"], &listen[..2]].concat());
     assert_eq!(ran.code, Some(1), "{ran:?}");
     assert!(
-        ran.err.contains("v1.index: was trained from clips"),
+        ran.err
+            .contains("v1.index: this index was trained on clips"),
         "{}",
         ran.err
     );

@@ -139,8 +139,8 @@ fn refusal(step: &HistoryStep, way: Way, why: &str, others: &[HistoryStep]) -> D
         .map(|other| format!("{} ({})", other.id, other.what))
         .collect();
     let (done, first) = match way {
-        Way::Undo => ("taken back", "undo these first"),
-        Way::Redo => ("done again", "undo or redo these first"),
+        Way::Undo => ("undone", "undo these first"),
+        Way::Redo => ("redone", "undo or redo these first"),
     };
     DbError::Invalid(format!(
         "step {} ({}) cannot be {done} alone: {} {why}; {first}",

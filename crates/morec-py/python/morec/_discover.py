@@ -25,7 +25,7 @@ def discover(
     ----------
     clips : Clip, path, sequence of these, or Database
     plain : bool
-        Do not learn a metric from the first sets: half the time, and as good where people rest between motions.
+        Do not learn a metric from the first sets; takes half the time, and as good where people rest between motions.
     runs : bool
         Join repetitions that follow each other at once.
     clip : str, optional

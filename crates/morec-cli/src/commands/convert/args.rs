@@ -9,10 +9,10 @@ use crate::files::{self, ReadArgs};
 
 /// Convert clips to BVH, C3D, TRC, GLB, VRMA, lines of JSON, NumPy or CSV
 ///
-/// The output's extension chooses: .bvh; .c3d, .trc and .jsonl with positions only; .glb and .vrma for other programs
-/// and avatars; .npz with positions, rotations and feature rows; .csv with one of these. BVH, C3D and TRC keep the
-/// clip's lengths and axes (lengths without a named unit become millimetres in C3D and TRC); the others have metres, Y
-/// up. Several clips are written into a folder in the format of --form. Repairs are reported on standard error.
+/// The output's extension chooses the format: .bvh; .c3d, .trc and .jsonl with positions only; .glb and .vrma for other programs
+/// and avatars; .npz with positions, rotations and feature rows; .csv with one of these three. BVH, C3D and TRC keep the clip's
+/// lengths and axes (lengths without a named unit become millimetres in C3D and TRC); the other formats are in metres, Y up.
+/// Several clips are written into a folder, in the format of --form. Repairs are reported on standard error.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -42,7 +42,7 @@ pub struct Args {
     pub(super) rate: Option<f64>,
     /// Fit a skeleton to clips of points, so that joints have rotations
     ///
-    /// Bone lengths are constant; the remaining distance from the points is printed on standard error.
+    /// Bone lengths are constant. The remaining distance from the points is printed on standard error.
     #[arg(long)]
     pub(super) fit: bool,
     /// Character to write from a file with several, from 1

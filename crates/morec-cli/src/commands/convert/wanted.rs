@@ -42,8 +42,8 @@ fn fitted(clip: Clip, import: &ImportOptions) -> Result<Clip> {
     let fit = fit_skeleton(&take).with_context(|| take.clip.name.clone())?;
     let (role, worst) = fit.worst;
     eprintln!(
-        "morec: {}: a skeleton of {} joints fits the points to {:.1} cm (root mean square; {role} to {:.1} cm); how straight limbs \
-         are turned about themselves is not known",
+        "morec: {}: a skeleton of {} joints fits the points to {:.1} cm (root mean square; {role} to {:.1} cm); the twist of \
+         straight limbs is unknown",
         take.clip.name,
         fit.clip.skeleton.len(),
         100.0 * fit.rms_metres,

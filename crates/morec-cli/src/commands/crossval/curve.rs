@@ -85,9 +85,9 @@ fn chart(curve: &LearningCurve) -> Chart {
         let f1 = point.draws.iter().filter_map(|draw| draw.f1);
         f1.map(move |f1| (k as f64, f1))
     });
-    Chart::new("What more samples of each class are worth")
+    Chart::new("F1 by number of samples of each class")
         .axes(
-            "doublings of the samples of each class, the last: all",
+            "doublings of the number of samples of each class; the last point: all",
             "share",
         )
         .line("F1 of events", line(|draw| draw.f1))

@@ -8,10 +8,10 @@ use crate::poses::PoseArgs;
 
 /// Cut clips, or those of a database, where their behaviour changes
 ///
-/// No labels are needed. Kernel change points make each segment as uniform as possible, at a price for each cut; the
-/// method of 2009 models the poses so far and cuts where the next ones stop fitting. Walking and jumping are separated,
-/// two steps are not. A database keeps the result, with stillness and T-poses, in place of earlier cuts; clips cut by
-/// hand (--at) are left as they are.
+/// No labels are needed. The method kernel (change points) makes each segment as uniform as possible, with a penalty for each
+/// cut; ppca (the method of 2009) models the poses so far and cuts where the next poses do not fit. Walking and jumping are
+/// separated, two steps are not. A database stores the result, with stillness and T-poses, in place of earlier cuts; clips cut by
+/// hand (--at) are not changed.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:

@@ -117,7 +117,7 @@ fn by_ppca(reader: &PoseReader<'_>, params: &PpcaParams, args: &Args) -> Result<
     let mut found = Vec::new();
     reader.each(&args.inputs, |clip| {
         if args.plot.is_some() && !found.is_empty() {
-            bail!("--plot draws one clip; give one, or leave --plot out");
+            bail!("--plot draws one clip: give one clip, or leave --plot out");
         }
         let segmentation =
             segment(&clip.rows, reader.rate_hz(), params).context(clip.name.clone())?;

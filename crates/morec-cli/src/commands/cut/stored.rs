@@ -26,7 +26,7 @@ pub fn run(path: &Path, args: &Args) -> Result<ExitCode> {
     })?;
     if !args.at.is_empty() {
         let [clip] = clips.as_slice() else {
-            bail!("--at cuts one clip: --clip chooses {}", clips.len());
+            bail!("--at cuts one clip, but --clip chooses {}", clips.len());
         };
         db.cut_by_hand(clip, &args.at)?;
         let said = format!("{}: {} segments\n", clip.name, args.at.len() + 1);
@@ -35,7 +35,7 @@ pub fn run(path: &Path, args: &Args) -> Result<ExitCode> {
     let report = db.cut(&clips, &cutter, &bar)?;
     drop(bar);
     for (clip, reason) in &report.left {
-        eprintln!("morec: left as it is: {clip}: {reason}");
+        eprintln!("morec: not changed: {clip}: {reason}");
     }
     if args.json {
         print::print_json(&report.cuts)?;

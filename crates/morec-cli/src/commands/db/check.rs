@@ -24,7 +24,7 @@ pub struct Args {
     copies: bool,
     /// Rebuild feature rows and checksums, then check
     ///
-    /// The tables are accepted as they are.
+    /// The tables themselves are accepted unchanged.
     #[arg(long)]
     repair: bool,
     /// Print one JSON object
@@ -44,7 +44,7 @@ struct Checked {
 pub fn run(args: &Args) -> Result<ExitCode> {
     if args.repair {
         let made = database::open(&args.db)?.repair(&StageBar::new())?;
-        eprintln!("morec: feature rows of {made} clips made again");
+        eprintln!("morec: feature rows of {made} clips rebuilt");
     }
     let health = database::open_read_only(&args.db)?.check()?;
     let copies = match args.copies {
@@ -75,7 +75,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         print::print(format_args!("{copy}\n"))?;
     }
     if copies.is_some_and(|c| c.is_empty()) {
-        print::print("no clip is nearly another\n")?;
+        print::print("no near-duplicates\n")?;
     }
     Ok(code)
 }

@@ -62,7 +62,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let db = match changes.iter().filter(|c| **c).count() {
         0 => database::open_read_only(&args.db)?,
         1 => changed(args)?,
-        _ => bail!("one change at a time: each can then be taken back"),
+        _ => bail!("give one change at a time, so that each can be undone"),
     };
     if args.forget.is_some() && !args.json {
         return Ok(ExitCode::SUCCESS);
@@ -123,7 +123,7 @@ fn changed(args: &Args) -> Result<MotionDb> {
         let (classes, samples) = db.remove_classes(pattern)?;
         if !args.json {
             print::print(format_args!(
-                "forgotten: {classes} classes with {samples} samples\n"
+                "removed: {classes} classes with {samples} samples\n"
             ))?;
         }
     } else {
@@ -131,7 +131,7 @@ fn changed(args: &Args) -> Result<MotionDb> {
         let moved = db.split_class(&ids, into)?;
         if moved < ids.len() {
             eprintln!(
-                "morec: {moved} of {} samples moved; the others do not exist, or were in the class already",
+                "morec: {moved} of {} samples moved; the others do not exist or have this class already",
                 ids.len()
             );
         }

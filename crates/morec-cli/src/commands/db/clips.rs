@@ -28,13 +28,13 @@ pub struct Args {
     /// Clips of this name; `*` any text, `?` one character
     #[arg(long, alias = "name", value_name = "CLIP")]
     clip: Option<String>,
-    /// Clips in which this person is seen
+    /// Clips of this person
     #[arg(long, value_name = "NAME")]
     subject: Option<String>,
     /// Clips with this tag
     #[arg(long, value_name = "WORD")]
     tag: Option<String>,
-    /// Clips that hold a sample of this class
+    /// Clips with a sample of this class
     #[arg(long, value_name = "CLASS")]
     class: Option<String>,
     /// Set the person in the listed clips; empty removes it
@@ -92,7 +92,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     if let [old, new] = args.rename.as_slice() {
         database::open(&args.db)?.rename_clip(old, new)?;
         if !args.json {
-            print::print(format_args!("{old} is called {new} now\n"))?;
+            print::print(format_args!("{old} renamed to {new}\n"))?;
             return Ok(ExitCode::SUCCESS);
         }
     }
@@ -152,7 +152,7 @@ fn set_roles(args: &Args, filter: &ClipFilter) -> Result<()> {
 /// Removes what a filter chooses; all clips of a database only by `--clip '*'`.
 fn remove(args: &Args, filter: &ClipFilter) -> Result<ExitCode> {
     if *filter == ClipFilter::default() {
-        bail!("--remove: which clips? say with --clip, --subject, --tag or --class");
+        bail!("--remove: choose the clips with --clip, --subject, --tag or --class");
     }
     let mut db = database::open(&args.db)?;
     let clips = db.find_clips(filter)?;
@@ -163,7 +163,7 @@ fn remove(args: &Args, filter: &ClipFilter) -> Result<ExitCode> {
         print::print_json(&serde_json::json!({ "removed": names, "samples": samples }))?;
     } else {
         print::print(format_args!(
-            "{} clips removed, and {samples} samples with them; morec db undo brings them back\n",
+            "{} clips removed with {samples} samples; morec db undo restores them\n",
             clips.len()
         ))?;
     }

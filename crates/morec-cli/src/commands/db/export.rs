@@ -56,7 +56,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     if annotations.iter().any(|a| !form.keeps(a.state)) {
         let (form, state) = (form.name(), args.state.name());
         eprintln!(
-            "morec: {form} does not say that these are {state}; read back, give --state {state} again"
+            "morec: {form} cannot store that these samples are {state}: give --state {state} when reading the file back"
         );
     }
     let lengths = database::lengths(&db)?;
@@ -94,7 +94,7 @@ fn a_file_a_clip(
 ) -> Result<usize> {
     if folder.is_file() {
         bail!(
-            "{}: {} holds one clip: give a folder, or --clip",
+            "{}: {} can store one clip only: give a folder, or choose a clip with --clip",
             folder.display(),
             form.name()
         );

@@ -11,7 +11,7 @@ use crate::dates;
 use crate::print;
 use crate::table::TextTable;
 
-/// List the changes of a database, the last first
+/// List the changes of a database, newest first
 ///
 /// Every command that changes a database is one step: imports, labels, classes, cuts, descriptions, removals, indexes.
 /// Undone steps are listed until the next change.
@@ -20,7 +20,7 @@ use crate::table::TextTable;
 Examples:
   morec db history moves.mdb
   morec db undo moves.mdb               # the last step
-  morec db undo moves.mdb 12 --dry-run  # what taking back step 12 would do
+  morec db undo moves.mdb 12 --dry-run  # what undoing step 12 would do
   morec db redo moves.mdb")]
 pub struct Args {
     /// The database
@@ -72,7 +72,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             dates::to_the_second(step.set_secs),
             step.what.clone(),
             rows.join(", "),
-            if step.undone { "taken back" } else { "" }.to_owned(),
+            if step.undone { "undone" } else { "" }.to_owned(),
         ]);
     }
     let more = match all - steps.len() {
@@ -90,7 +90,7 @@ pub fn undo(args: &TurnArgs) -> Result<ExitCode> {
         true => db.preview_undo(args.step)?,
         false => db.undo(args.step)?,
     };
-    let (done, would) = ("taken back", "would be taken back");
+    let (done, would) = ("undone", "would be undone");
     say(
         args,
         turned.as_ref(),
@@ -105,7 +105,7 @@ pub fn redo(args: &TurnArgs) -> Result<ExitCode> {
         true => db.preview_redo(args.step)?,
         false => db.redo(args.step)?,
     };
-    let (done, would) = ("done again", "would be done again");
+    let (done, would) = ("redone", "would be redone");
     say(
         args,
         turned.as_ref(),
@@ -120,12 +120,12 @@ fn say(args: &TurnArgs, turned: Option<&ReplayedStep>, done: &str) -> Result<Exi
     }
     print::print(match turned {
         Some(turned) => text(turned, done),
-        None => format!("there is nothing that can be {done}\n"),
+        None => format!("no step can be {done}\n"),
     })?;
     Ok(ExitCode::SUCCESS)
 }
 
-/// `taken back: step 4, rename bow to nod (classes: 1 changed)`.
+/// `undone: step 4, rename bow to nod (classes: 1 changed)`.
 pub fn text(turned: &ReplayedStep, done: &str) -> String {
     let effect = |e: &Effect| {
         let counts = [

@@ -18,8 +18,8 @@ use crate::progress::StageBar;
 
 /// Import clips, or folders of clips
 ///
-/// The same content is imported once, whatever its name; importing again continues after an interruption. Files that
-/// cannot be read are named with the reason. Near-duplicates among new clips (resampled, trimmed, mirrored) are named.
+/// A file with the same content is imported once, whatever its name. After an interruption, the same command continues.
+/// Unreadable files are listed with the reason, and so are near-duplicates among new clips (resampled, trimmed, mirrored).
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -27,9 +27,9 @@ Examples:
   morec db import moves.mdb 13_29.amc --skeleton 13.asf --subject 13
   morec db import moves.mdb cleaned/take_1.bvh --in-place-of take_1
 
-Ctrl-C finishes what is being written and says what was imported; the same command then goes on where it stopped.
+Ctrl-C finishes the current write and prints what was imported; the same command then continues.
 
-Exit code 1 if a file was refused or a folder holds motion in a format that is not read, 130 if it was stopped.")]
+Exit code 1 if a file was refused or a folder contains motion in an unsupported format, 130 if interrupted.")]
 pub struct Args {
     /// The database; created if it does not exist
     #[arg(value_name = "DB")]
@@ -39,7 +39,7 @@ pub struct Args {
     clips: Vec<PathBuf>,
     /// Replace this clip by the one file given
     ///
-    /// Name, tags and labels stay; labels and cuts behind the new end are removed and listed.
+    /// Name, tags and labels are kept; labels and cuts after the new end are removed and listed.
     #[arg(
         long,
         value_name = "CLIP",
@@ -115,7 +115,7 @@ fn replace(
         eprintln!("morec: {}: {warning}", path.display());
     }
     print::print(format_args!(
-        "{}: {:.2} s now, {:.2} s before; {} samples kept, {} removed, {} cuts removed; morec db undo brings it back\n",
+        "{}: {:.2} s now, {:.2} s before; {} samples kept, {} removed, {} cuts removed; morec db undo restores the old file\n",
         replaced.clip,
         replaced.after_secs,
         replaced.before_secs,
@@ -185,7 +185,7 @@ fn text(report: &ImportLog, files: usize, secs: f64) -> String {
     if report.cancelled {
         let left = files - report.files.len();
         lines.push(format!(
-            "stopped: {left} files were not looked at; the same command goes on where this one stopped"
+            "stopped: {left} files were not read; the same command continues"
         ));
     }
     lines.join("\n") + "\n"

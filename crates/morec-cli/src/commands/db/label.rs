@@ -34,8 +34,8 @@ Examples:
   morec db label moves.mdb corrected.tsv --replace --dry-run
   morec db label moves.mdb --undo
 
-A file of proposals that was looked at (morec db export --state proposed --form csv) is read back as it is: `accepted`,
-`rejected` or `proposed` in its column `state`, and in `label` another class where it is one.")]
+Proposals can be judged in a file: write it with morec db export --state proposed --form csv, set `accepted` or `rejected`
+in its column `state`, correct the class in `label`, and read the file back.")]
 pub struct Args {
     /// The database
     #[arg(value_name = "DB")]
@@ -182,7 +182,7 @@ fn say_absent(db: &MotionDb, absent: &Absent) {
         return;
     }
     eprintln!(
-        "morec: {} labels of {} unknown clips were left out: {}",
+        "morec: {} labels of {} unknown clips left out: {}",
         absent.values().sum::<usize>(),
         absent.len(),
         some_of(absent.keys())
@@ -206,19 +206,19 @@ fn said(counts: &Added, args: &Args) -> String {
     }
     parts.push(format!("{} as before", counts.unchanged));
     if counts.rejected > 0 {
-        parts.push(format!("{} proposals rejected by them", counts.rejected));
-    }
-    if counts.withdrawn > 0 {
         parts.push(format!(
-            "{} proposals of groups withdrawn",
-            counts.withdrawn
+            "{} proposals rejected by these labels",
+            counts.rejected
         ));
     }
+    if counts.withdrawn > 0 {
+        parts.push(format!("{} proposals of groups removed", counts.withdrawn));
+    }
     if counts.people > 0 {
-        parts.push(format!("{} clips given their person", counts.people));
+        parts.push(format!("{} clips assigned to persons", counts.people));
     }
     let would = if args.dry_run {
-        "nothing was changed; it would be: "
+        "nothing was changed; with this command: "
     } else {
         ""
     };
@@ -283,7 +283,7 @@ fn undo(db: &mut MotionDb, json: bool) -> Result<ExitCode> {
             .any(|table| !kinds.contains(&table.as_str()))
         {
             bail!(
-                "the last change is no change of labels: step {}, {}; morec db undo takes it back",
+                "the last change is not a change of labels: step {}, {}; undo it with morec db undo",
                 last.id,
                 last.what
             );
@@ -294,7 +294,7 @@ fn undo(db: &mut MotionDb, json: bool) -> Result<ExitCode> {
         print::print_json(&undone)?;
     } else {
         print::print(match &undone {
-            Some(turned) => history::text(turned, "taken back"),
+            Some(turned) => history::text(turned, "undone"),
             None => "nothing to undo\n".to_owned(),
         })?;
     }
@@ -302,7 +302,10 @@ fn undo(db: &mut MotionDb, json: bool) -> Result<ExitCode> {
 }
 
 fn by_hand(args: &Args, class: &str, lengths: &ClipLengths) -> Result<Annotation> {
-    let clip = args.clip.clone().context("--clip: which clip?")?;
+    let clip = args
+        .clip
+        .clone()
+        .context("--clip: give the name of the clip")?;
     let secs = lengths.get(&clip).map(|length| length.duration_secs());
     let extent = match (args.start, args.stop) {
         (None, None) => None,

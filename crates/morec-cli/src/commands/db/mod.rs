@@ -29,7 +29,7 @@ use crate::interrupt::STOPPED;
 
 /// Keep clips, cuts, classes and labels in one file, and search them
 ///
-/// One program writes at a time, any number read. A crash loses nothing that was reported as done.
+/// One program can write at a time, any number can read. A crash loses nothing that was reported as done.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -74,7 +74,7 @@ enum DbCommand {
 pub fn run(args: Args) -> Result<ExitCode> {
     match of(args) {
         Err(error) if matches!(error.downcast_ref(), Some(DbError::Cancelled)) => {
-            eprintln!("morec: stopped; the database is as it was before");
+            eprintln!("morec: stopped; the database is unchanged");
             Ok(STOPPED.into())
         }
         other => other,

@@ -125,9 +125,9 @@ impl Page {
             .collect();
         let hint = match (self.strips, self.still) {
             (0, _) => String::new(),
-            (_, 0) => "<p>A strip that is chosen moves.</p>\n".to_owned(),
+            (_, 0) => "<p>Click a strip to play it.</p>\n".to_owned(),
             (_, still) => format!(
-                "<p>A strip that is chosen moves, but for the last {still}: with them the page would be too large to open.</p>\n"
+                "<p>Click a strip to play it. The last {still} do not play, to keep the page small enough to open.</p>\n"
             ),
         };
         let panel = match self.reel.is_empty() {

@@ -19,14 +19,14 @@ use crate::table::TextTable;
 /// Propose more samples of the labelled classes
 ///
 /// Searches all clips for motions like the accepted samples and keeps the hits as proposals with their probability.
-/// Accept the sure ones in bulk, check the doubtful ones singly: accepted ones train the next round, rejected ones
-/// count against similar motions and are not proposed again. Unjudged proposals of earlier calls are replaced;
-/// those of `morec group --name-as` and of files stay.
+/// Accept confident proposals in bulk and check doubtful proposals one by one. Accepted proposals train the next round; rejected
+/// proposals count against similar motions and are not proposed again. Proposals of earlier calls that were neither accepted nor
+/// rejected are replaced; proposals from `morec group --name-as` and from files are kept.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
   morec db propose moves.mdb
-  morec db propose moves.mdb --accept 0.6             # those of this score
+  morec db propose moves.mdb --accept 0.6             # of this score or more
   morec db propose moves.mdb --list --doubtful        # most informative first
   morec db export moves.mdb ask.csv --state proposed  # edit its column state:
   morec db label moves.mdb ask.csv")]
@@ -47,7 +47,7 @@ pub struct Args {
     list: bool,
     /// List the most informative proposals first
     ///
-    /// The least certain, classes in turn. Without --list, after a new round.
+    /// The least certain first, alternating between classes. Without --list, after a new round.
     #[arg(long)]
     doubtful: bool,
     /// List at most N
@@ -93,7 +93,7 @@ fn judge(args: &Args) -> Result<ExitCode> {
             left,
         } = judged;
         print::print(format_args!(
-            "{accepted} accepted, {rejected} rejected, {left} left to look at\n"
+            "{accepted} accepted, {rejected} rejected, {left} left to check\n"
         ))?;
     }
     Ok(ExitCode::SUCCESS)
@@ -162,7 +162,7 @@ fn show(args: &Args, db: &MotionDb, mut proposals: Vec<Proposal>) -> Result<Exit
         String::new()
     };
     let last = format!(
-        "{} proposed, {sure} of them likelier right than wrong{more}\n",
+        "{} proposed, {sure} of them with a score above 0.5{more}\n",
         all.len()
     );
     print::print_table(&table, &last)?;

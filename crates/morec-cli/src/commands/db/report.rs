@@ -14,8 +14,8 @@ use crate::print::{self, megabytes};
 
 /// Write a page of HTML with strips of poses of clips, cuts and samples
 ///
-/// The page is one file; a chosen strip plays. What --limit leaves out is listed by name. Groups and search hits have
-/// pages of their own: `morec group --report`, `morec db search --report`.
+/// The page is one file; click a strip to play it. Clips and samples beyond --limit are listed by name. Groups and search hits
+/// have pages of their own: `morec group --report`, `morec db search --report`.
 #[derive(clap::Args)]
 pub struct Args {
     /// The database

@@ -95,7 +95,7 @@ fn remove(args: &Args) -> Result<ExitCode> {
         .iter()
         .find(|n| !there.iter().any(|s| s.id.0 == **n))
     {
-        anyhow::bail!("there is no sample {number}; nothing was removed");
+        anyhow::bail!("sample {number} does not exist; nothing was removed");
     }
     let ids: Vec<SampleId> = args.remove.iter().copied().map(SampleId).collect();
     db.remove_samples(&ids)?;

@@ -22,8 +22,8 @@ use crate::table::TextTable;
 
 /// Find stretches like an example
 ///
-/// The example is a stretch of a clip in the database, or a file, on any skeleton, at any rate. With --learned,
-/// variation within labelled classes counts less. A whole clip with --one-a-clip finds similar whole clips.
+/// The example is a stretch of a clip in the database or of a file, with any skeleton and frame rate. With --learned, differences
+/// that also occur within labelled classes count less. To find similar whole clips, give a whole clip and --one-a-clip.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -46,7 +46,7 @@ pub struct Args {
     stop: Option<f64>,
     #[command(flatten)]
     settings: SearchSettings,
-    /// Write a page with a strip of poses for the example and for each hit, too
+    /// Write a page with strips of poses of the example and all hits
     #[arg(long, value_name = "HTML")]
     report: Option<PathBuf>,
     /// Print one JSON object
@@ -147,7 +147,7 @@ fn example(db: &MotionDb, index: &SearchIndex, args: &Args) -> Result<(Example, 
     }
     let takes = files::takes(path, &args.read, &ImportOptions::default())?;
     let take = takes.into_iter().next();
-    let take = take.with_context(|| format!("{name}: no clip in it"))?;
+    let take = take.with_context(|| format!("{name}: contains no clip"))?;
     let stored = StoredClip {
         clip: take.clip,
         roles: take.roles,

@@ -62,23 +62,20 @@ pub fn real() -> Cast {
         contents: vec![
             line(
                 "clips/",
-                "two referees who show seven signals, a clip each, 53 s",
+                "two referees showing seven signals, one clip each, 53 s",
             ),
-            line("labels.tsv", "which signal is where in them: 32 samples"),
-            line("people.tsv", "who is seen in which clip"),
+            line("labels.tsv", "the labels of the signals: 32 samples"),
+            line("people.tsv", "the person of each clip"),
             line(
                 "background/",
                 "other motion: basketball, walking, jumping, running, 17 s",
             ),
             line(
                 "new/",
-                "a clip that is not trained on, of the first referee, 26 s",
+                "a clip of the first referee that is not used in training, 26 s",
             ),
-            line(
-                "truth.tsv",
-                "which signal is where in it, for measuring only",
-            ),
-            line("CREDITS.md", "where the clips are from, and their terms"),
+            line("truth.tsv", "its labels, for measuring only"),
+            line("CREDITS.md", "the source and licence of the clips"),
         ],
         name: "signals_2".to_owned(),
         clip: "new/signals_2.mclip".to_owned(),
@@ -136,19 +133,19 @@ pub fn synthetic() -> Result<Cast> {
             ),
             (
                 "labels.tsv",
-                format!("which gesture is where in them: {samples} samples"),
+                format!("the labels of the gestures: {samples} samples"),
             ),
-            ("people.tsv", "who is seen in which clip".to_owned()),
+            ("people.tsv", "the person of each clip".to_owned()),
             (
                 "new/",
                 format!(
-                    "{person}, who is not trained on, {:.1} min",
+                    "{person}, not used in training, {:.1} min",
                     unseen.clip.duration_secs() / 60.0
                 ),
             ),
             (
                 "truth.tsv",
-                format!("what {person} does when, for measuring only"),
+                format!("the labels of {person}, for measuring only"),
             ),
         ],
         clip: format!("new/{name}.bvh"),

@@ -11,7 +11,8 @@ use crate::output;
 
 /// Says that a folder is a demo's, so that a second demo may write over it.
 const MARKER: &str = ".morec-demo";
-const MARKER_TEXT: &str = "Made by `morec demo`, which writes over the files here when it is run again. Safe to delete.\n";
+const MARKER_TEXT: &str =
+    "Created by `morec demo`, which overwrites these files when run again. Safe to delete.\n";
 
 /// A folder that is the demo's own.
 pub struct DemoFolder(PathBuf);
@@ -22,7 +23,10 @@ impl DemoFolder {
         let shown = || folder.display().to_string();
         let marker = folder.join(MARKER);
         if folder.exists() && !folder.is_dir() {
-            bail!("{}: is a file; give another --folder", shown());
+            bail!(
+                "{}: expected a folder, found a file; give another --folder",
+                shown()
+            );
         }
         if folder.is_dir()
             && !marker.is_file()
@@ -129,7 +133,7 @@ impl DemoFolder {
         format!(
             "{}\n\
              The report, with timelines: {}\n\
-             With clips of your own, in any folder, and a table of labels like {}, use the same three commands:\n  \
+             For your own clips, in any folder, with a table of labels like {}, use the same three commands:\n  \
              morec train, morec recognize, morec evaluate (see --help).",
             cast.caveat,
             self.path("report/report.html").display(),

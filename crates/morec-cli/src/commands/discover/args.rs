@@ -8,9 +8,9 @@ use crate::poses::PoseArgs;
 
 /// Find motions that repeat, without labels
 ///
-/// Repetitions of one motion, in any clips and by any people, become a set; sets that cover the most motion come first.
-/// --name-as proposes the instances as samples. Motions that occur once are in no set. Where a cycle begins (which
-/// foot, up or down) is a convention: the studio moves the ends of a whole set at once. The same clips give the same
+/// Repetitions of one motion, in any clips and by any people, form a set; sets are listed by the amount of motion that they
+/// cover. Motions that occur once are in no set. --name-as proposes the instances as samples. Where a cycle begins (which foot,
+/// up or down) is a convention; in the studio, the ends of a whole set are moved at once. The same clips always give the same
 /// sets.
 #[derive(clap::Args)]
 #[command(after_help = "\
@@ -31,7 +31,7 @@ pub struct Args {
     /// Propose repetitions as samples of NAME_1, NAME_2, … (databases)
     #[arg(long, value_name = "NAME")]
     pub(super) name_as: Option<String>,
-    /// Write a page that plays the sets, too
+    /// Write a page that plays the sets
     #[arg(long, value_name = "HTML")]
     pub(super) report: Option<PathBuf>,
     /// Print one JSON object

@@ -9,11 +9,10 @@ use crate::poses::PoseArgs;
 
 /// Group samples or segments that are alike, of clips or a database
 ///
-/// With labels, samples are grouped and the groups compared with the classes; without, clips are cut first (as by
-/// `morec cut`) and segments grouped. Affinity propagation finds the number of groups; --method hierarchy is cut at
-/// --groups or --height, and with --divide and --join branch by branch; kwas and tree are the thesis's, and need joint
-/// rotations. With --name-as, groups of a database become classes of proposed samples
-/// to rename, merge and accept.
+/// With labels, samples are grouped and the groups compared with the classes; without labels, clips are cut first (as by `morec
+/// cut`) and the segments grouped. The method affinity finds the number of groups; hierarchy is cut at --groups or --height, and
+/// branch by branch with --divide and --join; kwas and tree are the thesis's methods and need joint rotations. With --name-as,
+/// the groups of a database become classes of proposed samples, to be renamed, merged and accepted.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -25,7 +24,7 @@ pub struct Args {
     /// Clips, folders of clips, or one database
     #[arg(value_name = "CLIP|DB", required_unless_present = "clips")]
     pub(super) inputs: Vec<PathBuf>,
-    /// The spelling of old for clips
+    /// Older spelling of the argument CLIPS
     #[arg(long, value_name = "DIR|CLIP", num_args = 1.., hide = true)]
     pub(super) clips: Vec<PathBuf>,
     /// Labels of clips in files: a table, or a form that `morec db label` reads

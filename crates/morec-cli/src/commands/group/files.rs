@@ -24,7 +24,7 @@ struct RowedClip {
 /// Reads, groups and prints.
 pub fn run(paths: &[PathBuf], args: &Args) -> Result<ExitCode> {
     if args.name_as.is_some() || args.report.is_some() {
-        bail!("--name-as and --report are of databases (morec db import makes one of clips)");
+        bail!("--name-as and --report need a database (create one with morec db import)");
     }
     let params = FeatureParams::default();
     let mut clips = BTreeMap::new();
@@ -38,7 +38,9 @@ pub fn run(paths: &[PathBuf], args: &Args) -> Result<ExitCode> {
         let name = take.clip.name;
         match clips.insert(name.clone(), clip) {
             None => Ok(()),
-            Some(_) => bail!("two clips are called {name}: labels could not tell them apart"),
+            Some(_) => {
+                bail!("two clips are called {name}, so labels cannot distinguish them: rename one")
+            }
         }
     })?;
     let samples = samples(paths, &clips, args, &params)?;

@@ -135,7 +135,7 @@ pub fn labelled(
         .collect();
     if samples.is_empty() {
         bail!(
-            "no sample to group: no label names any of these clips (labels name clips by file stem)"
+            "no sample to group: no label names any of these clips (labels name clips by their file name without the ending)"
         );
     }
     Ok(samples)

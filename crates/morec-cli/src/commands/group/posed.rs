@@ -100,7 +100,7 @@ fn read_clips(paths: &[PathBuf], reader: &PoseReader<'_>) -> Result<BTreeMap<Str
     reader.each(paths, |clip| {
         let name = clip.name.clone();
         if clips.insert(name.clone(), clip).is_some() {
-            bail!("two clips are called {name}: labels could not tell them apart");
+            bail!("two clips are called {name}, so labels cannot distinguish them: rename one");
         }
         Ok(())
     })?;

@@ -18,7 +18,7 @@ use crate::progress::StageBar;
 /// Clusters, prints, and proposes if asked to.
 pub fn run(path: &Path, args: &Args) -> Result<ExitCode> {
     if args.labels.is_some() {
-        bail!("--labels: a database has its own; --of labels groups them");
+        bail!("--labels: a database contains its labels; group them with --of labels");
     }
     let mut db = if args.name_as.is_some() {
         database::open(path)?
@@ -30,7 +30,7 @@ pub fn run(path: &Path, args: &Args) -> Result<ExitCode> {
     }
     let items = items(&db, &args.settings)?;
     if items.is_empty() {
-        bail!("nothing to group (morec cut finds segments, morec db label sets samples)");
+        bail!("nothing to group: find segments with morec cut, or set samples with morec db label");
     }
     let has_classes = args.settings.of == Some(Grouping::Labels);
     let grouped = GroupList::of(&items, &args.settings, has_classes)?;

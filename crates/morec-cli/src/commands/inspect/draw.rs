@@ -147,7 +147,7 @@ impl Drawing {
         if colour {
             text += "  \x1b[0;1;34mleft\x1b[0m, \x1b[0;1;32mright\x1b[0m\n";
         } else {
-            text += "  seen from the front, the body's left is on the right\n";
+            text += "  in the front view, the body's left is on the right\n";
         }
         text
     }

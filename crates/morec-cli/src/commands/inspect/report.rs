@@ -302,7 +302,7 @@ impl ClipReport {
     }
 
     fn unit(&self) -> &'static str {
-        self.facts.unit.unwrap_or("no known unit")
+        self.facts.unit.unwrap_or("unknown unit")
     }
 
     fn rest(&self) -> String {

@@ -58,7 +58,7 @@ impl MotionTarget {
             let form = match (form, MotionForm::of(output)) {
                 (Some(form), Some(ending)) if form != ending => {
                     bail!(
-                        "{}: --form {} asks for another ending",
+                        "{}: the extension does not fit --form {}",
                         output.display(),
                         form.extension()
                     )
@@ -81,7 +81,7 @@ impl MotionTarget {
             };
             if let Some(other) = names.insert(name.clone(), clip) {
                 bail!(
-                    "{} and {} would both become {}",
+                    "{} and {} would both be written to {}",
                     other.display(),
                     clip.display(),
                     name.display()

@@ -57,7 +57,7 @@ fn find(skeleton: &Skeleton, channel: &str) -> Result<(usize, ChannelKind, Optio
         .map(|joint| joint.name.clone())
         .collect();
     bail!(
-        "--plot {channel}: no such joint; there are {}",
+        "--plot {channel}: no such joint; the joints are {}",
         some_of(names.iter())
     )
 }

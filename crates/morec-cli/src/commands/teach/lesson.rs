@@ -39,7 +39,8 @@ impl Lessons {
         let taught = folder.join("labels.tsv").is_file();
         if path.exists() && !taught {
             bail!(
-                "{}: was trained from clips that are not in {}, and teaching would lose what it knows; name another index",
+                "{}: this index was trained on clips that are not in {}, and teaching would lose its classes; give another index \
+                 file",
                 path.display(),
                 folder.display()
             );

@@ -13,9 +13,8 @@ use crate::named::by_name;
 
 /// Write labels for other programs, or the motion of clips
 ///
-/// The output's extension chooses the form: .tsv, .csv, .json, .eaf or .txt of labels; with --motion .bvh, .c3d, .trc,
-/// .jsonl, .glb, .vrma, .npz (positions, rotations and feature rows), or .csv with one of these. Motion is in metres, Y
-/// up.
+/// The output's extension chooses the form: .tsv, .csv, .json, .eaf or .txt for labels; with --motion .bvh, .c3d, .trc, .jsonl,
+/// .glb, .vrma, .npz (positions, rotations and feature rows) or .csv (one of these three). Motion is in metres, Y up.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -79,11 +78,11 @@ impl ExportForm {
 
     pub(super) fn of_labels(self) -> Result<LabelFormat> {
         self.labels
-            .context("--form: that is a form of motion; say of which clip with --motion")
+            .context("--form: this is a format of motion; choose the clip with --motion")
     }
 
     pub(super) fn of_motion(self) -> Result<ClipForm> {
         self.motion
-            .context("--form: that is a form of labels, and --motion writes motion")
+            .context("--form: this is a form of labels, but --motion writes motion")
     }
 }

@@ -31,7 +31,7 @@ pub(super) fn export(args: &Args, db: &MotionDb, pattern: &str) -> Result<Writte
     };
     let form = args.form.map(|form| form.of_motion()).transpose()?;
     match clips.as_slice() {
-        [] => bail!("--motion {pattern}: there is no such clip"),
+        [] => bail!("--motion {pattern}: no clip has this name"),
         [clip] if !args.output.is_dir() => Ok(Written {
             files: 1,
             frames: one(args, db, clip, form)?,
@@ -56,7 +56,7 @@ fn one(args: &Args, db: &MotionDb, clip: &ClipInfo, form: Option<ClipForm>) -> R
     let take = db.clip(clip.id)?.into_take()?;
     if to_stdout {
         if form != ClipForm::Bvh {
-            bail!("standard output takes motion as BVH; give a file for other forms");
+            bail!("standard output takes motion as BVH only; give a file for other formats");
         }
         let mut text = Vec::new();
         bvh::write(&take.clip, &mut text)?;

@@ -79,14 +79,14 @@ impl FolderSummary {
         )?;
         self.write_skeletons(out)?;
         for (name, why) in &self.odd {
-            writeln!(out, "  look at {name}: {why}")?;
+            writeln!(out, "  check {name}: {why}")?;
         }
         if self.failed > 0 {
             let failed = count(self.failed, "file");
             writeln!(out, "  {failed} could not be read")?;
         }
         if self.odd.is_empty() && self.failed == 0 {
-            writeln!(out, "  nothing odd in them")?;
+            writeln!(out, "  nothing unusual found")?;
         }
         Ok(())
     }
