@@ -183,7 +183,7 @@ pub fn dialog(ask: &Ask) -> Dialog {
             None,
         ),
         Ask::ExportPage(name) => save(
-            "A page of the clip",
+            "Web page of the clip",
             ("pages", "html"),
             &format!("{name}.html"),
         ),
@@ -207,10 +207,10 @@ pub fn verdict(kind: DialogKind, path: &Path) -> (Option<String>, &'static str) 
     match kind {
         DialogKind::File | DialogKind::Files if !path.exists() => no("There is no such file."),
         DialogKind::Folders if !path.is_dir() => no("There is no such folder."),
-        DialogKind::Save if path.is_dir() => no("This is a folder: add the name of the file."),
+        DialogKind::Save if path.is_dir() => no("This is a folder: add a file name."),
         DialogKind::Save if path.exists() => {
-            let text = "There is a file already: it is written over.";
-            (Some(text.to_owned()), "Write over it")
+            let text = "This file exists and will be replaced.";
+            (Some(text.to_owned()), "Replace it")
         }
         DialogKind::Save if folder.is_some_and(|f| !f.is_dir()) => no("There is no such folder."),
         _ => (None, "OK"),

@@ -63,7 +63,7 @@ impl NamePattern {
         }
         let is_text = |part: &PatternPart| matches!(part, PatternPart::Text(_));
         if parts.windows(2).any(|p| !is_text(&p[0]) && !is_text(&p[1])) {
-            return Err("Two parts in braces need a text between them".to_owned());
+            return Err("Separate parts in braces by text".to_owned());
         }
         if !parts.contains(&PatternPart::Class) && !parts.contains(&PatternPart::Person) {
             return Err("Expected {class}, {person} or both".to_owned());
@@ -192,7 +192,7 @@ mod tests {
         for (text, why) in [
             ("{class", "not closed"),
             ("{who}_{class}", "{who}"),
-            ("{person}{class}", "text between"),
+            ("{person}{class}", "by text"),
             ("take_{}", "Expected"),
             ("", "Expected"),
         ] {

@@ -20,7 +20,7 @@ pub fn open(address: &str) -> Result<Opened, String> {
     let parsed: Address = address.parse()?;
     if parsed.kind == "json" {
         return Err(format!(
-            "{address}: a window has no standard input; json+tcp://127.0.0.1:9000 listens to a port"
+            "{address}: the studio has no standard input; use json+tcp://127.0.0.1:9000"
         ));
     }
     let opened =

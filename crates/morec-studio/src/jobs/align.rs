@@ -73,12 +73,12 @@ pub fn align(
 ) -> Result<Arc<Aligned>, JobError> {
     let none = match &with {
         Partner::NearestOf(class, but) if *but != Unlearned::default() => {
-            format!("No other label of {class} taught what was tested here")
+            format!("No other label of {class} was used in training here")
         }
         Partner::NearestOf(class, _) => {
-            format!("There is no other label of {class} to compare with")
+            format!("No other label of {class} to compare with")
         }
-        _ => "Nothing like it is in the database".to_owned(),
+        _ => "The database contains nothing similar".to_owned(),
     };
     match aligned(path, of, with, progress) {
         Ok(Some(aligned)) => Ok(Arc::new(aligned)),

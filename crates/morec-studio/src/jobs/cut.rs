@@ -88,7 +88,7 @@ fn kernel(rows: &ClipRows) -> Result<Vec<f64>, String> {
 
 /// Why the tracks of the method of 2009 are empty in a clip of positions.
 pub const NO_ROTATIONS: &str =
-    "this clip holds positions without rotations, which the method of 2009 needs";
+    "this clip has positions without rotations, which the method of 2009 needs";
 
 type Misfit = (Vec<f64>, Vec<MisfitSample>, Vec<MisfitSample>);
 
@@ -122,7 +122,7 @@ pub fn curves(motion: &Arc<ClipMotion>, progress: &JobProgress) -> Result<Curves
         ..Curves::default()
     };
     if bones.is_empty() {
-        curves.note = Some("no body part is known, so nothing can be cut".to_owned());
+        curves.note = Some("no body part is known, so the clip cannot be cut".to_owned());
         return Ok(curves);
     }
     let rows = ClipRows {

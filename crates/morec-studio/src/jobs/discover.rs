@@ -18,10 +18,14 @@ pub fn discover(
         .and_then(|db| settings.of_database(&db, &ClipFilter::default(), progress));
     match found {
         Ok(found) if found.sets.is_empty() => {
-            let nothing = "Nothing repeats in these clips: label the motions, or add clips";
+            let nothing =
+                "No repeated motion found in these clips: label motions yourself, or add clips";
             Err(JobError::Failed(nothing.to_owned()))
         }
         Ok(found) => Ok(found),
-        Err(error) => Err(JobError::of("Looking for what repeats stopped", error)),
+        Err(error) => Err(JobError::of(
+            "The search for repeated motions was stopped",
+            error,
+        )),
     }
 }

@@ -44,7 +44,7 @@ pub fn make(folder: &Path, progress: &JobProgress) -> Result<MadeDatabase, JobEr
             path: Some(path),
             report: None,
         })
-        .map_err(|why| JobError::Failed(format!("The example cannot be made: {why}")))
+        .map_err(|why| JobError::Failed(format!("The example cannot be created: {why}")))
 }
 
 fn make_in(folder: &Path, progress: &dyn Progress) -> Result<PathBuf, String> {

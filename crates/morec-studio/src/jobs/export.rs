@@ -132,7 +132,7 @@ fn samples(db: &MotionDb, class: &str, folder: &Path) -> Result<String, String> 
 fn part(clip: &Clip, span: TimeSpan, name: &str) -> Result<Clip, String> {
     let frames = span.frames_among(clip.frames, clip.rate_hz);
     if frames.is_empty() {
-        return Err(format!("no frame of {} lies in that stretch", clip.name));
+        return Err(format!("the stretch contains no frame of {}", clip.name));
     }
     let joints = clip.skeleton.len();
     let within = |of: &Span| {

@@ -10,6 +10,7 @@ use morec_ops::{CopiedClip, ImportSettings};
 
 use super::label_files::{beside, is_labels};
 use super::progress::{JobError, JobProgress};
+use crate::format;
 use crate::store::DbPlace;
 use crate::stretch::Stretch;
 
@@ -65,7 +66,7 @@ impl ImportSummary {
             parts.push(format!("{} refused", self.refused.len()));
         }
         if !self.copies.is_empty() {
-            parts.push(format!("{} nearly the same as others", self.copies.len()));
+            parts.push(format::count(self.copies.len(), "near-duplicate"));
         }
         if self.cancelled {
             parts.push("stopped before the end".to_owned());

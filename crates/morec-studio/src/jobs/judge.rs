@@ -76,9 +76,9 @@ impl Moment {
     pub fn said(&self) -> String {
         match (&self.truth, &self.found) {
             (Some(truth), Some(found)) if truth == found => truth.clone(),
-            (Some(truth), Some(found)) => format!("{truth} taken for {found}"),
+            (Some(truth), Some(found)) => format!("{truth} mistaken for {found}"),
             (Some(truth), None) => format!("{truth} missed"),
-            (None, Some(found)) => format!("{found} where none is labelled"),
+            (None, Some(found)) => format!("{found} without a label"),
             (None, None) => String::new(),
         }
     }

@@ -46,7 +46,9 @@ fn read_one(path: &Path, lengths: &ClipLengths) -> Option<Result<ReadLabels, Str
     LabelFormat::of_file(&name, b"")?;
     let read = || {
         let bytes = match fs::metadata(path) {
-            Ok(about) if about.len() > LARGEST => return Err("too large for labels".to_owned()),
+            Ok(about) if about.len() > LARGEST => {
+                return Err("too large for a label file".to_owned());
+            }
             _ => fs::read(path).map_err(|e| e.to_string())?,
         };
         let form = LabelFormat::of_file(&name, &bytes).unwrap_or(LabelFormat::Tsv);
@@ -58,7 +60,7 @@ fn read_one(path: &Path, lengths: &ClipLengths) -> Option<Result<ReadLabels, Str
                 None => Err(error),
             })
             .map_err(|error| match form.is_of_one_clip() {
-                true => format!("{error}; its labels are of the clip that it is called after"),
+                true => format!("{error}; the clip is known by the name of the label file"),
                 false => error.to_string(),
             })
     };
@@ -105,7 +107,7 @@ pub fn read(db: &Path, paths: &[PathBuf]) -> Result<LabelFiles, JobError> {
             }
             Some(Err(why)) => notes.push(format!("{name}: {why}")),
             None => notes.push(format!(
-                "{name}: expected .tsv, .csv, .json, .eaf or .txt, by which a form of labels is known"
+                "{name}: expected a label file with the extension .tsv, .csv, .json, .eaf or .txt"
             )),
         }
     }
@@ -158,7 +160,7 @@ fn said_absent(db: &MotionDb, absent: &BTreeMap<String, usize>) -> Option<String
     let hint = absent.keys().map(|clip| db.hint_of_clip(clip));
     let hint = hint.take(NAMED).find(|hint| hint.contains('?'));
     Some(format!(
-        "{} left out of clips that are not there: {}{}",
+        "{} of unknown clips left out: {}{}",
         crate::format::count(absent.values().sum(), "label"),
         names.join(", "),
         hint.unwrap_or_default()

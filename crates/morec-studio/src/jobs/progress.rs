@@ -81,7 +81,7 @@ impl JobError {
         match error.into() {
             error if error.is_cancelled() => Self::Cancelled,
             OperationError::Data(DataError::NoSample) => {
-                Self::Failed("Nothing to learn from: label a few motions first".to_owned())
+                Self::Failed("Nothing to train on: label a few motions first".to_owned())
             }
             error => Self::Failed(format!("{what}: {error}")),
         }

@@ -13,5 +13,5 @@ pub fn propose(db: &DbPlace, progress: &JobProgress) -> Result<usize, JobError> 
         .and_then(|mut db| ProposeSettings::default().run(&mut db, progress));
     let likely = |p: &&Proposal| f64::from(p.score) >= UNLIKELY;
     kept.map(|kept| kept.iter().filter(likely).count())
-        .map_err(|e| JobError::of("Nothing was proposed", e))
+        .map_err(|e| JobError::of("No proposals found", e))
 }

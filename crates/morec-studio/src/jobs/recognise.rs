@@ -27,5 +27,5 @@ pub fn clip(
 /// Recognises with `model` in recorded poses.
 pub fn poses(model: &Model, poses: &[(f64, KeyPose)]) -> Result<Vec<Detection>, JobError> {
     recognize_poses(model, poses)
-        .map_err(|error| JobError::Failed(format!("The sensitivity cannot be tried: {error}")))
+        .map_err(|error| JobError::Failed(format!("The sensitivity cannot be tested: {error}")))
 }

@@ -50,10 +50,10 @@ pub fn find(
             hits,
         }),
         Ok(None) => Err(JobError::Failed(
-            "Nothing was searched: the stretch is too short, or no body part of its clip is known"
+            "Search not possible: the stretch is too short, or no body part of its clip is known"
                 .to_owned(),
         )),
-        Err(error) => Err(JobError::of("Nothing was searched", error)),
+        Err(error) => Err(JobError::of("The search failed", error)),
     }
 }
 

@@ -26,25 +26,29 @@ pub const HELP: &[(&str, &str, &str)] = &[
     (
         "Library",
         "1 … 9",
-        "the clips that you have selected, as a whole, show this class",
+        "label the selected clips as a whole with this class",
     ),
     (
         "Library",
         "B",
-        "use the selected clips as background, or no longer",
+        "use the selected clips as background, or stop using them",
     ),
     ("Playing", "Space", "play, stop"),
     (
         "Playing",
         "J  K  L",
-        "backwards, stop, forwards; again is faster",
+        "play backwards, stop, play forwards; again: faster",
     ),
     ("Playing", "Left Right  , .", "a frame back, a frame on"),
     ("Playing", "Shift Left Right", "a second back, a second on"),
     ("Playing", "Home, End", "to the beginning, to the end"),
     ("Playing", "O", "loop the selected stretch or label"),
     ("Playing", "I", "stay inside the segment between the cuts"),
-    ("Labels", "1 … 9 held", "label what passes while playing"),
+    (
+        "Labels",
+        "1 … 9 held",
+        "while playing: label the motion as long as the key is held",
+    ),
     (
         "Labels",
         "1 … 9 tapped",
@@ -59,13 +63,13 @@ pub const HELP: &[(&str, &str, &str)] = &[
     (
         "Labels, live",
         "Q, W",
-        "like 1 … 9, for any class; W chooses it by the beginning of its name",
+        "like 1 … 9, for any class; W chooses the class by its first letters",
     ),
     ("Labels", "S, M", "split at the playhead, merge"),
     (
         "Labels",
         "[  ]",
-        "start, stop of the selected label to the playhead",
+        "move start, stop of the selected label to the playhead",
     ),
     (
         "Labels",
@@ -75,17 +79,17 @@ pub const HELP: &[(&str, &str, &str)] = &[
     ("Labels", "Alt Left Right", "move its start by a frame"),
     ("Labels", "Alt Shift Left Right", "move its stop by a frame"),
     ("Labels", "Delete", "remove the selected labels"),
-    ("Labels", "Tab, Enter", "go to a label, select it"),
+    ("Labels", "Tab, Enter", "move to the next label, select it"),
     (
         "Proposals",
         "A, R",
-        "accept, reject; the next doubtful one is shown",
+        "accept, reject; then the next doubtful proposal is shown",
     ),
-    ("Proposals", "N", "the next doubtful one"),
+    ("Proposals", "N", "the next doubtful proposal"),
     (
         "Searching",
         "F, C",
-        "more like the selection, the nearest beside the performer",
+        "find motions like the selection; compare with the nearest",
     ),
     ("Cuts", "X", "cut at the playhead"),
     (
@@ -98,13 +102,13 @@ pub const HELP: &[(&str, &str, &str)] = &[
     (
         "Live",
         "1 … 9",
-        "the last motion, or the selected stretch, was this class",
+        "label the last motion, or the selected stretch, with this class",
     ),
-    ("Live", "0", "it was none of the classes: background"),
+    ("Live", "0", "mark it as background (none of the classes)"),
     ("Live", "Space, R", "start or stop, record a take"),
     (
         "Live",
         "Left Right, End",
-        "look back in the last minutes, look on, to the present",
+        "move back, forward in the last minutes; to the present",
     ),
 ];

@@ -23,7 +23,7 @@ pub fn mark(ui: &mut Ui, clips: &[&ClipInfo], out: Out) {
     let response = ui.add(Checkbox::new(&mut wanted, text));
     named(&response, "Background", on);
     let response = response.on_hover_text(
-        "Walking, standing about, other gestures: training learns from it what is not a class.  B",
+        "Clips of walking, standing or other gestures, from which training learns what to reject.  B",
     );
     if response.changed() {
         let clips = clips.iter().map(|clip| clip.id).collect();
@@ -77,9 +77,9 @@ pub fn list(ui: &mut Ui, state: &State, out: Out) {
         .collect();
     let text = match clips.is_empty() {
         true => {
-            "Every clip has labels. Import clips of other motion, walking for instance: it makes recognition surer."
+            "Every clip has labels. Import clips of other motion, such as walking: this reduces false alarms."
         }
-        false => "Tick clips in which none of the classes is seen: they make recognition surer.",
+        false => "Tick clips that contain none of the classes: this reduces false alarms.",
     };
     ui.label(RichText::new(text).size(12.0).color(c.muted));
     let row = ui.spacing().interact_size.y;

@@ -220,7 +220,8 @@ fn title(ui: &mut Ui, state: &State, c: &Colours, out: Out) {
     }
     ui.add(egui::Label::new(RichText::new(text).color(c.muted)).truncate())
         .on_hover_text(match store.temporary {
-            true => "Lies in a temporary folder: File, Save a copy as".to_owned(),
+            true => "This database is in a temporary folder; keep it with File, Save a copy as"
+                .to_owned(),
             false => store.path().display().to_string(),
         });
 }

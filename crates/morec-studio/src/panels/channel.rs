@@ -57,7 +57,7 @@ pub fn curve(ui: &mut Ui, state: &State, scale: &Scale, out: Out) {
         false,
     );
     if channel.curves.is_empty() {
-        return widgets::text_in(ui, inner, "it stands still", 11.0, c.muted, false);
+        return widgets::text_in(ui, inner, "does not move", 11.0, c.muted, false);
     }
     draw(ui, rect, scale, channel, &c);
 }

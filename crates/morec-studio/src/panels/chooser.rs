@@ -43,7 +43,7 @@ fn contents(ui: &mut Ui, state: &State, text: &str, out: Out) {
         out.push(Command::Classes(ClassCommand::Choose(class)));
     };
     if matching.is_empty() {
-        ui.colored_label(c.muted, "No class is called so.");
+        ui.colored_label(c.muted, "No class has this name.");
     }
     for (at, class) in matching.iter().take(LISTED).enumerate() {
         // The first is what Enter chooses.

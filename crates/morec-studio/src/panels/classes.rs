@@ -58,7 +58,7 @@ fn tools(ui: &mut Ui, state: &State, out: Out) {
         }
         if ui
             .button("Propose more")
-            .on_hover_text("Look for more of what is labelled, in all clips")
+            .on_hover_text("Search all clips for more samples of the labelled classes")
             .clicked()
         {
             class(ClassCommand::Propose);
@@ -76,14 +76,14 @@ fn tools(ui: &mut Ui, state: &State, out: Out) {
         ui.separator();
         if ui
             .button("Group labels")
-            .on_hover_text("Which labels are alike, whatever their class")
+            .on_hover_text("Group labels by similarity, whatever their class")
             .clicked()
         {
             class(group(false));
         }
         if ui
             .button("Group cuts")
-            .on_hover_text("Which cuts are alike: a way to begin without labels")
+            .on_hover_text("Group segments by similarity: a way to begin without labels")
             .clicked()
         {
             class(group(true));
@@ -115,7 +115,7 @@ fn columns(ui: &mut Ui, state: &State, out: Out) {
         widgets::nothing(
             ui,
             "No classes yet",
-            "Label a few motions, or let what repeats be found and name it.",
+            "Label a few motions, or find repeated motions and name them.",
         );
         return;
     }

@@ -23,7 +23,7 @@ pub fn detections(ui: &mut Ui, state: &State, scale: &Scale, out: Out) {
         let text = if state.train.index.is_some() {
             "…"
         } else {
-            "train, and what is recognised appears here"
+            "train an index: detections appear here"
         };
         return widgets::text_in(
             ui,
@@ -148,7 +148,7 @@ pub fn deviation(ui: &mut Ui, state: &State, scale: &Scale, out: Out) {
     widgets::named(
         &response,
         WidgetType::Label,
-        format!("Farthest off: {text}"),
+        format!("Largest deviation: {text}"),
         false,
     );
     widgets::text_in(ui, mark, &text, 11.0, c.text, false);

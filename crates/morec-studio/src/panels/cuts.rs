@@ -37,7 +37,7 @@ pub fn show(ui: &mut Ui, state: &State, scale: &Scale, out: Out) {
         None => widgets::text_in(
             ui,
             rect.shrink2(Vec2::new(8.0, 0.0)),
-            "looking at the clip …",
+            "analysing the clip …",
             11.0,
             c.muted,
             false,
@@ -52,11 +52,11 @@ pub fn show(ui: &mut Ui, state: &State, scale: &Scale, out: Out) {
         }
     }
     let ground = ground.on_hover_text(
-        "A click selects the segment between two cuts, which is dragged to a class from here. Drag a cut into place; \
-         double click adds one, Delete removes the selected one.",
+        "Click: select the segment between two cuts; drag it to a class to label it. Drag a cut to move it, double click to add \
+         a cut, press Delete to remove the selected cut.",
     );
     ground.context_menu(|ui| {
-        if ui.button("The cuts as they were found").clicked() {
+        if ui.button("Restore the automatic cuts").clicked() {
             out.push(Command::Cuts(CutCommand::Reset));
             ui.close();
         }

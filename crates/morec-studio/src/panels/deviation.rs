@@ -26,7 +26,8 @@ pub fn recognised(ui: &mut Ui, state: &State, out: Out) {
     }
     ui.label(text);
     ui.colored_label(c.muted, format!("{:.2} s long", found.span.duration_secs()));
-    let hint = "The nearest label of this class beside the performer, and how far off each bone is";
+    let hint =
+        "Show the nearest label of this class beside the performer, with the angle between bones";
     if ui.button("How well?").on_hover_text(hint).clicked() {
         let class = found.class.clone();
         out.push(Command::Compare(CompareCommand::NearestOf { of, class }));
@@ -40,13 +41,13 @@ pub fn bones(ui: &mut Ui, state: &State, out: Out) {
         return;
     };
     let c = Colours::now(ui);
-    widgets::section(ui, "HOW FAR OFF");
+    widgets::section(ui, "DEVIATION");
     let beside = &aligned.motion.clip.name;
     ui.label(format!(
-        "{:.0}° on average from {beside}, in {:.2} times its duration",
+        "{:.0}° from {beside} on average, {:.2} times its duration",
         deviation.off_degrees, deviation.pace
     ));
-    ui.colored_label(c.muted, "A click on a bone goes to its worst moment.");
+    ui.colored_label(c.muted, "Click a bone to go to its largest deviation.");
     let farthest = deviation.bones.first().map_or(0.0, |bone| bone.off_degrees);
     let full = farthest.max(LEAST_DEGREES);
     for bone in deviation.bones.iter().take(MOST) {
@@ -64,7 +65,7 @@ fn line(ui: &mut Ui, bone: &BoneDeviation, share: f32, c: &Colours) -> bool {
     let size = Vec2::new(ui.available_width(), ROW);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
     let said = format!(
-        "{name} is {off:.0}° off, most {worst:.0}° at {:.2} s",
+        "{name}: {off:.0}° on average, at most {worst:.0}° at {:.2} s",
         bone.worst_secs
     );
     widgets::named(&response, WidgetType::Button, &said, false);

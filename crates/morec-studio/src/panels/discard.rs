@@ -16,7 +16,7 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
         ui.set_width(430.0);
         let title = "Remove the database for good?";
         ui.label(RichText::new(title).size(16.0).strong());
-        let text = format!("{}: nothing brings it back.", notices::contents(left));
+        let text = format!("{}: this cannot be undone.", notices::contents(left));
         ui.label(crate::store::sentence(&text));
         ui.add_space(8.0);
         ui.horizontal(|ui| {

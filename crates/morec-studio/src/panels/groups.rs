@@ -122,13 +122,13 @@ fn branch(ui: &mut Ui, groups: &ClusteredItems, group: &Group, number: usize, ou
         (
             "Divide",
             divides,
-            "This group alone in its two parts",
+            "Divide this group in two",
             ClassCommand::Divide(node),
         ),
         (
             "Join",
             joins,
-            "With what it was parted from",
+            "Join this group with its sibling",
             ClassCommand::Join(node),
         ),
     ];
@@ -185,12 +185,12 @@ const METHODS: [(GroupMethod, &str, &str); 3] = [
     (
         GroupMethod::Kwas,
         "kWAS",
-        "Principal directions of poses, as in the thesis of 2009; needs joint rotations",
+        "Principal directions of poses (kWAS, thesis of 2009); needs joint rotations",
     ),
     (
         GroupMethod::Tree,
         "Tree of samples",
-        "The partition of the classifier of 2009, each stretch a class of its own; needs joint rotations",
+        "Tree of the classifier of 2009, with each stretch as a class; needs joint rotations",
     ),
 ];
 
@@ -224,7 +224,7 @@ fn kwas(ui: &mut Ui, now: &KwasParams, class: &mut impl FnMut(ClassCommand)) {
     ui.label("k");
     let k = ui.add(egui::DragValue::new(&mut next.k).range(1..=64).speed(0.1));
     widgets::named(&k, WidgetType::DragValue, "Directions k", false);
-    let k = k.on_hover_text("Principal directions of a stretch that count");
+    let k = k.on_hover_text("Number of principal directions compared");
     if tau.changed() || k.changed() {
         class(ClassCommand::Kwas(next));
     }

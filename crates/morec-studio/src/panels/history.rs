@@ -26,12 +26,12 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
                 });
             });
             let hint =
-                "The last change is at the top. A change is undone if no later one depends on it.";
+                "The newest change is at the top. A change can be undone if no later change depends on it.";
             ui.colored_label(c.muted, hint);
             ui.add_space(6.0);
             let steps = &store.snapshot.history;
             if steps.is_empty() {
-                widgets::nothing(ui, "Nothing was changed yet", "");
+                widgets::nothing(ui, "No changes yet", "");
                 return;
             }
             ScrollArea::vertical().auto_shrink(false).show_rows(

@@ -60,17 +60,17 @@ fn beside(ui: &mut Ui, report: &ImportSummary, out: Out) {
     let text = match &report.beside[..] {
         [] => return,
         [one] => format!(
-            "{} beside them holds labels of clips",
+            "{} beside the clips contains labels",
             format::file_name(one)
         ),
         many => format!(
-            "{} beside them hold labels of clips",
+            "{} beside the clips contain labels",
             format::count(many.len(), "file")
         ),
     };
     ui.horizontal(|ui| {
         ui.label(text);
-        if ui.button("Look at the labels").clicked() {
+        if ui.button("Review the labels").clicked() {
             let command = FileCommand::ImportLabels(report.beside.clone());
             out.push(Command::File(command));
         }
@@ -89,7 +89,7 @@ fn as_background(ui: &mut Ui, state: &State, report: &ImportSummary, out: Out) {
         return;
     }
     let response = ui.small_button("Use them as background");
-    let response = response.on_hover_text("None of the classes is seen in these clips");
+    let response = response.on_hover_text("These clips contain none of the classes");
     if response.clicked() {
         out.push(Command::Edit(Edit::Background { clips, on: true }));
     }

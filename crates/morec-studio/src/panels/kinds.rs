@@ -23,7 +23,7 @@ pub fn choose(ui: &mut Ui, state: &State, class: &String, out: Out) {
     let usual = TrainParams::default().kind(class, &labels);
     let (name, with_article) = words(chosen.unwrap_or(usual));
     let (text, why) = match chosen {
-        Some(_) => (format!("{name} ✔"), "so it was chosen".to_owned()),
+        Some(_) => (format!("{name} ✔"), "chosen by you".to_owned()),
         None => (name.to_owned(), labels.reason()),
     };
     let menu = ui.menu_button(text, |ui| {
@@ -45,7 +45,7 @@ pub fn choose(ui: &mut Ui, state: &State, class: &String, out: Out) {
     let named = format!("{class} is {with_article}: {why}");
     widgets::named(&menu.response, WidgetType::Button, &named, false);
     menu.response.on_hover_text(format!(
-        "{named}. An activity goes on: a window of a few seconds tells what it is, and its repetitions are counted. A gesture has a \
-         beginning and an end."
+        "{named}. An activity is continuous: it is recognised by windows of a few seconds, and its repetitions are counted. A \
+         gesture has a beginning and an end."
     ));
 }

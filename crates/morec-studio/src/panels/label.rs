@@ -243,9 +243,8 @@ fn class(ui: &mut Ui, state: &State, place: usize, name: &str, out: Out) {
             out.push(Command::File(FileCommand::AskExportClass(class)));
             ui.close();
         }
-        let background = ui.button("It is background");
-        let hint =
-            "None of the classes: its labels go, and clips that hold nothing else are background";
+        let background = ui.button("Mark as background");
+        let hint = "Removes the class and its labels; clips without other labels become background";
         if background.on_hover_text(hint).clicked() {
             out.push(Command::Classes(ClassCommand::IsBackground(
                 name.to_owned(),
@@ -367,8 +366,7 @@ pub(super) fn stretch(ui: &mut Ui, state: &State, out: Out) {
     };
     widgets::section(ui, "SELECTED STRETCH");
     ui.label(format!("{} to {}", format::secs(start), format::secs(stop)));
-    let hint =
-        "A class's key or a click on a class labels it, playing or not; Escape ends the selection.";
+    let hint = "Press a class's key or click a class to label it, playing or not. Escape ends the selection.";
     ui.colored_label(Colours::now(ui).muted, hint);
     like_this(ui, out);
 }
@@ -378,14 +376,14 @@ pub(super) fn like_this(ui: &mut Ui, out: Out) {
     ui.horizontal(|ui| {
         if ui
             .button("More like this  F")
-            .on_hover_text("Search all clips for what is like it, in a mirror too if you like")
+            .on_hover_text("Search all clips for similar motions, mirrored ones too if chosen")
             .clicked()
         {
             out.push(Command::Similar(SimilarCommand::OfSelection));
         }
         if ui
             .button("Compare  C")
-            .on_hover_text("What is most like it, beside the performer at the same pace")
+            .on_hover_text("Show the most similar motion beside the performer, aligned in time")
             .clicked()
         {
             out.push(Command::Compare(CompareCommand::Nearest));
@@ -398,14 +396,15 @@ fn help(ui: &mut Ui, state: &State, out: Out) {
     let Some(store) = &state.store else { return };
     if store.snapshot.accepted().next().is_none() {
         widgets::section(ui, "FIRST LABELS");
-        ui.colored_label(c.muted, "Play with Space and hold 1 while the first gesture passes, 2 for the second. Two or three of each are enough to begin with; then Train.");
+        ui.colored_label(c.muted, "Play with Space. Hold 1 while the first gesture is performed, 2 for the second. Two or three \
+            labels of each are enough to begin with; then train.");
         return;
     }
     widgets::section(ui, "MORE LIKE THESE");
     ui.horizontal_wrapped(|ui| {
         if ui
             .button("Propose")
-            .on_hover_text("Look for more of what is labelled, in all clips")
+            .on_hover_text("Search all clips for more samples of the labelled classes")
             .clicked()
         {
             out.push(Command::Classes(ClassCommand::Propose));

@@ -45,7 +45,7 @@ fn contents(ui: &mut Ui, state: &State, import: &LabelImport, out: Out) {
         ui.label(RichText::new(more).size(12.0).color(c.warn));
     }
     let mut replace = import.replace;
-    let text = "They are all labels of the clips they name: move, rename and remove what is there";
+    let text = "These files contain all labels of their clips: move, rename and remove existing labels accordingly";
     let response = ui.add(Checkbox::new(&mut replace, text));
     widgets::named(
         &response,

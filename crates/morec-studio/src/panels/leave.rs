@@ -23,7 +23,7 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
         let labels = store.snapshot.accepted().count();
         let clips = store.snapshot.clips.len();
         ui.label(format!(
-            "It has no file of its own yet: {} and {}. Discarded, they are gone for good.",
+            "It has no file of its own yet: {} and {}. If you discard it, they cannot be restored.",
             format::count(clips, "clip"),
             format::count(labels, "label")
         ));

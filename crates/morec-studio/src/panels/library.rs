@@ -148,7 +148,7 @@ fn table(ui: &mut Ui, state: &State, out: Out) {
     let shown = state.library.shown();
     if shown.is_empty() {
         let hint = format!("Nothing matches “{}”.", state.library.filter);
-        return widgets::nothing(ui, "No clip is found", &hint);
+        return widgets::nothing(ui, "No clip found", &hint);
     }
     let as_strips = state.library.strips;
     ui.spacing_mut().item_spacing.y = if as_strips { 4.0 } else { 0.0 };

@@ -247,7 +247,7 @@ fn health(ui: &mut Ui, state: &State) {
     }
     let said = run.health(state.live.index().map(|index| &**index));
     if said.is_empty() {
-        ui.colored_label(c.good, "✔ No fault is found.");
+        ui.colored_label(c.good, "✔ No problems found.");
     }
     for (text, fault) in said.iter().take(5) {
         let colour = if *fault { c.warn } else { c.muted };
@@ -269,7 +269,7 @@ fn sensitivity(ui: &mut Ui, state: &State, out: Out) {
     if state.live.can_sense() {
         alarms(ui, state, out);
     } else {
-        ui.colored_label(c.muted, "This index has one sensitivity only.");
+        ui.colored_label(c.muted, "This index has only one sensitivity.");
     }
     if state.live.knows_performers() {
         who_performs(ui, state, out);
@@ -280,7 +280,7 @@ fn sensitivity(ui: &mut Ui, state: &State, out: Out) {
             None => "It".to_owned(),
         };
         let count = format::count(resensed.found.len(), "motion");
-        let text = format!("{at} would have found {count} in the minutes below.");
+        let text = format!("{at} would have reported {count} in the minutes below.");
         ui.label(RichText::new(text).size(12.0));
     }
 }
@@ -299,16 +299,16 @@ fn alarms(ui: &mut Ui, state: &State, out: Out) {
             ..state.live.settings.clone()
         })));
     }
-    let said = RichText::new("false alarms a minute that are accepted");
+    let said = RichText::new("accepted false alarms a minute");
     ui.label(said.size(11.0).color(Colours::now(ui).muted));
 }
 
 /// The performer that is expected, where one or two people taught.
 fn who_performs(ui: &mut Ui, state: &State, out: Out) {
     let name = |kind: PerformerKind| match kind {
-        PerformerKind::Auto => "whoever it is",
-        PerformerKind::Teacher => "who taught",
-        PerformerKind::Anyone => "somebody else",
+        PerformerKind::Auto => "automatic",
+        PerformerKind::Teacher => "training subject",
+        PerformerKind::Anyone => "another person",
     };
     let chosen = state.live.settings.performer.unwrap_or_default();
     ui.horizontal(|ui| {
@@ -327,7 +327,8 @@ fn who_performs(ui: &mut Ui, state: &State, out: Out) {
         });
         widgets::named(&combo.response, WidgetType::ComboBox, "Performer", false);
         combo.response.on_hover_text(
-            "The teacher must reach half of the scores of the samples; anybody else the bound. Otherwise the bound is raised by the performer's own recent scores",
+            "Automatic: after four reports, the score threshold rises to half of the performer's recent scores. Training \
+             subject: half of the training samples' scores from the start. Another person: the threshold is never raised",
         );
     });
 }
@@ -341,7 +342,7 @@ fn performer(ui: &mut Ui, state: &State, out: Out) {
         widgets::nothing(
             ui,
             "No source is running",
-            "Choose a source at the left and start it.",
+            "Choose a source on the left and start it.",
         );
         return;
     };

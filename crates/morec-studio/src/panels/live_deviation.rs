@@ -24,7 +24,7 @@ pub fn show(ui: &mut Ui, state: &State) {
     ui.label(RichText::new(&said).size(12.5));
     let size = Vec2::new(ui.available_width(), HEIGHT);
     let (area, response) = ui.allocate_exact_size(size, Sense::hover());
-    let name = format!("How far off the last {} were: {said}", compared.len());
+    let name = format!("Deviation of the last {}: {said}", compared.len());
     widgets::named(&response, WidgetType::Label, name, false);
     let degrees = compared.iter().map(|d| d.deviation.off_degrees);
     let full = degrees.fold(LEAST_DEGREES, f64::max);
@@ -38,7 +38,7 @@ pub fn show(ui: &mut Ui, state: &State) {
         let colour = c.class(state.classes.place(&one.class));
         ui.painter().rect_filled(bar, 1.5, colour);
     }
-    response.on_hover_text("Mean angle off the nearest sample, the newest at the right");
+    response.on_hover_text("Mean angle from the nearest sample; the newest is on the right");
 }
 
 fn words(of: &LiveDeviation) -> String {
@@ -50,7 +50,7 @@ fn words(of: &LiveDeviation) -> String {
         None => class.clone(),
     };
     format!(
-        "{what}: {:.0}° off, {} {:.0}°, {:.2} × the time",
+        "{what}: {:.0}° off, {} {:.0}°, {:.2} × the duration",
         deviation.off_degrees,
         deviation.worst_bone.replace('_', " "),
         deviation.worst_degrees,

@@ -15,7 +15,7 @@ const NAMES: f32 = 100.0;
 pub fn show(ui: &mut Ui, state: &State, out: Out) {
     let c = Colours::now(ui);
     let Some(run) = &state.live.run else {
-        let hint = "Drag over what just happened to say what it was.";
+        let hint = "Drag over a motion to label it.";
         widgets::nothing(ui, "The last minutes appear here", hint);
         // A panel is as high as what is in it.
         ui.allocate_space(ui.available_size());
@@ -32,7 +32,7 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
         } else {
             ui.label(
                 RichText::new(
-                    "drag to select a stretch; without a selection the last motion is meant",
+                    "drag to select a stretch; without a selection, keys label the last motion",
                 )
                 .size(12.0)
                 .color(c.muted),

@@ -16,7 +16,7 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
     let Some(judged) = &state.train.judged else {
         ui.colored_label(
             c.muted,
-            "Cross-validate to see how well this works on people and clips it was not taught.",
+            "Cross-validate to measure how well people and clips outside the training data are recognised.",
         );
         return;
     };
@@ -45,7 +45,7 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
     });
     if !judged.untested.is_empty() {
         let text = format!(
-            "Not tested: {}. All labels of it are of {}, without which nothing teaches it.",
+            "Not tested: {}. All its labels are of {}, so nothing is left to train on.",
             judged.untested.join(", "),
             only_part(judged.by)
         );
@@ -56,8 +56,8 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
     ui.add_space(8.0);
     ui.colored_label(
         c.muted,
-        "Rows: what is labelled. Columns: what was recognised. The last row counts detections that match no label. A click \
-         on a cell lists its moments at the right.",
+        "Rows: labelled class. Columns: recognised class. Last row: detections that match no label. Click a cell to list its \
+         motions on the right.",
     );
 }
 
@@ -137,7 +137,7 @@ fn one(ui: &Ui, state: &State, rect: Rect, row: usize, column: usize, out: Out) 
     let response = ui.interact(rect, ui.id().with(("cell", row, column)), Sense::click());
     let name = |n: Option<&String>, none: &str| n.map_or(none.to_owned(), Clone::clone);
     let said = format!(
-        "{} taken for {}: {count}",
+        "{} mistaken for {}: {count}",
         name(truth, NO_LABEL),
         name(found, "nothing")
     );

@@ -65,7 +65,8 @@ fn compare(ui: &mut Ui, state: &State, out: Out) {
             let response = ui.button(class);
             let name = format!("Compare with the nearest {class}");
             widgets::named(&response, WidgetType::Button, name, false);
-            let hint = "The nearest label of this class beside the performer, aligned in time  (C)";
+            let hint =
+                "Show the nearest label of this class beside the performer, aligned in time  (C)";
             if response.on_hover_text(hint).clicked() {
                 let class = Some(class.to_owned());
                 out.push(Command::Compare(CompareCommand::Moment(class)));

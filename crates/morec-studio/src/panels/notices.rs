@@ -66,8 +66,8 @@ fn undrawn(ui: &mut Ui, state: &State, c: &Colours) {
         .collect();
     card(ui, c, c.warn, |ui| {
         let text = format!(
-            "No font of this computer has all letters of {first} ({}){more}. Install one, such as Noto Sans CJK or Noto Sans Arabic, and \
-             start again.",
+            "No installed font has all letters of {first} ({}){more}. Install one, such as Noto Sans CJK or Noto Sans Arabic, \
+             and restart the studio.",
             code.join(" ")
         );
         line(ui, c.warn, &text, |_| {});
@@ -121,7 +121,7 @@ fn leftovers(ui: &mut Ui, state: &State, c: &Colours, out: Out) {
                 Some(_) => format!("{}, last changed {when}", contents(left)),
                 None => contents(left),
             };
-            let text = format!("A database was left without being saved: {what}.");
+            let text = format!("A database was not saved: {what}.");
             line(ui, c.warn, &text, |ui| {
                 if ui.button("Discard it …").clicked() {
                     out.push(Command::File(FileCommand::AskDiscard(Some(at))));

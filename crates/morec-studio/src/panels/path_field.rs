@@ -27,7 +27,7 @@ fn contents(ui: &mut egui::Ui, state: &State, typed: &TypedPath, kind: DialogKin
     ui.set_width(460.0);
     ui.colored_label(
         c.warn,
-        "No file dialog can be opened here: there is neither a desktop portal nor zenity.",
+        "No file dialog can be opened: neither a desktop portal nor zenity was found.",
     );
     ui.label(match kind {
         DialogKind::Save => "Path of the file to write:",

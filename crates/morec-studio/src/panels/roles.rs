@@ -25,7 +25,7 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
     if motion.speed.is_empty() {
         ui.colored_label(
             c.warn,
-            "No bone of a body is known, so nothing can be recognised in this clip: click a part, then its joint.",
+            "No body part has a joint, so nothing can be recognised in this clip: click a part, then its joint.",
         );
     }
     for doubt in &motion.doubts {
@@ -55,7 +55,7 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
 fn asked(ui: &mut Ui, state: &State, motion: &ClipMotion, out: Out) {
     let c = Colours::now(ui);
     let Some(role) = state.library.role else {
-        let hint = "Click a part that is wrong, then its joint in the picture.";
+        let hint = "Click a wrong part, then its joint in the picture.";
         ui.label(RichText::new(hint).size(12.0).color(c.muted));
         return;
     };
@@ -79,7 +79,7 @@ fn asked(ui: &mut Ui, state: &State, motion: &ClipMotion, out: Out) {
         });
         if ui
             .button("None")
-            .on_hover_text("No joint plays this part")
+            .on_hover_text("No joint for this part")
             .clicked()
         {
             library(LibraryCommand::GiveRole { role, joint: None });

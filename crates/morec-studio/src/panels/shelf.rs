@@ -25,7 +25,7 @@ const ROW: f32 = 2.0 * STRIP + 62.0;
 pub fn button(ui: &mut Ui, state: &State, out: Out) {
     let find = ui.button("Find what repeats");
     if find
-        .on_hover_text("Sets of the same motion in all clips, without labels")
+        .on_hover_text("Find sets of the same motion in all clips, without labels")
         .clicked()
     {
         out.push(Command::Shelf(ShelfCommand::Discover));
@@ -41,7 +41,7 @@ pub fn tools(ui: &mut Ui, state: &State, out: Out) {
     let mut push = |command| out.push(Command::Shelf(command));
     ui.label(RichText::new("What repeats").strong());
     let text = format!(
-        "{}, {:.0} % of what moves; seen once: {}",
+        "{}, {:.0} % of all motion; not repeated: {}",
         format::count(shelf.sets.len(), "set"),
         100.0 * shelf.share_in_sets,
         format::count(shelf.alone.len(), "stretch"),
@@ -149,7 +149,7 @@ fn decisions(ui: &mut Ui, state: &State, place: usize, set: &ShelfSet, out: Out)
     ui.data_mut(|d| d.insert_temp(id, name));
     let runs = ui.selectable_label(set.runs, "Whole runs");
     widgets::named(&runs, WidgetType::Button, of_set("Whole runs of"), set.runs);
-    let hint = "Repetitions that follow each other at once are one sample";
+    let hint = "Make repetitions without a pause one sample";
     if runs.on_hover_text(hint).clicked() {
         push(ShelfCommand::Runs {
             set: place,
@@ -178,7 +178,7 @@ fn decisions(ui: &mut Ui, state: &State, place: usize, set: &ShelfSet, out: Out)
     widgets::named(&join.response, WidgetType::Button, of_set("Join"), false);
     let not = ui.small_button("Not a motion");
     widgets::named(&not, WidgetType::Button, of_set("Not a motion:"), false);
-    let hint = "It stays without a label: training takes it for background";
+    let hint = "Leave it unlabelled: training uses it as background";
     if not.on_hover_text(hint).clicked() {
         push(ShelfCommand::NotAMotion(place));
     }
@@ -321,7 +321,7 @@ fn alone(ui: &mut Ui, state: &State, out: Out) {
     let c = Colours::now(ui);
     ui.colored_label(
         c.muted,
-        "Seen once: a motion that is done once is in no set",
+        "Not repeated: a motion performed once is in no set",
     );
     ScrollArea::horizontal()
         .id_salt("seen once")

@@ -40,7 +40,7 @@ pub fn tools(ui: &mut Ui, state: &State, similar: &Similar, out: Out) {
     at_once(ui, state, similar, out);
     let count = format::count(similar.hits.len(), "stretch");
     let text = match similar.mirror {
-        true => format!("{count}, as they are and in a mirror"),
+        true => format!("{count}, original and mirrored"),
         false => count,
     };
     ui.colored_label(c.muted, text);
@@ -54,7 +54,7 @@ fn at_once(ui: &mut Ui, state: &State, similar: &Similar, out: Out) {
     let mut alike = state.classes.alike.unwrap_or(LIKELY);
     ui.spacing_mut().slider_width = 90.0;
     let response = ui.add(egui::Slider::new(&mut alike, 1..=100).suffix(" %"));
-    widgets::named(&response, WidgetType::Slider, "Likeness of hits", false);
+    widgets::named(&response, WidgetType::Slider, "Similarity of hits", false);
     if response.changed() {
         out.push(Command::Similar(SimilarCommand::Alike(alike)));
     }
@@ -94,8 +94,8 @@ pub fn show(ui: &mut Ui, state: &State, similar: &Similar, out: Out) {
     if similar.hits.is_empty() {
         widgets::nothing(
             ui,
-            "Nothing is like it",
-            "Other clips may hold more of it: import them.",
+            "No similar motion found",
+            "Import more clips to search in.",
         );
         return;
     }
@@ -154,7 +154,7 @@ fn card(ui: &mut Ui, state: &State, similar: &Similar, at: usize, out: Out) {
             false,
         );
         if compare
-            .on_hover_text("Beside the example, at the same pace")
+            .on_hover_text("Beside the example, aligned in time")
             .clicked()
         {
             out.push(Command::Compare(CompareCommand::With {
@@ -171,7 +171,7 @@ fn card(ui: &mut Ui, state: &State, similar: &Similar, at: usize, out: Out) {
             false,
         );
         if more
-            .on_hover_text("Search for what is like this one")
+            .on_hover_text("Search for motions like this hit")
             .clicked()
         {
             let class = similar.class.clone();
@@ -206,7 +206,7 @@ fn label(ui: &mut Ui, state: &State, similar: &Similar, at: usize, out: Out) {
                 ui.close();
             }
         }
-        let hint = "A class that can be renamed, and labels more";
+        let hint = "Make a class of these hits, which you can rename";
         if ui.button("New class").on_hover_text(hint).clicked() {
             as_class(&state.classes.free_name());
             ui.close();

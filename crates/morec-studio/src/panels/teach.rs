@@ -13,7 +13,7 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
     widgets::section(ui, "MARK THE LAST MOTION");
     let hint = match (&state.live.run, state.live.range) {
         (None, _) => {
-            "Start a source. Then a key or a click names the last motion, which is recognised from then on."
+            "Start a source, then press a key or click a class to label the last motion. It is recognised from then on."
         }
         (_, Some(_)) => "The selected stretch was …",
         (_, None) => "The last motion was …",
@@ -54,9 +54,8 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
         }
         let response = ui.add_enabled(on, egui::Button::new("0  none of these"));
         widgets::named(&response, WidgetType::Button, "Mark as background", false);
-        let response = response.on_hover_text(
-            "Background: kept as motion that is none of the classes, so that it is not recognised again",
-        );
+        let response = response
+            .on_hover_text("Keep the motion as background, so that it is not recognised again");
         if response.clicked() {
             out.push(Command::Live(LiveCommand::MarkBackground));
         }
@@ -78,8 +77,8 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
     }
     if state.live.index().is_none() && !state.is_training() {
         ui.add_space(4.0);
-        ui.colored_label(c.warn, "No index is in use yet: mark something, or");
-        if ui.button("Train with the labels that are there").clicked() {
+        ui.colored_label(c.warn, "No index is in use yet: mark a motion, or");
+        if ui.button("Train on the existing labels").clicked() {
             out.push(Command::Train(TrainCommand::Train));
         }
     }

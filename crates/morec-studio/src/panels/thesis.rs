@@ -18,11 +18,11 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
             out.push(Command::Train(TrainCommand::Thesis));
         }
         let judge = egui::Button::new("Cross-validate it");
-        let hint = "The confusion matrix of this method, above in place of the other's";
+        let hint = "Show this method's confusion matrix above";
         if ui.add_enabled(!state.is_judging(), judge).on_hover_text(hint).clicked() {
             out.push(Command::Train(TrainCommand::JudgeThesis));
         }
-        let hint = "A tree of support vector machines: each branch tells two groups of classes apart, or neither.";
+        let hint = "A tree of support vector machines: each branch distinguishes two groups of classes and rejects other motion.";
         ui.label(RichText::new(hint).size(12.0).color(c.muted));
     });
     thesis_params::show(ui, state, out);

@@ -20,12 +20,12 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
         for (text, hint, params) in [
             (
                 "Tuned",
-                "Made to accept what was not seen",
+                "Tuned for people outside the training data",
                 SvrdmTrainParams::tuned(),
             ),
             (
                 "As in the thesis",
-                "The values that the thesis prints",
+                "The values printed in the thesis",
                 SvrdmTrainParams::faithful(),
             ),
         ] {
@@ -110,7 +110,7 @@ fn joints(ui: &mut Ui, names: &mut Vec<String>) {
 fn recognition(ui: &mut Ui, params: &mut SvrdmTrainParams) {
     let estimated = matches!(params.thresholds, ThresholdRule::Estimated { .. });
     ui.label("T of recognition:");
-    let hint = "From samples that are left out of training and from background";
+    let hint = "From samples left out of training, and from background";
     if ui
         .selectable_label(estimated, "estimated")
         .on_hover_text(hint)
@@ -118,7 +118,7 @@ fn recognition(ui: &mut Ui, params: &mut SvrdmTrainParams) {
     {
         params.thresholds = SvrdmTrainParams::tuned().thresholds;
     }
-    let hint = "A branch of the tree is followed if its machine says at least this";
+    let hint = "A branch of the tree is followed if its machine's output is at least this value";
     if ui
         .selectable_label(!estimated, "fixed")
         .on_hover_text(hint)
@@ -136,10 +136,10 @@ fn recognition(ui: &mut Ui, params: &mut SvrdmTrainParams) {
     }
 }
 
-/// Principal components that are kept: a number, or as many as hold a share of the variance, τ.
+/// Number of principal components: a number, or as many as hold a share of the variance, τ.
 fn components(ui: &mut Ui, keep: &mut ComponentCount) {
     let by_share = matches!(keep, ComponentCount::Quality(_));
-    let hint = "Principal components that are kept";
+    let hint = "Number of principal components";
     if ui
         .selectable_label(!by_share, "Dimensions")
         .on_hover_text(hint)
@@ -147,7 +147,7 @@ fn components(ui: &mut Ui, keep: &mut ComponentCount) {
     {
         *keep = ComponentCount::Dims(DIMS);
     }
-    let hint = "As many principal components as hold this share of the variance";
+    let hint = "As many principal components as are needed for this share of the variance";
     if ui
         .selectable_label(by_share, "τ: share of variance")
         .on_hover_text(hint)

@@ -89,8 +89,8 @@ pub fn show(ui: &mut Ui, state: &State, thesis: &Thesis, branch: &Boundary, out:
 fn legend(ui: &mut Ui, thesis: &Thesis, c: &Colours) {
     let machine = &thesis.params.tree.machine;
     let text = format!(
-        "Tinted where the machine of a side says more than it may of the other side; at the edge it says t = {:.2}. Thick \
-         lines: it says T = {:.2}, as of its own samples. Thin lines: it says {:.2}, from which recognition follows it.",
+        "Tinted: the output of a side's machine is above the other side's limit, t = {:.2}. Thick lines: the output is T = \
+         {:.2}, as for its own samples. Thin lines: the output is {:.2}, from which recognition follows the branch.",
         machine.other, machine.own, thesis.model.params.accept
     );
     ui.label(RichText::new(text).size(12.0).color(c.muted));

@@ -89,7 +89,7 @@ fn tools(ui: &mut Ui, state: &State, out: Out) {
         if tracks::are_many(state)
             && ui
                 .selectable_label(state.timeline.all_classes, "All classes")
-                .on_hover_text("A track for each class, not only for those in this clip")
+                .on_hover_text("Show tracks of all classes, not only of those in this clip")
                 .clicked()
         {
             timeline(TimelineCommand::AllClasses(!state.timeline.all_classes));

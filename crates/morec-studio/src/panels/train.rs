@@ -49,11 +49,7 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
                 }
                 let nothing = state.train.index.is_none() && state.train.judged.is_none();
                 if nothing && state.train.thesis.is_none() {
-                    widgets::nothing(
-                        ui,
-                        "Nothing is trained yet",
-                        "Choose classes at the left and train.",
-                    );
+                    widgets::nothing(ui, "No index yet", "Choose classes at the left and train.");
                 } else {
                     trained(ui, state, out);
                     matrix::show(ui, state, out);
@@ -88,7 +84,7 @@ fn buttons(ui: &mut Ui, state: &State, out: Out) {
     };
     let response = widgets::wide(ui, !state.is_judging(), egui::Button::new(label), 26.0);
     if response
-        .on_hover_text("Leave out each person in turn, train without, and see what is recognised")
+        .on_hover_text("Leave out each person in turn, train without this person, and count what is recognised")
         .clicked()
     {
         out.push(Command::Train(TrainCommand::Judge));
@@ -134,9 +130,9 @@ fn parts(ui: &mut Ui, state: &State, out: Out) {
                 }
             }
         });
-        widgets::named(&combo.response, WidgetType::ComboBox, "Parts that count", false);
+        widgets::named(&combo.response, WidgetType::ComboBox, "Body parts to use", false);
         combo.response.on_hover_text(
-            "What motions are told apart by. All: the body, or hands where the clips show nothing else",
+            "Body parts that are compared. All: the body, or the hands if the clips contain nothing else",
         );
     });
 }
@@ -148,7 +144,7 @@ fn teach_next(ui: &mut Ui, state: &State) {
     let mut hints = Vec::new();
     for class in store.snapshot.classes.iter().filter(|k| k.accepted < 3) {
         hints.push(format!(
-            "{}: {}, give at least three",
+            "{}: {}, add labels until there are at least three",
             class.name,
             format::count(class.accepted, "label")
         ));
@@ -163,13 +159,13 @@ fn teach_next(ui: &mut Ui, state: &State) {
         worst.sort_by(|a, b| (b.missed * a.samples).cmp(&(a.missed * b.samples)));
         for class in worst.iter().take(3) {
             hints.push(format!(
-                "{}: {} of {} missed, add some by other people",
+                "{}: {} of {} missed, add labels of other people",
                 class.class, class.missed, class.samples
             ));
         }
         for class in &judged.untested {
             hints.push(format!(
-                "{class}: of {} only, add some of another",
+                "{class}: labels of {} only, add labels of another person",
                 only_part(judged.by)
             ));
         }
@@ -181,7 +177,7 @@ fn teach_next(ui: &mut Ui, state: &State) {
         return;
     }
     ui.add_space(8.0);
-    widgets::section(ui, "WHAT TO TEACH NEXT");
+    widgets::section(ui, "WHAT TO ADD NEXT");
     for hint in hints.iter().take(5) {
         ui.label(RichText::new(hint).size(12.0).color(c.muted));
     }
@@ -192,7 +188,7 @@ fn unlabelled(judged: &CrossvalView) -> Option<String> {
     let found = judged.false_detections();
     (found > 0).then(|| {
         format!(
-            "{} where nothing is labelled: look at them, and label those that are right",
+            "{} in unlabelled motion: check them, and label those that are right",
             format::count(found, "detection")
         )
     })
@@ -204,7 +200,7 @@ fn indexes(ui: &mut Ui, state: &State, out: Out) {
     ui.add_space(8.0);
     widgets::section(ui, "INDEXES IN THE DATABASE");
     if store.snapshot.indexes.is_empty() {
-        ui.colored_label(c.muted, "None is kept yet.");
+        ui.colored_label(c.muted, "No index is stored yet.");
     }
     for index in store.snapshot.indexes.iter() {
         ui.horizontal(|ui| {
@@ -216,7 +212,7 @@ fn indexes(ui: &mut Ui, state: &State, out: Out) {
             }
             ui.label(&index.name);
             let text = if store.snapshot.is_stale(index) {
-                "labels or background changed since"
+                "labels or background have changed since"
             } else {
                 "up to date"
             };

@@ -22,7 +22,10 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
         ui.label(format!("“{}”", step.what));
         let mine = store.snapshot.my_step();
         if let Some(mine) = mine {
-            ui.colored_label(c.muted, format!("The last one made here: “{}”", mine.what));
+            ui.colored_label(
+                c.muted,
+                format!("The last change made here: “{}”", mine.what),
+            );
         }
         ui.add_space(8.0);
         ui.horizontal(|ui| {
@@ -30,7 +33,7 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
                 out.push(Command::UndoAsks(false));
                 out.push(Command::Edit(Edit::Undo(Some(id))));
             };
-            if ui.add(widgets::main_button("Take it back", &c)).clicked() {
+            if ui.add(widgets::main_button("Undo it", &c)).clicked() {
                 undo(step.id);
             }
             let button = ui.add_enabled(mine.is_some(), egui::Button::new("Mine only"));

@@ -129,13 +129,12 @@ fn remarks(ui: &mut Ui, rect: Rect, scene: &Scene, has_body: bool) {
     let mut said: Vec<String> = Vec::new();
     if !has_body && motion.is_points() && joints > 2 {
         said.push(format!(
-            "Only {joints} points are drawn: no part of a body is known among them. Parts of the body in the library says \
-             which they are."
+            "Only {joints} points are drawn, because no body part is known: assign joints under Parts of the body in the library."
         ));
     } else if !has_body {
         let joints = crate::format::count(joints, "joint");
         said.push(format!(
-            "{joints} alone make no body: only points are drawn."
+            "{joints} are not enough for a body: only points are drawn."
         ));
     }
     said.extend(

@@ -73,7 +73,7 @@ pub fn from_names(ui: &mut Ui, state: &State, clips: &[&ClipInfo], out: Out) {
         info.current_text_value = Some(text.clone());
         info
     });
-    let hint = "{class} and {person} stand for what is to be read, {} for anything else; with / the folders count too";
+    let hint = "{class} and {person} mark what is read from the name, {} any other text; with /, folders are included";
     response.on_hover_text(hint);
     if now != text {
         out.push(Command::Library(LibraryCommand::Pattern(now.clone())));
@@ -104,7 +104,7 @@ pub fn from_names(ui: &mut Ui, state: &State, clips: &[&ClipInfo], out: Out) {
     let mut summary = format::count(classes.len(), "class");
     if let Some((_, name, _)) = others.first() {
         summary += &format!(
-            "; {} do not fit, as {name}",
+            "; {} do not fit, such as {name}",
             format::count(others.len(), "name")
         );
     }

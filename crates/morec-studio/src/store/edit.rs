@@ -116,7 +116,7 @@ impl Edit {
                 let counts = db.label(samples, &options)?.counts;
                 let class = samples.first().map_or("", |s| s.class.as_str());
                 Ok(match counts.added + counts.changed {
-                    0 => "that label is there already".to_owned(),
+                    0 => "this label exists already".to_owned(),
                     1 => format!("labelled {class}"),
                     n => format!("{n} labels of {class}"),
                 })
@@ -166,11 +166,11 @@ impl Edit {
             }
             Edit::RenameClass { from, to } => {
                 db.rename_class(from, to)?;
-                Ok(format!("{from} is called {to} now"))
+                Ok(format!("{from} renamed to {to}"))
             }
             Edit::MergeClass { from, into } => {
                 let moved = db.merge_classes(std::slice::from_ref(from), into)?;
-                Ok(format!("{} of {from} now {into}", samples(moved)))
+                Ok(format!("{} moved from {from} to {into}", samples(moved)))
             }
             Edit::ClassIsBackground(name) => {
                 let tagged = db.class_is_background(name)?;
@@ -195,14 +195,14 @@ impl Edit {
             }
             Edit::RenameClip { from, to } => {
                 db.rename_clip(from, to)?;
-                Ok(format!("{from} is called {to} now"))
+                Ok(format!("{from} renamed to {to}"))
             }
             Edit::RemoveClips(clips) => {
                 let labels = db.remove_clips(clips)?;
                 let gone = crate::format::count(clips.len(), "clip");
                 Ok(match labels {
                     0 => format!("{gone} removed"),
-                    n => format!("{gone} removed, {} with them", samples(n)),
+                    n => format!("{gone} removed, with {}", samples(n)),
                 })
             }
             Edit::Roles(clips) => {
@@ -218,19 +218,19 @@ impl Edit {
             }
             Edit::ForgetCuts(clip) => {
                 db.set_segments("none", &[*clip], &[])?;
-                Ok("the cuts are those that are found".to_owned())
+                Ok("the automatic cuts are restored".to_owned())
             }
             Edit::KeepIndex { name, bytes } => {
                 db.store_index(name, bytes)?;
-                Ok(format!("index {name} kept in the database"))
+                Ok(format!("index {name} stored in the database"))
             }
             Edit::Undo(step) => Ok(match db.undo(*step)? {
                 Some(turned) => format!("undone: {}", turned.step.what),
-                None => "there is nothing to undo".to_owned(),
+                None => "nothing to undo".to_owned(),
             }),
             Edit::Redo => Ok(match db.redo(None)? {
-                Some(turned) => format!("done again: {}", turned.step.what),
-                None => "there is nothing to do again".to_owned(),
+                Some(turned) => format!("redone: {}", turned.step.what),
+                None => "nothing to redo".to_owned(),
             }),
         }
     }

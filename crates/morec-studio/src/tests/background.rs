@@ -125,7 +125,7 @@ fn background_teaches_a_verifier_which_recognises_live() {
     assert!(person.sees("up to date"));
     person.click("Background other_2");
     person.settle();
-    assert!(person.sees("labels or background changed since"));
+    assert!(person.sees("labels or background have changed since"));
     person.undo();
     assert!(person.sees("up to date"));
     // A cross-validation learns from the same background.
@@ -224,7 +224,7 @@ fn what_was_nothing_is_marked_live_learned_and_undone() {
     // The same motion cannot be a class too.
     select(&mut person, (3.2, 4.6));
     person.key(Key::Num1);
-    assert!(person.sees_part("that motion is marked as background already; undo that first"));
+    assert!(person.sees_part("this motion is marked as background already; undo that mark first"));
     assert_eq!(person.state().live.marks.len(), 1);
     // One undo takes it back, and then it can.
     person.undo();

@@ -263,7 +263,7 @@ fn a_clip_of_two_joints_says_why_there_is_no_body() {
     let text = bvh(&joints).replace("OFFSET 0 1 0", "OFFSET 0 0 0");
     let (_folder, _, mut person) = with("two.bvh", text.as_bytes());
     person.goes_to(Panel::Label);
-    assert!(person.sees_part("joints alone make no body"));
+    assert!(person.sees_part("joints are not enough for a body"));
     assert!(!dots(&person).is_empty());
 }
 

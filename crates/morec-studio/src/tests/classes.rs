@@ -284,7 +284,7 @@ fn the_most_doubtful_proposal_is_shown_first_and_the_next_after_each_answer() {
     person.key(Key::A);
     person.settle();
     person.key(Key::N);
-    assert!(person.sees_part("no proposal is left to look at"));
+    assert!(person.sees_part("no proposal is left to check"));
 }
 
 /// Twelve classes without labels, the last of them `throw` and `turn`.
@@ -368,7 +368,7 @@ fn a_class_has_its_number_and_the_key_q_and_the_chooser_is_left_by_escape() {
     person.key(Key::W);
     person.window.event(egui::Event::Text("nobody".to_owned()));
     person.frames(2);
-    assert!(person.sees("No class is called so."));
+    assert!(person.sees("No class has this name."));
     person.key(Key::Enter);
     assert!(person.sees("Class of the key Q"), "nothing is chosen");
     person.key(Key::Escape);

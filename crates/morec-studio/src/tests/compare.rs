@@ -140,17 +140,17 @@ fn a_hit_becomes_a_new_class_before_there_is_any() {
 #[test]
 fn how_far_off_is_drawn_and_a_bone_goes_to_its_worst_moment() {
     let (_folder, mut person) = with_a_wave();
-    assert!(!person.sees_part("Farthest off: "));
+    assert!(!person.sees_part("Largest deviation: "));
     person.key(Key::C);
     person.settle();
     let (aligned, deviation) = person.state().deviation().unwrap();
     let (of, deviation) = (aligned.of, deviation.clone());
-    assert!(person.sees_part(&format!("{:.0}° on average", deviation.off_degrees)));
+    assert!(person.sees_part(&format!("{:.0}° from ", deviation.off_degrees)));
     let (secs, degrees) = deviation.worst(of.span).unwrap();
-    assert!(person.sees(&format!("Farthest off: {degrees:.0}° at {secs:.2} s")));
+    assert!(person.sees(&format!("Largest deviation: {degrees:.0}° at {secs:.2} s")));
     let bone = &deviation.bones[0];
     person.click(&format!(
-        "{} is {:.0}° off, most {:.0}° at {:.2} s",
+        "{}: {:.0}° on average, at most {:.0}° at {:.2} s",
         bone.bone.replace('_', " "),
         bone.off_degrees,
         bone.worst_degrees,
@@ -158,7 +158,7 @@ fn how_far_off_is_drawn_and_a_bone_goes_to_its_worst_moment() {
     ));
     assert!((person.state().player.at_secs - bone.worst_secs).abs() < 0.2);
     person.click("Alone");
-    assert!(!person.sees_part("Farthest off: "));
+    assert!(!person.sees_part("Largest deviation: "));
 }
 
 #[test]

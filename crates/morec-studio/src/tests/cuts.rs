@@ -43,7 +43,10 @@ fn a_cut_is_dragged_into_place_and_cutting_again_leaves_it() {
     person.click("By kernel change points");
     person.settle();
     assert!(
-        person.state().said.contains("1 clip cut by hand left"),
+        person
+            .state()
+            .said
+            .contains("1 clip cut by hand not changed"),
         "{}",
         person.state().said
     );

@@ -54,7 +54,7 @@ fn a_database_is_opened_made_and_copied() {
     // An existing file is not overwritten by a new one.
     person.will_choose(&[&copy]);
     person.file("New database …");
-    assert!(person.sees_part("copy.mdb: there is a file already"));
+    assert!(person.sees_part("copy.mdb: this file exists already"));
     assert_eq!(person.database(), "new.mdb");
 }
 
@@ -176,7 +176,7 @@ fn where_no_dialog_can_be_opened_a_path_is_typed() {
     person.has_no_dialogs();
     person.key_with(Key::S, Modifiers::COMMAND);
     person.settle();
-    assert!(person.sees_part("No file dialog can be opened here"));
+    assert!(person.sees_part("No file dialog can be opened"));
     // What cannot be is said before it is tried.
     let copy = folder.path().join("copy.mdb");
     let nowhere = folder.path().join("nowhere/copy.mdb");
@@ -185,13 +185,13 @@ fn where_no_dialog_can_be_opened_a_path_is_typed() {
     assert_eq!(person.database(), "moves.mdb");
     person.types("Path", &copy.to_string_lossy());
     assert_eq!(person.database(), "copy.mdb");
-    assert!(!person.sees_part("No file dialog can be opened here"));
+    assert!(!person.sees_part("No file dialog can be opened"));
     // A file that is there is written over by a click only.
     person.key_with(Key::S, Modifiers::COMMAND);
     person.settle();
     let first = folder.path().join("moves.mdb");
     person.types("Path", &first.to_string_lossy());
-    assert!(person.sees_part("There is a file already"));
+    assert!(person.sees_part("This file exists and will be replaced"));
     assert_eq!(person.database(), "copy.mdb");
     person.click("Cancel");
     person.settle();

@@ -47,7 +47,7 @@ fn a_drop_onto_the_untouched_example_makes_a_new_database() {
     let clips = clips_of(folder.path());
     let mut person = Person::before(&[]);
     person.hovers(&[&clips[0]]);
-    assert!(person.sees("Drop here: a new database is made"));
+    assert!(person.sees("Drop here: a new database is created"));
     person.drops(&[&clips[0], &clips[1]]);
     assert_eq!(person.clips(), ["ada_1", "ben_1"]);
     assert!(person.state().store.as_ref().unwrap().temporary);

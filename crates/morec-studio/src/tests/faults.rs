@@ -26,7 +26,7 @@ fn a_file_that_is_no_database_gives_a_sentence() {
     assert!(person.sees_part("broken.mdb: the database is damaged"));
     assert!(person.sees_part("import its clips again"), "and what to do");
     let person = Person::before(&[folder.path().join("nowhere.mdb")]);
-    assert!(person.sees_part("there is no such file"));
+    assert!(person.sees_part("nowhere.mdb: no such file"));
 }
 
 /// Overwrites the motion of one clip.
@@ -96,7 +96,7 @@ fn what_cannot_be_written_is_said_and_what_was_there_stays() {
     person.command(Command::File(FileCommand::ExportIndex(
         folder.path().join("x.index"),
     )));
-    assert!(person.sees_part("There is no index yet"));
+    assert!(person.sees_part("No index yet"));
 }
 
 #[test]
@@ -130,14 +130,14 @@ fn a_notice_moves_no_control_and_goes_when_its_cause_has() {
     let before = person.place("ada_1");
     let index = folder.path().join("x.index");
     person.command(Command::File(FileCommand::ExportIndex(index)));
-    assert!(person.sees_part("There is no index yet"));
+    assert!(person.sees_part("No index yet"));
     assert_eq!(person.place("ada_1"), before, "it lies over the room");
     // What has nothing to do with it leaves it there, what takes its cause away does not.
     person.goes_to(Panel::Train);
-    assert!(person.sees_part("There is no index yet"));
+    assert!(person.sees_part("No index yet"));
     person.click("Start training");
     person.settle();
-    assert!(!person.sees_part("There is no index yet"));
+    assert!(!person.sees_part("No index yet"));
 }
 
 #[test]
@@ -155,7 +155,7 @@ fn a_failed_job_is_complained_of_until_one_of_its_kind_succeeds() {
         person.settle();
     };
     compare(&mut person, "jump");
-    assert!(person.sees_part("There is no other label of jump"));
+    assert!(person.sees_part("No other label of jump"));
     let update = morec_db::ClipUpdate {
         add_tags: vec!["seen".to_owned()],
         ..Default::default()
@@ -163,7 +163,7 @@ fn a_failed_job_is_complained_of_until_one_of_its_kind_succeeds() {
     let clips = vec![clip];
     person.command(Command::Edit(Edit::Describe { clips, update }));
     person.settle();
-    assert!(person.sees_part("There is no other label of jump"));
+    assert!(person.sees_part("No other label of jump"));
     compare(&mut person, "wave");
-    assert!(!person.sees_part("There is no other label of jump"));
+    assert!(!person.sees_part("No other label of jump"));
 }

@@ -66,7 +66,7 @@ fn a_clip_that_nobody_selected_is_labelled_by_no_key() {
     person.presses(Key::B);
     person.settle();
     assert_eq!(person.written(), before);
-    assert!(person.sees_part("select clips in the list first"));
+    assert!(person.sees_part("select clips in the list, then press"));
     person.click("ben_1");
     person.settle();
     person.presses(Key::Num1);

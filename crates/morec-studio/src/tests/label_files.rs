@@ -74,7 +74,7 @@ fn labels_in_place_of_others_say_what_moves_and_goes() {
     )
     .unwrap();
     person.drops(&[&path]);
-    assert!(person.sees_part("1 label left out of clips that are not there: nobody"));
+    assert!(person.sees_part("1 label of unknown clips left out: nobody"));
     person.click("Replace labels");
     person.frames(2);
     let gone = takes()[0].labels.len() - 1;
@@ -138,8 +138,8 @@ fn clips_and_a_table_beside_them_become_an_index_after_few_clicks_and_keys() {
     person.will_choose(&[&clips]);
     person.click("Folder …");
     person.settle();
-    assert!(person.sees("labels.tsv beside them holds labels of clips"));
-    person.click("Look at the labels");
+    assert!(person.sees("labels.tsv beside the clips contains labels"));
+    person.click("Review the labels");
     person.settle();
     person.click("Apply");
     person.settle();

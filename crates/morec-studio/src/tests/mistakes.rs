@@ -73,7 +73,7 @@ fn matrix_list_and_figures_count_the_same() {
     assert!(person.sees("IN THIS CELL"));
     let lines = person
         .window
-        .query_all_by_label_contains("wave where none is labelled");
+        .query_all_by_label_contains("wave without a label");
     assert_eq!(lines.count(), alarms);
     person.click("All mistakes");
     assert!(person.sees("MISTAKES"));
@@ -128,7 +128,7 @@ fn a_line_jumps_to_its_moment_and_offers_the_comparison_with_the_nearest_label()
         .clone();
     let class = false_one.found.clone().unwrap();
     person.click(&format!(
-        "{class} where none is labelled, {} {}",
+        "{class} without a label, {} {}",
         false_one.clip,
         crate::format::secs(false_one.span.start_secs)
     ));
@@ -162,7 +162,7 @@ fn a_class_without_another_label_is_said() {
         of,
         class,
     }));
-    assert!(person.sees_part("There is no other label of jump to compare with"));
+    assert!(person.sees_part("No other label of jump to compare with"));
 }
 
 #[test]
@@ -190,8 +190,8 @@ fn a_class_of_one_person_is_named_as_not_tested_and_counts_for_nothing() {
     assert!(!judged.rows.contains(&"hop".to_owned()));
     let of_hop = |m: &crate::jobs::judge::Moment| m.truth.as_deref() == Some("hop");
     assert!(!judged.moments.iter().any(of_hop));
-    assert!(person.sees_part("Not tested: hop. All labels of it are of one person"));
-    assert!(person.sees("hop: of one person only, add some of another"));
+    assert!(person.sees_part("Not tested: hop. All its labels are of one person"));
+    assert!(person.sees("hop: labels of one person only, add labels of another person"));
 }
 
 #[test]

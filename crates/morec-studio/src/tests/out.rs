@@ -91,7 +91,7 @@ fn a_clip_that_is_nearly_another_is_told_at_import_and_left_out_by_a_click() {
     let file = folder.path().join("shorter.bvh");
     std::fs::write(&file, bytes).unwrap();
     person.command(Command::File(FileCommand::Import(vec![file])));
-    assert!(person.sees_part("1 nearly the same as others"));
+    assert!(person.sees_part("1 near-duplicate"));
     assert!(person.sees_part("shorter is nearly the same as ben_1"));
     person.click("Compare");
     person.settle();

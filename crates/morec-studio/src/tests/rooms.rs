@@ -57,16 +57,16 @@ fn renamed(name: &str, files: Vec<PathBuf>) -> (tempfile::TempDir, Person) {
 #[test]
 fn a_name_that_no_font_can_draw_is_said_and_a_font_of_the_system_draws_what_it_has() {
     let (_folder, mut person) = renamed("波", vec![PathBuf::from("no/such.ttf")]);
-    assert!(person.sees_part("No font of this computer has all letters of 波 (U+6CE2)"));
+    assert!(person.sees_part("No installed font has all letters of 波 (U+6CE2)"));
     // It goes with the name.
     person.key_with(Key::Z, Modifiers::COMMAND);
     person.settle();
     person.frames(3);
-    assert!(!person.sees_part("No font of this computer"));
+    assert!(!person.sees_part("No installed font"));
 
     let arabic = PathBuf::from("/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf");
     let is_there = arabic.exists();
     let (_folder, person) = renamed("موجة", vec![arabic]);
     assert_eq!(person.can_draw("موجة"), is_there);
-    assert_eq!(person.sees_part("No font of this computer"), !is_there);
+    assert_eq!(person.sees_part("No installed font"), !is_there);
 }

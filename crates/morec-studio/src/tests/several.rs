@@ -55,7 +55,7 @@ fn a_class_that_is_background_loses_its_labels_and_marks_clips_of_nothing_else()
     person.command(Command::Timeline(TimelineCommand::LabelRange(class)));
     let others = person.labels().len() - of_class(&person, "gesture 1");
     person.right_click("Class gesture 1");
-    person.click("It is background");
+    person.click("Mark as background");
     person.settle();
     assert_eq!(clips(&person), ["ben_1"], "ada's has other labels");
     assert_eq!(person.labels().len(), others);

@@ -41,7 +41,7 @@ fn an_index_is_trained_kept_and_its_mistakes_are_found() {
         .count();
     assert!(waves > 0, "synthetic people wave alike");
     let wrong = judged.false_detections();
-    let said = person.sees_part("where nothing is labelled: look at them");
+    let said = person.sees_part("in unlabelled motion: check them");
     assert_eq!(said, wrong > 0, "{wrong} false detections");
     let first = judged
         .moments
@@ -106,7 +106,7 @@ fn without_a_chosen_class_nothing_is_learned() {
     }
     person.click("Start training");
     person.settle();
-    assert!(person.sees("Nothing to learn: choose a class that has labels"));
+    assert!(person.sees("Nothing to train on: choose a class that has labels"));
     assert!(person.state().train.index.is_none());
 }
 
@@ -148,7 +148,7 @@ fn classes_with_few_labels_are_named_to_be_taught_next() {
     let folder = tempfile::tempdir().unwrap();
     let mut person = Person::before(&[made(folder.path(), 1)]);
     person.goes_to(Panel::Train);
-    assert!(person.sees("wave: 2 labels, give at least three"));
+    assert!(person.sees("wave: 2 labels, add labels until there are at least three"));
 }
 
 #[test]
@@ -259,8 +259,8 @@ fn the_figures_of_2009_are_set_and_its_plane_is_large_with_its_thresholds() {
         matches!(&thesis.nodes[*first.last().unwrap()], TreeNodeView::Leaf(leaf) if leaf == class);
     assert_eq!(person.sees(&format!("→ {class}")), ends);
     assert!(first[0] == 0 && person.sees_part("→ "));
-    assert!(person.sees_part("it says T = 1.00"));
-    assert!(person.sees_part("it says t = 0.40"));
+    assert!(person.sees_part("the output is T = 1.00"));
+    assert!(person.sees_part("limit, t = 0.40"));
     person.click("τ: share of variance");
     assert!(person.offers("Value of τ"));
     assert!(person.sees("The parameters have changed since it was trained."));

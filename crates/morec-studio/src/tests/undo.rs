@@ -54,7 +54,7 @@ fn undo_says_whose_step_it_takes_back() {
     assert_eq!(person.labels().len(), 2);
     person.key_with(Key::Z, Modifiers::COMMAND);
     person.frames(2);
-    person.click("Take it back");
+    person.click("Undo it");
     person.settle();
     assert_eq!(person.classes_labelled(), ["gesture 1"]);
     // One's own needs no question.
@@ -67,7 +67,7 @@ fn undo_takes_back_ones_own_step_below_another() {
     let (_folder, mut person) = with_both();
     person.click("Undo");
     person.frames(2);
-    assert!(person.sees_part("The last one made here: “label 1 whole clip gesture 1”"));
+    assert!(person.sees_part("The last change made here: “label 1 whole clip gesture 1”"));
     person.click("Mine only");
     person.settle();
     assert_eq!(person.classes_labelled(), ["jump"]);
@@ -138,7 +138,7 @@ fn a_second_window_and_a_later_session_take_back_only_their_own_steps_unasked() 
     later.key_with(Key::Z, Modifiers::COMMAND);
     later.settle();
     assert_eq!(later.labels().len(), 1);
-    later.click("Take it back");
+    later.click("Undo it");
     later.settle();
     assert!(later.labels().is_empty());
 }

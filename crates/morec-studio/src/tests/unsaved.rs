@@ -62,7 +62,7 @@ fn where_no_dialog_opens_the_path_is_typed_before_the_window_goes() {
     assert!(!person.closes());
     person.click("Save …");
     person.settle();
-    assert!(person.sees_part("No file dialog can be opened here"));
+    assert!(person.sees_part("No file dialog can be opened"));
     assert!(!person.sees("Save the database?"), "it hides the field");
     person.key(Key::Escape);
     person.frames(3);
@@ -135,7 +135,7 @@ fn what_a_run_that_was_killed_left_is_offered_by_the_next() {
     let unsaved = person.unsaved.clone();
     // Another window meanwhile is not offered what is open.
     let other = Person::again(&[], unsaved.clone());
-    assert!(!other.sees_part("left without being saved"));
+    assert!(!other.sees_part("was not saved"));
     drop(other);
     // Without a question: as the system ends programs.
     drop(person);
@@ -145,12 +145,12 @@ fn what_a_run_that_was_killed_left_is_offered_by_the_next() {
     person.settle();
     assert_eq!(person.labels().len(), 1);
     assert!(person.sees_part("Not saved yet"));
-    assert!(!person.sees_part("left without being saved"));
+    assert!(!person.sees_part("was not saved"));
     // The label is of another window, which is asked about first.
     let edit = Edit::Undo(None);
     person.command(Command::Edit(edit));
     assert!(person.sees_part("The last change was made by the window of"));
-    person.click("Take it back");
+    person.click("Undo it");
     person.settle();
     assert!(!person.sees_part("Not saved yet"), "nothing is done now");
     drop(person);
@@ -166,7 +166,7 @@ fn what_was_left_can_be_discarded() {
     // One click asks, and is no answer.
     person.click("Discard it …");
     person.settle();
-    assert!(person.sees_part("left without being saved"));
+    assert!(person.sees_part("was not saved"));
     assert!(person.sees("Remove the database for good?"));
     person.key(egui::Key::Escape);
     person.settle();
@@ -177,7 +177,7 @@ fn what_was_left_can_be_discarded() {
     person.click("Remove it");
     person.settle();
     assert_eq!(person.unsaved_files().len(), kept - 1);
-    assert!(!person.sees_part("left without being saved"));
+    assert!(!person.sees_part("was not saved"));
     drop(person);
     assert!(std::fs::read_dir(unsaved.path()).unwrap().next().is_none());
 }

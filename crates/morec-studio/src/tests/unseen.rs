@@ -130,7 +130,7 @@ impl Model {
             types: focused.is_some_and(|id| egui::TextEdit::load_state(ctx, id).is_some()),
             // The window itself is one.
             covered: windows.count() > 1
-                || self.person.sees("Take it back")
+                || self.person.sees("Undo it")
                 || egui::Popup::is_any_open(ctx),
             shown: state.player.motion.as_ref().map(|m| m.id.0),
             rows: names.filter(row).map(str::to_owned).collect(),

@@ -134,7 +134,7 @@ pub struct SvrdmParams {
     ///
     /// Thesis, §4.6.2; tuned: each segment's own mean is subtracted; in streams this decides.
     pub centring: Centring,
-    /// A branch of the tree is followed if its machine says at least this, `T`. 0.92 (thesis, §4.6.5).
+    /// A branch of the tree is followed if its machine's output is at least this value, `T`. 0.92 (thesis, §4.6.5).
     ///
     /// Thesis, §4.6.5; an argument of `Tree::descend`.
     pub accept: f64,

@@ -66,7 +66,7 @@ impl State {
             ClassCommand::Renaming(now) => self.classes.renaming = now,
             ClassCommand::Adding(name) => self.classes.adding = name,
             ClassCommand::Choosing(Some(_)) if self.classes.order.is_empty() => {
-                self.say("there is no class yet: 1 makes one");
+                self.say("no class yet: press 1 to create one");
             }
             ClassCommand::Choosing(text) => {
                 self.release_keys();
@@ -105,7 +105,7 @@ impl State {
         }
         if self.classes.order.iter().any(|n| n == to) {
             self.complain(format!(
-                "There is a class {to} already: a right click on {from}, Merge into, makes one of both"
+                "A class called {to} exists already: to merge the two, right click {from} and choose Merge into"
             ));
             return;
         }
@@ -159,7 +159,7 @@ impl State {
         }
         // What passes is labelled where the timeline shows it.
         if self.panel != Panel::Label {
-            return self.say("select a label or a stretch: the key of a class is for that here");
+            return self.say("select a label or a stretch, then press the key of a class");
         }
         if !self.player.playing {
             self.say("play (Space) and hold the key while the motion passes, or select a stretch");
@@ -177,7 +177,7 @@ impl State {
     fn label_whole(&mut self, slot: usize) {
         let clips = self.library.chosen().to_vec();
         if clips.is_empty() {
-            return self.say("select clips in the list first: the key of a class labels those");
+            return self.say("select clips in the list, then press the key of a class");
         }
         let class = self.class_of_key(slot);
         let whole = |clip| WholeClip {

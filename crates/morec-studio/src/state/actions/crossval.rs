@@ -59,7 +59,7 @@ impl State {
         self.train.moment = Some(at);
         self.companions.all.clear();
         let Some((id, end)) = self.clip_called(&clip) else {
-            self.say(format!("{clip} is not in the database any more"));
+            self.say(format!("{clip} is no longer in the database"));
             return;
         };
         let from = (span.start_secs - AROUND_SECS).max(0.0);
@@ -70,7 +70,7 @@ impl State {
     /// Compares the chosen moment with the nearest label of a class; of the first that is worth it, if none is named.
     pub(in crate::state) fn compare_moment(&mut self, class: Option<String>) {
         let Some(moment) = self.chosen_moment() else {
-            self.say("choose a line of the list first");
+            self.say("choose an entry of the list first");
             return;
         };
         let first = moment

@@ -18,7 +18,7 @@ use crate::state::{
 use crate::store::{DbPlace, Store};
 use crate::unsaved::{self, Leftover, OwnFolder};
 
-const MAKING: &str = "Making an example";
+const MAKING: &str = "Creating an example";
 
 impl State {
     /// Opens what was named on the command line: a database, clips, or nothing, which is the example.
@@ -33,7 +33,7 @@ impl State {
 
     fn open(&mut self, path: &Path) {
         if !path.exists() {
-            self.complain(format!("{}: there is no such file", file_name(path)));
+            self.complain(format!("{}: no such file", file_name(path)));
             return;
         }
         self.open_store(path, false);
@@ -50,7 +50,7 @@ impl State {
                 self.forget();
                 self.succeeded();
                 self.say(match temporary {
-                    true => "lies in a temporary folder: save a copy to keep it".to_owned(),
+                    true => "is in a temporary folder: save a copy to keep it".to_owned(),
                     false => format!("{} opened", file_name(path)),
                 });
                 // A file of this run's own is no use to anybody else.
@@ -71,7 +71,7 @@ impl State {
                         format!("{name}: {said}; open a copy of it, or import its clips again")
                     }
                     DbError::Disk(_) => {
-                        format!("{name}: {said}; is the disk full, or its folder closed to you?")
+                        format!("{name}: {said}; check the free space of the disk and the permissions of the folder")
                     }
                     _ if named => crate::store::sentence(&said),
                     _ => format!("{name}: {said}"),
@@ -185,7 +185,7 @@ impl State {
             (_, Some(store)) if !self.is_untouched_example() => {
                 format!("into {}", name(store).trim_end_matches(".mdb"))
             }
-            _ => "a new database is made".to_owned(),
+            _ => "a new database is created".to_owned(),
         }
     }
 
@@ -275,7 +275,7 @@ impl State {
             FileCommand::AskExportIndex => self.ask = Some(Ask::ExportIndex),
             FileCommand::Open(path) => self.open(&path),
             FileCommand::New(path) => match path.exists() {
-                true => self.complain(format!("{}: there is a file already", file_name(&path))),
+                true => self.complain(format!("{}: this file exists already", file_name(&path))),
                 false => self.open_store(&path, false),
             },
             FileCommand::Import(paths) => self.import(paths),

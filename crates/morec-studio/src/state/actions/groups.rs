@@ -16,7 +16,7 @@ impl State {
         let line = ShownCommand::new("morec db propose").word(&db.path);
         self.show_line(line.settings(&ProposeSettings::default()));
         self.jobs.start(
-            "Looking for more",
+            "Searching for more samples",
             true,
             &self.wake,
             JobOutcome::Proposed,

@@ -86,7 +86,7 @@ impl State {
         let selected = self.library.chosen().iter();
         let clips: Vec<_> = selected.filter_map(|id| store.snapshot.clip(*id)).collect();
         if clips.is_empty() {
-            return self.say("select clips in the list first: B is for those");
+            return self.say("select clips in the list, then press B");
         }
         let on = !clips.iter().all(|clip| clip.is_background());
         let clips = clips.iter().map(|clip| clip.id).collect();

@@ -12,13 +12,13 @@ use crate::state::live::{Choice, ClipFeed, Feed, Resensed, Run, ThreadFeed};
 use crate::state::{LiveCommand, State};
 
 /// Name of the job that keeps what was marked.
-pub(in crate::state) const TEACHING: &str = "Keeping what was marked";
+pub(in crate::state) const TEACHING: &str = "Storing the marked motion";
 
 /// A hand with its fingers stretched reaches so far from its middle, metres.
 const HAND_HALF_M: f64 = 0.12;
 
 /// Name of the job that tries settings on the recorded minutes.
-const TRYING: &str = "Trying the settings";
+const TRYING: &str = "Testing the settings";
 
 impl State {
     pub(in crate::state) fn apply_live(&mut self, command: LiveCommand) {
@@ -75,7 +75,7 @@ impl State {
             Choice::Clip(chosen) => {
                 let shown = self.player.motion.as_ref().map(|m| m.id);
                 let Some(clip) = chosen.or(shown) else {
-                    self.complain("There is no clip to play: import one first");
+                    self.complain("No clip to play: import one first");
                     return;
                 };
                 self.live.choice = Choice::Clip(Some(clip));

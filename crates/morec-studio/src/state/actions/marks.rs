@@ -35,7 +35,7 @@ impl State {
             return;
         };
         if self.live.teaching {
-            self.say("the mark before this one is still being kept");
+            self.say("the previous mark is still being stored");
             return;
         }
         let Some((actor, stretch)) = run.watched().and_then(|watched| {
@@ -53,14 +53,14 @@ impl State {
             };
             Some((watched.actor, stretch?))
         }) else {
-            self.say("nothing has moved yet that could be marked");
+            self.say("no motion to mark yet");
             return;
         };
         if let Some(why) = self.contradiction(actor, stretch, &meaning) {
             return self.complain(why);
         }
         let Some(lesson) = self.lesson(stretch, &meaning) else {
-            self.complain("That part of the stream is no longer kept");
+            self.complain("This part of the stream is no longer stored");
             return;
         };
         let line = match &meaning {
@@ -214,7 +214,7 @@ impl State {
             .find(|mark| mark.meaning.contradicts(meaning));
         if let Some(mark) = met {
             return Some(format!(
-                "Not marked: that motion is marked as {} already; undo that first",
+                "Not marked: this motion is marked as {} already; undo that mark first",
                 mark.meaning.name()
             ));
         }
@@ -224,13 +224,15 @@ impl State {
         let name = &played.name;
         match meaning {
             Meaning::Class(_) if played.is_background() && played.samples == 0 => Some(format!(
-                "Not marked: {name} is background, in which none of the classes is seen; take that mark from it first"
+                "Not marked: {name} is background, which contains none of the classes; remove its background mark first"
             )),
             Meaning::Class(_) => None,
             Meaning::Background => {
                 let there = TimeSpan::new(start, start + stretch.duration_secs());
                 let class = labelled_there(snapshot, clip, there)?;
-                Some(format!("Not marked: {name} has a label {class} there"))
+                Some(format!(
+                    "Not marked: {name} has a label of {class} at this time"
+                ))
             }
         }
     }
@@ -287,7 +289,7 @@ impl State {
         if self.live.take.is_some() {
             self.keep_take();
         } else if self.live.countdown.take().is_some() {
-            self.say("recording called off");
+            self.say("recording cancelled");
         } else if self.live.run.is_some() {
             self.live.countdown = Some(3.0);
         } else {

@@ -132,7 +132,7 @@ impl State {
                 let kept = match report.by_hand {
                     0 => String::new(),
                     n => format!(
-                        "; {} cut by hand left as cut",
+                        "; {} cut by hand not changed",
                         crate::format::count(n, "clip")
                     ),
                 };
@@ -145,7 +145,7 @@ impl State {
             JobOutcome::Proposed(count) => {
                 self.say(match count {
                     0 => "no candidate was found".to_owned(),
-                    n => format!("{n} proposals to look at"),
+                    n => format!("{n} proposals to check"),
                 });
                 self.reload();
             }

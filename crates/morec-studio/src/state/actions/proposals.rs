@@ -69,7 +69,7 @@ impl State {
         let next = self.doubtful().into_iter().find(|s| Some(s.id) != not);
         let Some((id, clip, start, stop)) = next.map(|s| (s.id, s.clip, s.start_secs, s.stop_secs))
         else {
-            self.say("no proposal is left to look at");
+            self.say("no proposal is left to check");
             return;
         };
         self.open_clip(clip, Some((start, stop)));

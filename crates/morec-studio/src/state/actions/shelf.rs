@@ -30,7 +30,7 @@ impl State {
         let line = ShownCommand::new("morec discover").word(&db);
         self.show_line(line.settings(&settings));
         self.jobs.start(
-            "Looking for what repeats",
+            "Finding repeated motions",
             true,
             &self.wake,
             JobOutcome::Discovered,

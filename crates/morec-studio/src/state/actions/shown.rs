@@ -183,4 +183,4 @@ impl State {
 }
 
 /// Name of the job that computes cuts and misfit of the clip that is shown.
-pub(in crate::state) const CURVES: &str = "Looking at the clip";
+pub(in crate::state) const CURVES: &str = "Analysing the clip";

@@ -96,7 +96,7 @@ impl State {
             .next();
         match clip {
             Some(clip) => self.apply_library(LibraryCommand::GoTo(Stretch::new(clip, sample.span))),
-            None => self.say(format!("{} is not in the database any more", sample.clip)),
+            None => self.say(format!("{} is no longer in the database", sample.clip)),
         }
     }
 }

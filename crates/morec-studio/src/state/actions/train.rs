@@ -118,8 +118,8 @@ impl State {
             return true;
         }
         self.complain(match labelled {
-            true => "Nothing to learn: choose a class that has labels",
-            false => "Nothing to learn from: label a few motions first",
+            true => "Nothing to train on: choose a class that has labels",
+            false => "Nothing to train on: label a few motions first",
         });
         false
     }
@@ -267,7 +267,7 @@ impl State {
     pub(in crate::state) fn export_index(&mut self, path: &Path) {
         let name = crate::format::file_name(path);
         if self.train.bytes.is_empty() {
-            self.complain("There is no index yet: train first");
+            self.complain("No index yet: train first");
             return;
         }
         match write_whole(path, &self.train.bytes) {

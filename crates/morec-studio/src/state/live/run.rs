@@ -246,25 +246,23 @@ impl Run {
             said.push(("The source has ended".to_owned(), true));
         } else if nothing {
             said.push((
-                "Nothing has come yet: is the sender on, and does it send here?".to_owned(),
+                "No data has arrived yet: check that the sender is on and sends to this address"
+                    .to_owned(),
                 true,
             ));
         } else if self.silent_secs > LOST_SECS {
             let text =
-                format!("Nothing has come for {LOST_SECS} s or longer: the sender has stopped");
+                format!("No data has arrived for {LOST_SECS} s or longer: the sender has stopped");
             said.push((text, true));
         } else if self.watched().is_some_and(|w| w.gone) {
             said.push(match self.feed {
-                Feed::Clip(_) => ("The clip has ended, and begins again".to_owned(), false),
-                Feed::Thread(_) => ("The performer who is watched has gone".to_owned(), true),
+                Feed::Clip(_) => ("The clip has ended and begins again".to_owned(), false),
+                Feed::Thread(_) => ("The watched performer has left".to_owned(), true),
             });
         }
         let counts = self.feed.counts();
         if counts.malformed > 0 {
-            said.push((
-                format!("{} packets could not be understood", counts.malformed),
-                true,
-            ));
+            said.push((format!("{} packets cannot be read", counts.malformed), true));
         }
         said.extend(self.noticed.iter().rev().map(|text| (text.clone(), true)));
         if let Some(diagnosis) = self.diagnosis() {
