@@ -272,7 +272,7 @@ fn somebody_else_is_recognised_more_generously_where_few_people_taught() {
     person.settle();
     person.frames(60);
     person.click("Performer");
-    person.click("somebody else");
+    person.click("another person");
     let line = person.state().command_line.clone();
     assert!(line.ends_with(" --performer anyone"), "{line}");
     // The next start is with what was chosen, too.
