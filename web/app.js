@@ -118,7 +118,7 @@ function show() {
   at("save-index").disabled = !teaching.index;
   at("known").textContent = teaching.index
     ? `Recognises ${teaching.index.classes.join(", ")}.`
-    : "Train, or open an index of the studio or the command.";
+    : "Train, or open an index made with the studio or the command.";
 }
 
 function listClasses() {
@@ -159,7 +159,7 @@ async function record() {
     teaching.record();
     await wait(secs);
     teaching.keep(name);
-    say(`Kept: ${teaching.classes().get(name.trim()).length} of ${name}. Two of each are enough.`);
+    say(`Kept: ${teaching.classes().get(name.trim()).length} of ${name}. Two samples of each motion are enough.`);
   } finally {
     busy = false;
     sayLarge("");

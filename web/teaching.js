@@ -105,7 +105,7 @@ export class Teaching extends EventTarget {
   add(name, poses) {
     if (!name.trim()) throw new Error("The motion needs a name.");
     const secs = poses.length > 0 ? poses.at(-1).t - poses[0].t : 0;
-    if (secs < LEAST_SECS) throw new Error("Nobody was seen. Is the whole movement in the picture?");
+    if (secs < LEAST_SECS) throw new Error("No person was tracked. Check that the whole movement is in the picture.");
     const sample = { class: name.trim(), poses };
     this.#change(() => this.samples.push(sample));
     return sample;
@@ -187,7 +187,7 @@ export class Teaching extends EventTarget {
 /** The samples of a saved text. */
 function samplesOf(text) {
   const { morec_samples: version, samples } = JSON.parse(text);
-  if (version !== 1 || !Array.isArray(samples)) throw new Error("This is no file of samples.");
+  if (version !== 1 || !Array.isArray(samples)) throw new Error("This file does not contain samples.");
   return samples;
 }
 

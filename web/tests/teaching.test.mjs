@@ -86,7 +86,7 @@ test("index and samples are saved and opened, with the same events", async () =>
   assert.deepEqual(await found(other, recognise[0]), await found(whole, recognise[0]));
   other.restore(whole.saved());
   assert.deepEqual(other.samples, whole.samples);
-  assert.throws(() => other.restore("{}"), /no file of samples/);
+  assert.throws(() => other.restore("{}"), /does not contain samples/);
 });
 
 test("samples are renamed, deleted, and brought back", () => {
@@ -101,7 +101,7 @@ test("samples are renamed, deleted, and brought back", () => {
   teaching.undo();
   assert.deepEqual(teaching.samples.map((sample) => sample.class), ["wave"]);
   assert.throws(() => teaching.add(" ", poses), /needs a name/);
-  assert.throws(() => teaching.add("wave", []), /Nobody was seen/);
+  assert.throws(() => teaching.add("wave", []), /No person was tracked/);
 });
 
 test("MediaPipe's landmarks become parts of the body, without those that are hardly seen", () => {

@@ -1,8 +1,8 @@
 //! Feature rows, which training and live recognition compare, and numbers of classes: what every recogniser of `morec` builds on.
 //!
 //! A row describes one tick (1/30 s): for each bone its direction in the performer's heading frame and its
-//! velocity with saturated length, then the root's velocity and turning. People of any size, facing anywhere,
-//! on any skeleton come out alike. Hands and tracked points have rows of the same form over bones of their own ([`Profile`]).
+//! velocity with saturated length, then the root's velocity and turning. Rows do not depend on body size, facing direction or
+//! skeleton. Hands and tracked points have rows of the same form over bones of their own ([`Profile`]).
 //!
 //! Notation: `b` bones, `d = 6 b + 4` values in a row: `[x (3 b) ; β v (3 b) ; γ root (4)]`, single precision; [`RowLayout`]
 //! says where each value stands, and nothing else does.

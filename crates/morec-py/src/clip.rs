@@ -22,7 +22,7 @@ use crate::errors::{MorecError, io_error, morec_error, value_error};
 use crate::options::import_options;
 use crate::tables::plain;
 
-/// A motion-capture clip in metres, Y up: a skeleton, its frames, and which joint is which part of the body.
+/// A motion-capture clip in metres, Y up: a skeleton, its frames, and the body parts of its joints (roles).
 #[pyclass(frozen, name = "Clip", module = "morec")]
 pub struct PyClip {
     pub data: Arc<ClipData>,
@@ -120,7 +120,7 @@ impl PyClip {
         Ok(owned(py, offsets, &shape)?.into_any())
     }
 
-    /// For each part of the body that was found, the index of the joint that plays it.
+    /// Index of the joint of each body part that was found.
     #[getter]
     fn roles<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);
@@ -132,7 +132,7 @@ impl PyClip {
         Ok(dict)
     }
 
-    /// Repairs made in reading and oddities, a sentence each, with the place in the file.
+    /// Repairs and doubts of reading, one sentence each, with the place in the file.
     #[getter]
     fn warnings(&self) -> Vec<String> {
         self.data.warnings.clone()
@@ -145,7 +145,7 @@ impl PyClip {
         plain(py, &facts)
     }
 
-    /// Frames at the start that show a rest pose and not the motion.
+    /// Number of frames at the start that show a rest pose instead of the motion.
     #[getter]
     fn rest_frames(&self) -> usize {
         self.data.rest.len()
@@ -197,7 +197,7 @@ impl PyClip {
         .into())
     }
 
-    /// The same clip under another name, which is what labels call it.
+    /// The same clip with another name, by which labels refer to it.
     fn renamed(&self, name: &str) -> Self {
         let mut take = (*self.data).clone();
         take.clip.name = name.to_owned();

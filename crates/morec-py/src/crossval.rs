@@ -63,7 +63,7 @@ impl PyCrossval {
         plain(py, &self.measures.evaluation)
     }
 
-    /// What is left out of each training, in words: "each person in turn, 3 people".
+    /// What each training leaves out, in words: "each person in turn, 3 people".
     #[getter]
     fn left_out(&self) -> &str {
         &self.measures.divided
@@ -91,7 +91,7 @@ impl PyCrossval {
         Ok(dict)
     }
 
-    /// For each rate of false alarms a minute its measures.
+    /// Measures at each rate of false alarms a minute.
     #[getter]
     fn sensitivities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);
@@ -107,7 +107,7 @@ impl PyCrossval {
         plain(py, &self.measures.tested.misses)
     }
 
-    /// Each fold: the part that was left out, and the report of its training.
+    /// The folds, each with the part left out and its training report.
     #[getter]
     fn folds<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         plain(py, &self.measures.folds)

@@ -461,7 +461,7 @@ impl PyDatabase {
         table(py, &columns, rows)
     }
 
-    /// Other samples of the classes that are labelled, the surest first; they are kept as proposed.
+    /// Propose more samples of the labelled classes, most probable first, and store them in the state proposed.
     #[pyo3(signature = (*, progress=None, **settings))]
     fn propose<'py>(
         &self,

@@ -21,7 +21,7 @@ use crate::material::keywords;
 use crate::recognizer::{PointLayout, PyRecognizer, stream_options};
 use crate::tables::{FoundWithDeviation, detections, plain};
 
-/// A trained index: what recognition needs, in one immutable file.
+/// A trained model that recognises motions; immutable, stored in one file.
 #[pyclass(frozen, name = "Index", module = "morec")]
 pub struct PyIndex {
     pub index: Arc<MotionIndex>,
@@ -48,7 +48,7 @@ pub fn load(path: PathBuf) -> PyResult<PyIndex> {
     }
 }
 
-/// An index from the bytes of its file.
+/// Read an index from the bytes of its file. Raises MorecError if they are not an index.
 #[pyfunction]
 pub fn index_from_bytes(bytes: &[u8]) -> PyResult<PyIndex> {
     Ok(MotionIndex::from_bytes(bytes).map_err(morec_error)?.into())
@@ -105,7 +105,7 @@ pub fn clips_of<'py>(given: &Bound<'py, PyAny>) -> PyResult<Vec<Bound<'py, PyCli
 
 #[pymethods]
 impl PyIndex {
-    /// An index from the bytes of its file.
+    /// Read an index from the bytes of its file. Raises MorecError if they are not an index.
     #[staticmethod]
     fn from_bytes(bytes: &[u8]) -> PyResult<Self> {
         index_from_bytes(bytes)
@@ -129,7 +129,7 @@ impl PyIndex {
         self.index.save(&path).map_err(library_error)
     }
 
-    /// Everything that is recognised in clips, frame by frame as in a live stream.
+    /// Recognise motions in clips, frame by frame as in a live stream.
     #[pyo3(signature = (clips, *, deviation=false, progress=None, **settings))]
     fn recognize<'py>(
         &self,
@@ -213,7 +213,7 @@ impl PyIndex {
         plain(py, &found.map_err(morec_error)?)
     }
 
-    /// The classes: name, samples and people that taught them.
+    /// The classes, each with its name, number of samples and number of people.
     #[getter]
     fn classes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         plain(py, &self.index.model.classes())

@@ -15,9 +15,9 @@ use crate::clip::PyClip;
 use crate::errors::{morec_error, value_error};
 use crate::tables::events;
 
-/// Recognises motions in one performer's stream of joint positions. Made by `Index.recognizer`.
+/// Recognises motions in one performer's stream of joint positions. Returned by `Index.recognizer`.
 ///
-/// Any thread may push; two at once wait for each other.
+/// Any thread may push; simultaneous calls wait for each other.
 #[pyclass(frozen, name = "Recognizer", module = "morec")]
 pub struct PyRecognizer {
     state: Mutex<RecognizerState>,
@@ -179,7 +179,7 @@ impl PyRecognizer {
         self.joints.clone()
     }
 
-    /// Seconds from the end of a motion to its report at the earliest.
+    /// Shortest time from the end of a motion to its report, seconds.
     #[getter]
     fn latency_secs(&self) -> f64 {
         self.latency_secs

@@ -1,4 +1,4 @@
-//! Synthetic people performing labelled gestures: for tests, examples and first tries.
+//! Synthetic people performing labelled gestures, for tests, examples and first trials.
 
 use morec::import::Take;
 use morec::synth::{self, DatabaseSpec, MotionKind, database, everyday, motions_of};

@@ -1,4 +1,4 @@
-/** A label: in the clip of that name, the class happens. */
+/** A label: a stretch of a clip that shows a class. */
 export interface LabelRow {
   /** Name of the clip. */
   clip: string;
@@ -11,19 +11,20 @@ export interface LabelRow {
 
 /** Settings of training, those of `morec train`. */
 export interface LearnOptions {
-  /** Only these classes, in this order. Every class of the labels by default. */
+  /** Learn only these classes, in this order. All classes of the labels by default. */
   classes?: string[];
-  /** `auto`: each class as its samples say, a gesture or an activity; `templates`: every class as a gesture. `auto` by default. */
+  /** `auto`: each class as a gesture or an activity, as its samples show; `templates`: every class as a gesture. `auto` by
+  default. */
   method?: "auto" | "templates";
-  /** With the method `auto`: classes that are activities whatever their samples say. */
+  /** With the method `auto`: classes that are activities, whatever their samples show. */
   activities?: string[];
-  /** With the method `auto`: classes that are gestures whatever their samples say. */
+  /** With the method `auto`: classes that are gestures, whatever their samples show. */
   gestures?: string[];
   /** Use of the unlabelled parts of labelled clips. `background` by default. */
   unlabelled?: "background" | "ignore";
-  /** Everyday motion that is built in, as background, too; `auto`: if `background` holds less than a minute. `always` by default. */
+  /** Use the built-in everyday motion as background; `auto`: only if `background` has less than 1 minute. `always` by default. */
   everyday?: "auto" | "always" | "never";
-  /** Training on mirrored copies of samples, too; `auto`: between classes named as two sides of one motion. `auto` by default. */
+  /** Train on mirrored copies of samples too; `auto`: between pairs of classes named for a side. `auto` by default. */
   mirror?: "auto" | "yes" | "no";
   /** With the mirror `yes`: classes whose mirror image is another motion. */
   one_sided?: string[];
@@ -33,21 +34,21 @@ export interface LearnOptions {
   params?: Record<string, unknown>;
 }
 
-/** Takes a stage, steps done, steps in all; `false` cancels. */
+/** Receives the stage, the steps done and the total; returning `false` cancels. */
 export type ProgressListener = (stage: string, done: number, total: number) => boolean | void;
 
 export interface TrainOptions extends LearnOptions {
-  /** Clips that hold none of the classes. */
+  /** Clips without any class; they set the detection threshold. */
   background?: Clip[];
   progress?: ProgressListener;
 }
 
 export interface RecognizerOptions {
-  /** False alarms a minute that background motion may raise: 0.1 is strict, 1 is generous. As trained by default. */
+  /** Accepted false alarms a minute in background motion: 0.1 is strict, 1 is generous. As trained by default. */
   sensitivity?: number;
-  /** The expected performer. `anyone`, or `teacher`: the person who taught. `auto` by default. */
+  /** The expected performer: `teacher` is the training subject. `auto` by default. */
   performer?: "auto" | "teacher" | "anyone";
-  /** Report what seems to be under way, too: events of the phases `start`, `update` and `cancel`. False by default. */
+  /** Also report motions before they end: events of the phases `start`, `update` and `cancel`. False by default. */
   tentative?: boolean;
   /** Make each repetition of an activity an event of its own, of the phase `repetition`. False by default. */
   each_repetition?: boolean;
@@ -55,7 +56,7 @@ export interface RecognizerOptions {
   deviation?: boolean;
   /** A motion of the same class that ends less than this after the one before it is not reported, seconds. 0 by default. */
   refractory_secs?: number;
-  /** Points that play parts of the body, where names do not tell: `{ left_hand: "LWrist", hips: "LHip+RHip", neck: null }`. */
+  /** Points of body parts that the names do not identify: `{ left_hand: "LWrist", hips: "LHip+RHip", neck: null }`. */
   roles?: Record<string, string | null>;
   /** The axis that points up; `-y` for landmarks of pictures. `y` by default. */
   up?: "x" | "y" | "z" | "-x" | "-y" | "-z";
@@ -73,20 +74,20 @@ export interface Detection {
    */
   score: number;
   reported_secs: number;
-  /** Of an activity that is counted, so far. */
+  /** Repetitions of an activity so far. */
   repetitions?: number;
-  /** Seconds of one repetition, as it was last. */
+  /** Duration of the last repetition, seconds. */
   period_secs?: number;
 }
 
 /** The class of a whole clip. */
 export interface Classification {
-  /** Absent if none of the classes is more probable than everything else. */
+  /** Absent if no class is more probable than all alternatives together. */
   class?: string;
   probability?: number;
-  /** The class whose samples are nearest; absent where nothing moves. */
+  /** The class of the nearest samples; absent if nothing moves. */
   nearest?: string;
-  /** By class; what is missing to 1 is the probability of none of them. */
+  /** Probability of each class; the rest to 1 is the probability of none of them. */
   probabilities: Record<string, number>;
 }
 
@@ -98,7 +99,7 @@ export interface MotionEvent extends Detection {
   pace?: number;
   worst_bone?: string;
   worst_degrees?: number;
-  /** A motion's start, updates and end share its number. */
+  /** Number of the motion, shared by its start, updates and end. */
   motion: number;
   /** Number of the event, from 1. */
   sequence: number;
@@ -106,11 +107,11 @@ export interface MotionEvent extends Detection {
   actor: number;
   /** Share of the motion that has been seen. */
   progress: number;
-  /** Wall clock at the arrival of the frame that settled it: seconds since 1970. */
+  /** Wall clock when the deciding frame arrived, seconds since 1970. */
   wall_secs: number;
 }
 
-/** x, y, z of each point; not a number where it is not seen. */
+/** x, y, z of each point; NaN if a point is missing. */
 export type Positions = Float32Array | Float64Array | number[];
 
 /** A clip in metres, Y up. */
@@ -122,7 +123,7 @@ export class Clip {
   readonly frames: number;
   readonly rate_hz: number;
   readonly duration_secs: number;
-  /** Repairs and oddities, a sentence each. */
+  /** Repairs and doubts of reading, one sentence each. */
   readonly warnings: string[];
   /** Time of every frame, seconds. */
   times(): Float64Array;
@@ -135,18 +136,18 @@ export class Clip {
 export class Index {
   private constructor();
   static fromBytes(bytes: Uint8Array): Index;
-  /** The bytes of its file, the same as the command's. */
+  /** The bytes of the index file, as the command writes it. */
   toBytes(): Uint8Array;
   readonly classes: string[];
-  /** What training said about its material, a sentence each. */
+  /** Notes of training about its clips and labels, one sentence each. */
   readonly notes: string[];
   /** The index with thresholds for this many false alarms a minute. */
   withSensitivity(alarms_per_minute: number): Index;
-  /** The detections in a clip, as of a live stream. */
+  /** Recognises motions in a clip, as in a live stream. */
   recognize(clip: Clip): Detection[];
-  /** The class of a whole clip that was cut around one motion. */
+  /** Classifies a whole clip that contains one motion. */
   classify(clip: Clip): Classification;
-  /** A recogniser of a stream of points: a published set's names, usual joint names, or `roles()`. */
+  /** A recogniser for a stream of points with names of a published set, usual joint names, or `roles()`. */
   recognizer(points: string[], options?: RecognizerOptions): Recognizer;
   free(): void;
 }
@@ -154,23 +155,23 @@ export class Index {
 /** One performer's stream. */
 export class Recognizer {
   private constructor();
-  /** Takes a frame; the events that it settled, mostly none. */
+  /** Processes a frame; returns the events that it causes, usually none. */
   push(time_secs: number, positions: Positions): readonly MotionEvent[];
-  /** Ends the stream; the next frame begins a new one. */
+  /** Ends the stream and returns its last events; the next frame starts a new stream. */
   finish(): readonly MotionEvent[];
-  /** What is wrong with the stream of the last seconds for the index, a sentence each with its severity and what to do. */
+  /** Problems of the stream in the last seconds, one sentence each with severity and remedy. */
   diagnosis(): string[];
-  /** Seconds from the end of a motion to its report at the earliest. */
+  /** Shortest time from the end of a motion to its report, seconds. */
   readonly latency_secs: number;
   free(): void;
 }
 
-/** The one clip in the bytes of a file; its name says the format where the bytes do not. */
+/** Reads the only clip in the bytes of a file; the name's extension gives the format if the bytes do not. */
 export function read(bytes: Uint8Array, name: string): Clip;
-/** All clips in the bytes of a file. */
+/** Reads all clips in the bytes of a file. */
 export function readAll(bytes: Uint8Array, name: string): Clip[];
 /** Trains an index; `labels` is the text of a table or rows. */
 export function train(clips: Clip[], labels: string | LabelRow[], options?: TrainOptions): Index;
-/** Names of the parts of the body. */
+/** Names of the body parts (roles). */
 export function roles(): string[];
 export function version(): string;

@@ -62,7 +62,7 @@ impl JsIndex {
         classes.map(|class| class.name.clone()).collect()
     }
 
-    /// What training said about its material, a sentence each.
+    /// Notes of training about its clips and labels, one sentence each.
     #[wasm_bindgen(getter)]
     pub fn notes(&self) -> Vec<String> {
         self.notes.clone()
@@ -130,7 +130,7 @@ impl JsRecognizer {
         self.stream.findings()
     }
 
-    /// Seconds from the end of a motion to its report at the earliest.
+    /// Shortest time from the end of a motion to its report, seconds.
     #[wasm_bindgen(getter)]
     pub fn latency_secs(&self) -> f64 {
         self.stream.latency_secs().unwrap_or_default()

@@ -130,13 +130,13 @@ impl JsClip {
 
 #[wasm_bindgen(js_class = Index)]
 impl JsIndex {
-    /// The detections in a clip, as of a live stream.
+    /// Recognises motions in a clip, as in a live stream.
     pub fn recognize(&self, clip: &JsClip) -> Result<JsValue, JsError> {
         let found = self.index.recognize(&clip.take)?;
         to_js(&found.iter().map(DetectionRow::from).collect::<Vec<_>>())
     }
 
-    /// The class of a whole clip that was cut around one motion.
+    /// Classifies a whole clip that contains one motion.
     pub fn classify(&self, clip: &JsClip) -> Result<JsValue, JsError> {
         let (model, take) = (&self.index.model, &clip.take);
         let found = Classifier::new(model)?.classify(&take.clip, &take.roles, take.rest())?;

@@ -12,7 +12,7 @@ pub struct ImportOptions {
     pub up: Option<SignedAxis>,
     /// Metres in one of the file's units of length.
     pub metres_per_unit: Option<f64>,
-    /// Frames at the start that show a rest pose and not the motion.
+    /// Number of frames at the start that show a rest pose instead of the motion.
     pub rest_frames: Option<usize>,
     /// Roles that override those found.
     pub mapping: Option<Mapping>,

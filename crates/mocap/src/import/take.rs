@@ -33,7 +33,7 @@ impl Take {
         &self.clip.name
     }
 
-    /// Frames at the start that show a rest pose and not the motion.
+    /// Number of frames at the start that show a rest pose instead of the motion.
     pub fn rest(&self) -> &Span {
         &self.report.rest_frames
     }

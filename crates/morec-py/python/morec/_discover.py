@@ -19,24 +19,24 @@ def discover(
     clip: str | None = None,
     progress: Progress = None,
 ) -> Table:
-    """Motions that repeat, without labels; what ``morec discover`` finds.
+    """Find motions that repeat, without labels, as ``morec discover`` does.
 
     Parameters
     ----------
     clips : Clip, path, sequence of these, or Database
     plain : bool
-        Do not learn a metric from the first sets; takes half the time, and as good where people rest between motions.
+        Do not learn a metric from the first sets; takes half the time. If people rest between motions, the result is as good.
     runs : bool
-        Join repetitions that follow each other at once.
+        Join successive repetitions without a pause.
     clip : str, optional
-        Clips of a database of this name; ``*`` stands for any text.
+        Name of the clips of a database; ``*`` stands for any text.
     progress : bool or callable, optional
 
     Returns
     -------
     Table
-        A row for each repetition: set (from 1, those that explain most first), clip, start_secs, stop_secs, distance (from the
-        middle of its set, in spreads).
+        One row for each repetition: set (from 1, the set that covers most motion first), clip, start_secs, stop_secs, distance
+        (from the middle of its set, in spreads).
     """
     settings: dict[str, Any] = {"plain": plain, "runs": runs}
     if isinstance(clips, Database):

@@ -42,7 +42,7 @@ def lines(clip: Clip) -> tuple[npt.NDArray[np.float64], list[tuple[int, int]]]:
 
 
 def animation(clip: Clip, *, size: int = SIZE, poses: int = POSES) -> str:
-    """The clip as an animated SVG, seen from the front; it plays for ever, at the clip's pace.
+    """Draw the clip as an animated SVG, seen from the front, playing in a loop at the clip's pace.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def animation(clip: Clip, *, size: int = SIZE, poses: int = POSES) -> str:
     size : int
         Width and height, pixels.
     poses : int
-        Poses shown, spread evenly; between them everything moves on lines.
+        Number of poses, spread evenly; points move on straight lines between them.
 
     Returns
     -------

@@ -21,7 +21,7 @@ Clips = Union[Clip, str, "os.PathLike[str]", Iterable[Union[Clip, str, "os.PathL
 
 
 def roles_text(roles: Roles) -> dict[str, str | None] | str | None:
-    """Roles as the native part takes them: a dictionary, or the text of a roles file."""
+    """Roles in the native module's form: a dictionary, or the text of a roles file."""
     if roles is None:
         return None
     if isinstance(roles, Mapping):
@@ -48,7 +48,7 @@ def read_all(
     unit: float | None = None,
     roles: Roles = None,
 ) -> list[Clip]:
-    """All clips in a file: one for each performer.
+    """Read all clips in a file, one for each performer.
 
     Parameters are those of `read`.
     """
@@ -78,28 +78,28 @@ def read(
     unit: float | None = None,
     roles: Roles = None,
 ) -> Clip:
-    """Read a clip in any format that morec knows.
+    """Read a clip in any supported format.
 
-    Units, axes and parts of the body are inferred from the motion; `Clip.facts` says how.
+    Units, axes and body parts are inferred from the motion; see `Clip.facts`.
 
     Parameters
     ----------
     file : path, bytes or file object
-        ``FILE#2`` and ``FILE#name`` are one clip of a file that holds several.
+        ``FILE#2`` and ``FILE#name`` are one clip of a file with several.
     name : str, optional
-        What the clip is called, and for bytes the file's name, whose ending may tell the format.
+        Name of the clip; for bytes also the file name, whose extension may indicate the format.
     skeleton : path, optional
-        The ASF skeleton of an AMC clip; without it, the one beside the clip or a folder above.
+        The ASF skeleton of an AMC clip; by default the skeleton in the clip's folder or the folders above.
     file_rate : float, optional
-        Frames a second, in place of what the file says.
+        Frames a second; replaces the file's rate.
     positions : {"replace", "add"}, optional
-        What BVH position channels below the root mean; decided from the data if not given.
+        Meaning of BVH position channels below the root; inferred by default.
     up : {"x", "y", "z", "-x", "-y", "-z"}, optional
-        Which way is up in the file.
+        Up axis of the file; inferred by default.
     unit : float, optional
-        Metres in the file's unit of length.
+        Metres in the file's unit of length; inferred by default.
     roles : dict or path, optional
-        Joints that play parts of the body, where inference fails: ``{"left_hand": "LWrist", "hips": "LHip+RHip"}``.
+        Joints of body parts, where inference fails: ``{"left_hand": "LWrist", "hips": "LHip+RHip"}``.
 
     Returns
     -------
@@ -108,9 +108,9 @@ def read(
     Raises
     ------
     FileNotFoundError
-        There is no such file.
+        The file does not exist.
     MorecError
-        The file is not what it should be (the text says where), or holds several clips (see `read_all`).
+        The file is invalid (the message says where), or contains several clips (see `read_all`).
     """
     clips = read_all(
         file,
@@ -140,16 +140,17 @@ def read_folder(
     roles: Roles = None,
     progress: Progress = None,
 ) -> list[Clip]:
-    """Read all clips in a folder and the folders below, in parallel.
+    """Read all clips in a folder and its subfolders, in parallel.
 
-    Files that cannot be read are left out with a `MorecWarning` each.
+    Unreadable files are left out, with one `MorecWarning` each.
 
     Parameters
     ----------
     folder : path or iterable of paths
         Folders and files.
     progress : bool or callable, optional
-        A bar, none, or what is called as ``progress(stage, done, total)``; by default a bar where somebody sees it.
+        True: a progress bar; False: none; or a function ``progress(stage, done, total)``. By default a bar in terminals and
+        notebooks.
 
     Returns
     -------
@@ -167,7 +168,7 @@ def read_folder(
 
 
 def as_clips(clips: Clips) -> list[Clip]:
-    """Clips as a list, those that are paths read."""
+    """Clips as a list; paths are read."""
     if isinstance(clips, Clip):
         return [clips]
     if isinstance(clips, (str, os.PathLike)):

@@ -87,7 +87,7 @@ def _span(number: int, start: Any, stop: Any, kind: type[float]) -> tuple[float,
 
 
 def people_rows(people: People) -> dict[str, str] | bytes | None:
-    """Who is seen in which clip, as a dictionary or the bytes of a table."""
+    """The person of each clip, as a dictionary or the bytes of a table."""
     if people is None:
         return None
     if isinstance(people, (str, os.PathLike)):

@@ -91,36 +91,36 @@ def train(
     params: Mapping[str, Any] | None = None,
     progress: Progress = None,
 ) -> Index:
-    """Train an index from labelled clips; what ``morec train`` does, with the same words and defaults.
+    """Train an index from labelled clips, as ``morec train`` does, with the same options and defaults.
 
     Parameters
     ----------
     clips : clips or paths
         Clips that the labels refer to, by name.
     labels : DataFrame, path, Table or list of spans
-        Columns clip, class and start, stop (frames, stop exclusive) or start_secs, stop_secs, or neither: then the whole
-        clip is one sample, its still ends trimmed. Perhaps person. Spans are (clip, class, start_secs, stop_secs).
+        Columns clip, class and start, stop (frames, stop exclusive) or start_secs, stop_secs, or neither: then the whole clip is
+        one sample, with still ends trimmed. Optionally person. Spans are (clip, class, start_secs, stop_secs).
     people : dict, DataFrame or path, optional
-        Who is seen in which clip.
+        The person of each clip.
     background : clips, paths or names of clips, optional
-        Clips that hold none of the classes: what comes near the classes in them sets how near is near enough.
+        Clips without any class; they set the detection threshold.
     classes : sequence of str
-        Learn only these, in this order.
+        Learn only these classes, in this order.
     exclude : sequence of str
         Leave these clips out, by name.
     method : {"auto", "templates", "svrdm"}
-        Each class as its samples say, gestures matched elastically and activities, which go on for longer, by what a window of them
-        shows; every class as a gesture; or the method of the thesis of 2009.
+        auto: each class as a gesture (matched elastically in time) or an activity (matched by windows), as its samples show;
+        templates: every class as a gesture; svrdm: the method of the thesis of 2009.
     svrdm : {"tuned", "faithful"}
         The parameters of the method svrdm.
     unlabelled : {"background", "ignore"}
-        Meaning of the unlabelled parts of labelled clips: motion of no class, or unknown.
+        Use of the unlabelled parts of labelled clips.
     everyday : {"auto", "always", "never"}
         Whether synthetic everyday motion is background too (not with method svrdm); auto: if background holds less than a
         minute.
     mirror : {"auto", "yes", "no"}
-        Whether mirrored copies of samples teach too (not with method svrdm). yes: every class is the same on both sides; auto: only
-        classes named as two sides of one motion, as wave_left and wave_right, teach each other.
+        Whether to train on mirrored copies of samples too (not with method svrdm). yes: all classes; auto: only between pairs of
+        classes named for a side, such as wave_left and wave_right.
     one_sided : sequence of str
         With mirror yes: classes whose mirror image is another motion; it then teaches what the class is not.
     activities, gestures : sequence of str
@@ -183,24 +183,24 @@ def crossval(
     params: Mapping[str, Any] | None = None,
     progress: Progress = None,
 ) -> Crossval:
-    """Train without a part of the labels, recognise that part, and measure; what ``morec crossval`` does.
+    """Cross-validate: train without a part of the labels, recognise that part, and measure, as ``morec crossval`` does.
 
     Parameters
     ----------
     by : {"person", "clip", "half"}
-        What is left out in turn; half: half of each class's samples.
+        The part left out in turn; half: half of each class's samples.
     unknown : clips, paths or names of clips, optional
-        Clips that hold none of the classes: what is recognised in them is a false alarm.
+        Clips without any class: every detection in them is a false alarm.
     samples : int, optional
-        Let at most N samples of each class teach, from its people in turn.
+        Train on at most N samples per class, drawn evenly across people.
     perturb : sequence of str
-        Also test copies that are worse in one way each, as ``"cam:1"``, ``"rate:30"``.
+        Also test copies degraded in one way each, such as ``"cam:1"``, ``"rate:30"``.
     sensitivities : sequence of float
         Also test at these rates of false alarms a minute.
     seed : int
-        Of the shuffle that halves the samples.
+        Seed of the split into halves.
 
-    The others are those of `train`.
+    The other parameters are those of `train`.
 
     Returns
     -------
@@ -231,22 +231,22 @@ def evaluate(
     classes: Sequence[str] = (),
     index: Index | None = None,
 ) -> dict[str, Any]:
-    """Hold detections against labels; what ``morec evaluate --json`` prints.
+    """Measure detections against labels. Returns what ``morec evaluate --json`` prints.
 
     Parameters
     ----------
     truth : DataFrame, path, Table or list of spans
-        Labels, as for `train`. In a clip that has some, what has no label counts as none of the classes.
+        Labels, as for `train`. In labelled clips, unlabelled motion counts as none of the classes.
     found : DataFrame, path, Table or rows
-        Detections: clip, class, start_secs, stop_secs, and perhaps score and reported_secs; the path of a table may say frames.
+        Detections: clip, class, start_secs, stop_secs, and optionally score and reported_secs; a table file may give frames.
     clips : clips, paths, or dict of name to seconds
-        The streams that were searched. Those that no label names are left out.
+        The streams that were recognised. Streams without labels are left out.
     unknown : clips, paths, or dict of name to seconds
-        Streams that hold none of the classes: what is found there counts apart from the rest.
+        Streams without any class: detections in them are counted separately.
     classes : sequence of str
-        Classes that count, if not all.
+        Classes that count; all by default.
     index : Index, optional
-        The index that recognised; then ``missed`` says of each missed sample why. `clips` have to be clips for it.
+        The index that was used; ``missed`` then gives the reason for each missed sample. Requires `clips` to be clips.
 
     Returns
     -------

@@ -17,7 +17,7 @@ LOOK_SECS = 0.1
 
 
 class listen:
-    """Recognise what a live source sends, until it ends or you stop.
+    """Recognise motions from a live source, until it ends or you stop.
 
     A context manager and an iterator of events. Ctrl-C raises KeyboardInterrupt and leaves the port free; so does leaving
     the loop, once the object is closed or forgotten.
@@ -25,29 +25,29 @@ class listen:
     Parameters
     ----------
     address : str
-        As of ``morec live --listen``: ``vmc://HOST:PORT`` (VMC senders on a UDP port, 39539 by convention),
+        As for ``morec live --listen``: ``vmc://HOST:PORT`` (VMC senders on a UDP port, 39539 by convention),
         ``axis://HOST:PORT`` and ``axis+udp://HOST:PORT`` (broadcasts of Axis programs), ``json:-`` and ``json+tcp://HOST:PORT``
         (lines of JSON), ``webcam://127.0.0.1:8000?mediapipe=DIR`` (the camera, by a page there), ``clip://FILE`` (a clip as if somebody
         performed it).
     index : Index
     actors : int
-        Performers that are followed at once.
+        Largest number of performers at the same time.
     mirror : bool
-        Exchange left and right, for senders that show their performer as a mirror would.
+        Exchange left and right, for senders that mirror their performer.
     roles : dict, path or str, optional
-        ``{"left_hand": "LWrist"}``, or a roles file: joints of clips, where names do not tell.
+        ``{"left_hand": "LWrist"}``, or a roles file: joints of body parts that the names do not identify.
     sensitivity : float, optional
-        False alarms a minute that background motion may raise, as in training: 0.1 is strict, 1 is generous.
+        Accepted false alarms a minute in background motion: 0.1 is strict, 1 is generous. As trained by default.
     performer : {"auto", "teacher", "anyone"}
         The expected performer, as in `Index.recognize`.
     tentative : bool
-        Also what seems to be under way: events of the phases start, update and cancel.
+        Also report motions before they end: events of the phases start, update and cancel.
     each_repetition : bool
         Also an event of the phase repetition, with its start and stop, for each repetition of an activity.
     deviation : bool
         Say how far from the nearest sample each gesture that ends, and each such repetition, was.
     refractory_secs : float
-        A motion of the same class that ends less than this after the one before it is not reported.
+        Least time between two reports of the same class, seconds.
     timeout : float, optional
         End after this many seconds without an event.
 
@@ -106,12 +106,12 @@ class listen:
 
     @property
     def address(self) -> str:
-        """Where it listens, with the port that was free if the address asked for port 0."""
+        """The address, with the actual port if port 0 was requested."""
         return self._session.address
 
     @property
     def status(self) -> dict[str, Any]:
-        """Counts of frames, losses and events so far; ``findings``: what is wrong with the stream for the index, in sentences."""
+        """Counts of frames, losses and events so far; ``findings``: problems of the stream, in sentences."""
         return self._session.status()
 
     def close(self) -> None:

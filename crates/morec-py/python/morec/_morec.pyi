@@ -27,7 +27,7 @@ class MorecWarning(UserWarning):
     """Input was repaired, left out or is doubtful; the result is returned nevertheless."""
 
 class Clip:
-    """A motion-capture clip in metres, Y up: a skeleton, its frames, and which joint is which part of the body.
+    """A motion-capture clip in metres, Y up: a skeleton, its frames, and the body parts of its joints (roles).
 
     ``len(clip)`` is the number of frames; ``clip[1.0:2.5]`` is the stretch from second 1 to second 2.5. Clips do not
     change; threads may share them, and they can be pickled.
@@ -49,39 +49,39 @@ class Clip:
         up: str | None = None,
         roles: _Roles = None,
     ) -> Clip:
-        """A clip of points: where the joints or landmarks of one performer are, frame by frame.
+        """Make a clip of points from the positions of one performer's joints or landmarks, frame by frame.
 
         Parameters
         ----------
         positions : array, shape (frames, joints, 3)
-            NaN where a point was not seen: short gaps are filled, long ones stay unknown.
+            NaN where a point is missing: short gaps are filled, long gaps stay unknown.
         names : sequence of str
-            What the points are called. The names of published sets (MediaPipe, COCO, Kinect, marker sets) and usual joint
-            names tell which is which part of the body.
+            Names of the points. Body parts are inferred from the names of published sets (MediaPipe, COCO, Kinect, marker sets)
+            and from usual joint names.
         rate_hz : float
             Frames a second.
         name : str
-            What the clip is called, by which labels refer to it.
+            Name of the clip, by which labels refer to it.
         unit : float, optional
             Metres in the unit of `positions`; inferred by default.
         up : {"x", "y", "z", "-x", "-y", "-z"}, optional
-            Which way is up in `positions`; inferred by default.
+            Up axis of `positions`; inferred by default.
         roles : dict, optional
-            ``{"left_hand": "LWrist", "hips": "LHip+RHip"}``, where names do not tell.
+            ``{"left_hand": "LWrist", "hips": "LHip+RHip"}``: points of body parts that the names do not identify.
 
         Raises
         ------
         ValueError
-            An array of another shape, a rate that is not above 0.
+            The array has another shape, or the rate is not above 0.
         MorecError
-            No point was ever seen.
+            All positions are NaN.
         """
     @property
     def name(self) -> str:
         """Name of the clip: its file's stem, by default."""
     @property
     def path(self) -> os.PathLike[str] | None:
-        """The file it was read from, or None."""
+        """The file that the clip was read from, or None."""
     @property
     def format(self) -> str:
         """The file's format, ``"bvh"``; empty for clips that come from no file."""
@@ -102,60 +102,60 @@ class Clip:
         """Index of each joint's parent, -1 for a root; shape (joints,)."""
     @property
     def offsets(self) -> _Array:
-        """Where each joint is in its parent's frame when nothing moves it, metres; shape (joints, 3)."""
+        """Rest position of each joint in its parent's frame, metres; shape (joints, 3)."""
     @property
     def roles(self) -> dict[str, int]:
-        """For each part of the body that was found, the index of the joint that plays it."""
+        """Index of the joint of each body part that was found."""
     @property
     def warnings(self) -> list[str]:
-        """Repairs made in reading and oddities, a sentence each, with the place in the file."""
+        """Repairs and doubts of reading, one sentence each, with the place in the file."""
     @property
     def facts(self) -> dict[str, Any]:
         """Inferred properties: up axis and unit of the file, body height, rest pose, doubts (``notes``)."""
     @property
     def rest_frames(self) -> int:
-        """Frames at the start that show a rest pose and not the motion."""
+        """Number of frames at the start that show a rest pose instead of the motion."""
     @property
     def has_rotations(self) -> bool:
-        """Whether joints are known to turn; a clip of points has positions alone."""
+        """Whether joints have rotations; a clip of points has positions only."""
     @property
     def positions(self) -> _Array:
-        """Where each joint is in the world, metres, Y up; shape (frames, joints, 3), read-only. Made once."""
+        """Position of each joint in the world, metres, Y up; shape (frames, joints, 3), read-only. Computed once."""
     @property
     def rotations(self) -> _Array | None:
-        """How each joint is turned in its parent's frame, quaternions x, y, z, w; shape (frames, joints, 4), read-only.
+        """Rotation of each joint in its parent's frame, quaternions x, y, z, w; shape (frames, joints, 4), read-only.
 
         None for a clip of points.
         """
     def resampled(self, rate_hz: float) -> Clip:
-        """The same motion at another rate."""
+        """The same motion resampled to another rate, frames a second."""
     def renamed(self, name: str) -> Clip:
-        """The same clip under another name, which is what labels call it."""
+        """The same clip with another name, by which labels refer to it."""
     def save(self, path: _Path) -> None:
-        """Write the clip, in the format that the ending names: .bvh, .mclip, or points as .trc, .c3d, .jsonl."""
+        """Write the clip in the format of the extension: .bvh, .mclip, or points as .trc, .c3d, .jsonl."""
     def __len__(self) -> int: ...
     def __getitem__(self, secs: slice, /) -> Clip: ...
 
 class Index:
-    """A trained index: what recognition needs, in one immutable file.
+    """A trained model that recognises motions; immutable, stored in one file.
 
-    Made by `morec.train` and `morec.load`. Threads may share it, and it can be pickled.
+    Returned by `morec.train` and `morec.load`. Threads may share it, and it can be pickled.
     """
 
     @staticmethod
     def from_bytes(bytes: bytes) -> Index:
-        """An index from the bytes of its file."""
+        """Read an index from the bytes of its file. Raises MorecError if they are not an index."""
     def to_bytes(self) -> bytes:
         """The bytes of the index file."""
     def part(self, part: int, of: int) -> Index:
-        """Part ``part`` of ``of``: the templates of every ``of``-th class, for one of several machines.
+        """Part ``part`` (from 0) of ``of`` parts: the templates of every ``of``-th class, for one of several machines.
 
-        `morec.archive.Archive.recognize` divides an index so and decides between what all parts match.
+        `morec.archive.Archive.recognize` divides an index into such parts and combines their matches.
 
         Raises
         ------
         ValueError
-            There is no such part, or the index is of the method svrdm.
+            The part does not exist, or the index was trained by the method svrdm.
         """
     def save(self, path: _Path) -> None:
         """Write the index file, whole or not at all."""
@@ -168,27 +168,27 @@ class Index:
         deviation: bool = False,
         progress: _Progress = None,
     ) -> Table:
-        """Everything that is recognised in clips, frame by frame as in a live stream.
+        """Recognise motions in clips, frame by frame as in a live stream.
 
         Parameters
         ----------
         clips : clip, path, or several
             Several are recognised in parallel.
         sensitivity : float, optional
-            False alarms a minute that background motion may raise, as in training: 0.1 is strict, 1 is generous.
+            Accepted false alarms a minute in background motion: 0.1 is strict, 1 is generous. As trained by default.
         performer : {"auto", "teacher", "anyone"}, optional
-            Who performs: "auto" raises the bound of the score to half of the performer's recent scores, from the fourth
-            report on; "teacher" raises it from the first frame by the scores of the teacher's samples, "anyone" never
-            raises it. "auto" by default.
+            The expected performer. "auto" (default): after four reports, the score threshold rises to half of the performer's
+            recent scores; "teacher": it is raised from the first frame, by the scores of the training samples; "anyone": it is
+            never raised.
         deviation : bool
-            Whether to say how far off the nearest sample each motion was performed.
+            Whether to compare each motion with the nearest sample.
         progress : callable, optional
 
         Returns
         -------
         Table
-            Columns clip, class, start_secs, stop_secs, score, reported_secs, and of activities that repeat repetitions and
-            period_secs (None where nothing is counted). With `deviation` also deviation: a
+            Columns clip, class, start_secs, stop_secs, score, reported_secs; for activities also repetitions and period_secs
+            (None if nothing is counted). With `deviation` also deviation: a
             dict of off_degrees (mean angle off the nearest sample), pace (duration over its), bones (each with off_degrees,
             worst_degrees, worst_secs; the farthest off first) and over_time_degrees; None for activities and held poses.
 
@@ -199,7 +199,7 @@ class Index:
         Warns
         -----
         MorecWarning
-            For clips that lack bones which the index uses; they are recognised without.
+            For clips that lack bones of the index; these bones are not used.
         """
     def recognizer(
         self,
@@ -219,47 +219,47 @@ class Index:
         Parameters
         ----------
         joints : sequence of str, or Clip
-            What the rows of a pose are: names of a published set of points, of usual joints or of `morec.ROLES`; or a clip
-            whose joints they are.
+            Names of the rows of a pose: points of a published set, usual joint names, or `morec.ROLES`; or a clip with these
+            joints.
         roles : dict, optional
-            ``{"left_hand": "LWrist", "hips": "LHip+RHip"}``, where names do not tell.
+            ``{"left_hand": "LWrist", "hips": "LHip+RHip"}``: points of body parts that the names do not identify.
         up : {"x", "y", "z", "-x", "-y", "-z"}
-            Which way is up in the stream. The unit of length does not matter.
+            Up axis of the stream. The unit of length does not matter.
         sensitivity : float, optional
             As in `recognize`.
         performer : {"auto", "teacher", "anyone"}
             As in `recognize`.
         tentative : bool
-            Also what seems to be under way: events of the phases start, update and cancel.
+            Also report motions before they end: events of the phases start, update and cancel.
         each_repetition : bool
             Also an event of the phase repetition, with its start and stop, for each repetition of an activity.
         deviation : bool
             Say how far from the nearest sample each gesture that ends, and each such repetition, was.
         refractory_secs : float
-            A motion of the same class that ends less than this after the one before it is not reported.
+            Least time between two reports of the same class, seconds.
 
         Raises
         ------
         ValueError
-            Names of which no part of the body is known; an option that cannot be.
+            The names identify no body part, or an option is invalid.
         MorecError
-            An index that looks at joint rotations, or has no bone in common with the joints.
+            The index needs joint rotations, or has no bone in common with the joints.
         """
     def classify(self, clips: Clips) -> list[dict[str, Any]]:
-        """The class of whole clips that were cut around one motion each; `recognize` finds motions in longer ones.
+        """Classify whole clips that contain one motion each; `recognize` finds motions in longer clips.
 
-        Of the method ``templates`` only.
+        For the method ``templates`` only.
 
         Returns
         -------
         list of dict
-            One for each clip: ``clip``; ``class``, None if none of the classes is more probable than everything else;
-            its ``probability``; ``nearest``, the class whose samples are nearest, None where nothing moves; and
-            ``probabilities`` by class: what is missing to 1 is the probability of none of them.
+            One for each clip: ``clip``; ``class``, None if no class is more probable than all alternatives together; its
+            ``probability``; ``nearest``, the class of the nearest samples, None if nothing moves; and ``probabilities`` by class,
+            of which the rest to 1 is the probability that the motion is none of the classes.
         """
     @property
     def classes(self) -> list[dict[str, Any]]:
-        """The classes: name, samples and people that taught them."""
+        """The classes, each with its name, number of samples and number of people."""
     @property
     def class_names(self) -> list[str]:
         """Names of the classes, in order."""
@@ -268,15 +268,15 @@ class Index:
         """``"templates"`` or ``"svrdm"``."""
     @property
     def provenance(self) -> dict[str, Any]:
-        """Where the index came from: date, version, clips, samples, background."""
+        """Origin of the index: date, version, clips, samples, background."""
     @property
     def report(self) -> dict[str, Any] | None:
-        """Report of the training; None for an index that was loaded."""
+        """Report of the training; None for a loaded index."""
 
 class Recognizer:
-    """Recognises motions in one performer's stream of joint positions. Made by `Index.recognizer`.
+    """Recognises motions in one performer's stream of joint positions. Returned by `Index.recognizer`.
 
-    Any thread may push; two at once wait for each other.
+    Any thread may push; simultaneous calls wait for each other.
     """
 
     @property
@@ -284,26 +284,26 @@ class Recognizer:
         """Names of the points of a pose, in the order of its rows."""
     @property
     def latency_secs(self) -> float:
-        """Seconds from the end of a motion to its report at the earliest."""
+        """Shortest time from the end of a motion to its report, seconds."""
     def push(self, time_secs: float, positions: npt.ArrayLike) -> list[dict[str, Any]]:
-        """Take the pose at a time on the stream's clock.
+        """Process one pose.
 
         Parameters
         ----------
         time_secs : float
-            Poses may come at any rate, also unevenly; late and duplicate ones are ignored. After a gap of more than half a
-            second the stream begins anew.
+            Time of the pose on the stream's clock. Any rate, even an irregular one, is accepted; late and duplicate poses are
+            ignored. After a gap of more than 0.5 s the stream starts again.
         positions : array, shape (joints, 3)
             NaN where a joint is unknown. float64 and float32 are read in place.
 
         Returns
         -------
         list of dict
-            The events that this pose settled, mostly none, with the keys of the events of `morec.listen`. An event of the phase
-            end is final.
+            The events that this pose causes, usually none, with the keys of the events of `morec.listen`. Events of the phase end
+            are final.
         """
     def push_all(self, times_secs: npt.ArrayLike, positions: npt.ArrayLike) -> list[dict[str, Any]]:
-        """Take many poses, other Python threads running meanwhile; the same events as of pushing one by one.
+        """Process many poses, while other Python threads run. The events are the same as from single calls of `push`.
 
         Parameters
         ----------
@@ -311,9 +311,9 @@ class Recognizer:
         positions : array, shape (frames, joints, 3)
         """
     def finish(self) -> list[dict[str, Any]]:
-        """End the stream: the events that its last moments still hold. The next push begins a new stream."""
+        """End the stream and return its last events. The next push starts a new stream."""
     def diagnosis(self) -> list[str]:
-        """What is wrong with the stream of the last seconds for the index, a sentence each with its severity and what to do."""
+        """Problems of the stream in the last seconds, one sentence each with severity and remedy."""
 
 class LiveSession:
     def __init__(
@@ -328,32 +328,32 @@ class LiveSession:
     def close(self) -> None: ...
 
 class Crossval:
-    """Measures of a cross-validation. Made by `morec.crossval`."""
+    """Measures of a cross-validation. Returned by `morec.crossval`."""
 
     @property
     def evaluation(self) -> dict[str, Any]:
         """Every measure, as ``morec crossval --json`` prints them."""
     @property
     def left_out(self) -> str:
-        """What is left out of each training, in words: "each person in turn, 3 people"."""
+        """What each training leaves out, in words: "each person in turn, 3 people"."""
     @property
     def accuracy(self) -> float | None:
-        """Thesis accuracy; None if there is nothing to decide."""
+        """Accuracy as defined in the thesis; None without decisions."""
     @property
     def f1(self) -> float | None:
         """F1 at half overlap."""
     @property
     def perturbed(self) -> dict[str, dict[str, Any]]:
-        """For each perturbation its measures."""
+        """Measures of each perturbation."""
     @property
     def sensitivities(self) -> dict[float, dict[str, Any]]:
-        """For each rate of false alarms a minute its measures."""
+        """Measures at each rate of false alarms a minute."""
     @property
     def missed(self) -> list[dict[str, Any]]:
-        """Samples that were missed, and why."""
+        """Missed samples, each with the reason."""
     @property
     def folds(self) -> list[dict[str, Any]]:
-        """Each fold: the part that was left out, and the report of its training."""
+        """The folds, each with the part left out and its training report."""
     @property
     def found(self) -> Table:
         """All detections: clip, class, start_secs, stop_secs, score, reported_secs."""
@@ -364,15 +364,15 @@ class Crossval:
         """Write the report, one HTML file without outside links."""
 
 class Database:
-    """A motion database: clips, cuts, classes and labels in one SQLite file, as ``morec db`` keeps it.
+    """A motion database: clips, cuts, classes and labels in one SQLite file, as used by ``morec db``.
 
-    One program writes, any number read. Use it as a context manager, or `close` it.
+    One program can write at a time, any number can read. Use the object as a context manager, or call `close`.
 
     Parameters
     ----------
     path : path
     create : bool
-        Make the file if there is none.
+        Create the file if it does not exist.
     """
 
     def __init__(self, path: _Path, *, create: bool = False) -> None: ...
@@ -381,7 +381,7 @@ class Database:
     def close(self) -> None:
         """Close the file; every other method then raises ValueError."""
     def summary(self) -> dict[str, Any]:
-        """How much is in it."""
+        """Numbers of clips, labels, cuts and indexes, and sizes in bytes."""
     def import_files(
         self,
         paths: _Path | Sequence[_Path],
@@ -392,13 +392,15 @@ class Database:
         tags: Sequence[str] = (),
         progress: _Progress = None,
     ) -> Table:
-        """Add the clips of files and folders, in parallel; what is there already is known by its content.
+        """Import the clips of files and folders, in parallel.
+
+        Clips that the database contains already are recognised by their content.
 
         Returns
         -------
         Table
-            Columns path, outcome (imported, known, copy, refused), clips, notes: repairs and doubts, the reason of a
-            refusal, clips that are nearly others.
+            Columns path, outcome (imported, known, copy, refused), clips, and notes: repairs, doubts, the reason of a refusal,
+            near-duplicates.
         """
     def clips(
         self,
@@ -408,13 +410,14 @@ class Database:
         tag: str | None = None,
         class_name: str | None = None,
     ) -> Table:
-        """The clips: by name (``*`` any text, ``?`` one character), subject, tag, or class of their labels."""
+        """List clips by name (``*`` any text, ``?`` one character), subject, tag, or class of their labels."""
     def clip(self, name: str) -> Clip:
-        """A clip as it is kept: within half a degree and five millimetres of its file, unless `summary` says more."""
+        """Read a clip. Its rotations and positions differ from the file's at most by the bounds in `summary`, usually
+        0.5 degrees and 5 mm."""
     def labels(
         self, *, state: str | None = "accepted", clip: str | None = None, class_name: str | None = None
     ) -> Table:
-        """The labels of a state ("accepted", "proposed", "rejected"; None for all).
+        """List the labels with this state ("accepted", "proposed", "rejected"; None for all).
 
         Returns
         -------
@@ -422,7 +425,7 @@ class Database:
             Columns clip, class, start_secs, stop_secs, person, whole_clip, state, score, set_by. `morec.train` takes it.
         """
     def label(self, labels: Any, *, state: str = "accepted", by: str = "user") -> dict[str, int]:
-        """Add labels, all or none; labels as in `morec.train`. How many were added, changed, unchanged."""
+        """Add labels, given as in `morec.train`, all or none. Returns the numbers of added, changed and unchanged labels."""
     def search(
         self,
         example: Clip | _Path,
@@ -442,14 +445,14 @@ class Database:
         ----------
         example : Clip, name of a clip in the database, or os.PathLike
         start, stop : float
-            The stretch of it, seconds.
+            The stretch of the example, seconds.
         mirror : bool
-            Find what the example's mirror image is like, too.
+            Also find motions like the example's mirror image.
         limit : int
         one_a_clip : bool
-            Only the best of each clip.
+            Only the best hit of each clip.
         learned : bool
-            Learn from the accepted samples what matters: at least two classes with two samples each.
+            Learn from accepted samples which differences matter; needs at least two classes with two samples each.
         classes : sequence of str
             Learn from these classes only.
         warp_share : float
@@ -473,7 +476,7 @@ class Database:
         direction: str = "both",
         progress: _Progress = None,
     ) -> Table:
-        """Cut clips where their behaviour changes, and keep the cuts; what ``morec db cut`` does.
+        """Cut clips where their behaviour changes, and store the cuts, as ``morec cut`` does.
 
         Returns
         -------
@@ -499,7 +502,7 @@ class Database:
         join: Sequence[int] = (),
         progress: _Progress = None,
     ) -> Table:
-        """Groups of stretches that are alike, the largest first; what ``morec group`` does.
+        """Group similar stretches, largest group first, as ``morec group`` does.
 
         Parameters
         ----------
@@ -513,7 +516,7 @@ class Database:
             Columns group (from 1), clip, class (of labels), start_secs, stop_secs.
         """
     def propose(self, *, classes: Sequence[str] = (), progress: _Progress = None) -> Table:
-        """Other samples of the classes that are labelled, the surest first; they are kept as proposed.
+        """Propose more samples of the labelled classes, most probable first, and store them in the state proposed.
 
         Returns
         -------
@@ -523,7 +526,7 @@ class Database:
     def judge(
         self, *, accept: float | None = None, reject: float | None = None, classes: Sequence[str] = ()
     ) -> tuple[int, int]:
-        """Accept the proposals of at least one score, reject those below another; how many of each."""
+        """Accept proposals with a score of at least ``accept`` and reject proposals below ``reject``. Returns both numbers."""
     def __enter__(self) -> Database: ...
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None, /
@@ -535,9 +538,9 @@ def load(path: _Path) -> Index:
     Raises
     ------
     FileNotFoundError
-        There is no such file.
+        The file does not exist.
     MorecError
-        It is no index, damaged, or written by a later release.
+        The file is not an index, is damaged, or was written by a later release.
     """
 
 def read_path(path: str, options: dict[str, Any], /) -> list[Clip]: ...

@@ -1,4 +1,4 @@
-"""Bars for what takes longer than a moment."""
+"""Progress bars."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def _is_watched() -> bool:
 
 
 class Bar:
-    """A line on standard error that grows."""
+    """A progress bar on standard error."""
 
     def __init__(self, after_secs: float) -> None:
         self._begun = time.monotonic()

@@ -1,4 +1,4 @@
-"""Features and arrays for other people's models."""
+"""Feature rows, arrays and windows for your own models."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Features:
-    """Feature rows of a clip: what training and recognition compare.
+    """Feature rows of a clip, which training and recognition compare.
 
     A row describes a tick (1/30 s): for each bone its direction in the performer's heading frame, weighted, and its
-    velocity with saturated length, then the root's velocity and turning. People of any size, facing anywhere, on any
-    skeleton come out alike.
+    velocity with saturated length, then the root's velocity and turning. Rows do not depend on body size, facing direction or
+    skeleton.
 
     Attributes
     ----------
@@ -51,7 +51,7 @@ class Features:
 
     @property
     def times_secs(self) -> npt.NDArray[np.float64]:
-        """Where each row ends, seconds from the clip's beginning; shape (ticks,)."""
+        """End time of each row, seconds from the clip's start; shape (ticks,)."""
         return np.asarray((np.arange(len(self.values)) + 1.0) / self.rate_hz, dtype=np.float64)
 
     def __len__(self) -> int:
@@ -89,7 +89,7 @@ def features(clip: Clip, *, bones: Sequence[str] | None = None) -> Features:
     ----------
     clip : Clip
     bones : sequence of str, optional
-        Which bones, so that several clips get the same columns; those that the clip shows by default.
+        The bones to use, so that several clips get the same columns; by default all bones of the clip.
 
     Returns
     -------
@@ -106,9 +106,9 @@ def normalize(
     centre: bool = False,
     dtype: npt.DTypeLike = np.float32,
 ) -> npt.NDArray[Any]:
-    """Where the parts of the body are: an array that any network takes.
+    """Positions of the body parts as an array of fixed shape, for example for a neural network.
 
-    Metres, Y up, parts of the body in the order of `morec.ROLES`, whatever the clip's skeleton.
+    Metres, Y up; body parts in the order of `morec.ROLES`, whatever the clip's skeleton.
 
     Parameters
     ----------
@@ -151,7 +151,7 @@ def _centred(places: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
 
 @dataclass(frozen=True)
 class Windows:
-    """Stretches of clips of one length, with what they show.
+    """Stretches of clips, all of one length, with their labels.
 
     Attributes
     ----------
@@ -257,21 +257,21 @@ def cut(
     quality: float | None = None,
     direction: str = "both",
 ) -> dict[str, npt.NDArray[np.float64]]:
-    """Where a clip's behaviour changes, without labels; what ``morec cut`` finds.
+    """Find where a clip's behaviour changes, without labels, as ``morec cut`` does.
 
     Parameters
     ----------
     clip : Clip
     method : {"kernel", "ppca", "repeats"}
-        Kernel change points over feature rows; or the thesis's method over joint rotations: the poses so far are modelled, and
-        a cut lies where the poses ahead stop fitting; or where the repetitions that `discover` finds in the clip begin and end.
+        kernel: change points of feature rows; ppca: the thesis's method on joint rotations, which models the poses so far and
+        cuts where the next poses do not fit; repeats: starts and stops of the repetitions that `discover` finds in the clip.
     window, penalty, least : float, optional
-        kernel: length of the windows whose statistics are compared, seconds; what a cut costs; no segment is shorter, seconds.
+        kernel: length of the compared windows, seconds; penalty for each cut; shortest segment, seconds.
     rise, quality : float, optional
-        ppca: how far the misfit must rise before a cut, in multiples of what fitting poses have; share of the variance that
-        the model of a segment keeps.
+        ppca: rise of the misfit before a cut, in multiples of the misfit of fitting poses; share of the variance that a segment's
+        model keeps.
     direction : {"forward", "backward", "both"}
-        ppca: which way to go through the clip.
+        ppca: direction of the passes through the clip.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""A performer before this machine's camera, as MediaPipe sees them."""
+"""Poses from this machine's camera, tracked by MediaPipe."""
 
 from __future__ import annotations
 
@@ -30,8 +30,8 @@ def webcam(
 ) -> Generator[tuple[float, npt.NDArray[np.float64]], None, None]:
     """Poses of the person before a camera: seconds since the first frame, and the landmarks `WEBCAM_POINTS` of shape (33, 3).
 
-    Metres from the middle of the hips, Y up; not a number where MediaPipe only guesses: what is hidden, or outside of the picture.
-    Frames in which nobody is seen are left out. Takes the packages ``mediapipe`` (1.x)
+    Metres from the middle of the hips, Y up; NaN where MediaPipe only guesses: hidden points, or points outside the picture.
+    Frames without a person are left out. Needs the packages ``mediapipe`` (1.x)
     and ``opencv-python``, and ends with the camera, or when the iterator is closed.
 
     >>> live = index.recognizer(morec.WEBCAM_POINTS)                     # doctest: +SKIP
@@ -42,20 +42,21 @@ def webcam(
     Parameters
     ----------
     model : path, optional
-        A pose landmarker of MediaPipe, which ships none; else the first ``pose_landmarker*.task`` in the working folder.
+        A pose landmarker of MediaPipe (not part of the package); by default the first ``pose_landmarker*.task`` in the working
+        folder.
     camera : int
         Number of the camera.
 
     Raises
     ------
     FileNotFoundError
-        There is no model.
+        No model was found.
     ValueError
-        The file is no model.
+        The file is not a model.
     ImportError
         A package is missing.
     OSError
-        The camera gives no picture.
+        The camera returns no picture.
     """
     path = model_file(model)
     tasks = package("mediapipe.tasks.python", "mediapipe")

@@ -69,7 +69,7 @@ def skeleton(clip: Clip, secs: float = 0.0, *, view: str = "front", ax: Axes | N
     Parameters
     ----------
     secs : float
-        When, from the clip's beginning.
+        Time from the clip's start, seconds.
     view : {"front", "side", "top"}
     """
     axes = {"front": (0, 1), "side": (2, 1), "top": (0, 2)}
@@ -122,7 +122,7 @@ def confusion(evaluation: Crossval | Mapping[str, Any], *, ax: Axes | None = Non
 
 
 def misfit(clip: Clip, *, ax: Axes | None = None, **options: Any) -> Axes:
-    """How badly the poses ahead fit the poses so far, with the cuts of `morec.cut` by the method ppca.
+    """Misfit of the next poses to the poses so far, with the cuts of `morec.cut` by the method ppca.
 
     Parameters
     ----------

@@ -18,23 +18,23 @@ __all__ = ["MotionClassifier"]
 
 
 class MotionClassifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
-    """Which class a clip, or a stretch cut from one, shows: morec's templates behind scikit-learn's interface.
+    """Classify clips, or stretches of clips, with morec's templates and the interface of scikit-learn.
 
     Parameters
     ----------
     joints : sequence of str, optional
-        Names of the points, if samples are arrays; see `Clip.from_positions`. ``morec.ROLES`` by default, those of the
-        body for arrays that are no wider.
+        Names of the points, if samples are arrays; see `Clip.from_positions`. By default ``morec.ROLES``, or only its body parts
+        if the arrays have as many points.
     rate_hz : float
         Frames a second of arrays.
     up : str, optional
-        Which way is up in arrays; inferred by default.
+        Up axis of arrays; inferred by default.
     everyday : {"never", "auto", "always"}
-        Whether training hears of everyday motion; it is what rejection is learned from.
+        Whether to use built-in everyday motion as background, from which rejection is learned.
     reject : bool
-        Predict ``rejected`` for what is more probably none of the classes than the nearest one.
+        Predict ``rejected`` if none of the classes is more probable than the nearest class.
     rejected : str
-        What is predicted then.
+        The label that is predicted then.
     params : dict, optional
         Parameters of the method, as in `morec.train`.
 
@@ -68,7 +68,7 @@ class MotionClassifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
         self.params = params
 
     def fit(self, X: Any, y: Iterable[Any], groups: Iterable[Any] | None = None) -> MotionClassifier:
-        """Learn from samples.
+        """Train on samples.
 
         Parameters
         ----------
@@ -76,7 +76,7 @@ class MotionClassifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
             Each is one sample; still ends are trimmed.
         y : sequence, one class for each sample
         groups : sequence, optional
-            Who performed each sample.
+            The person of each sample.
         """
         clips = self._clips(X)
         names = np.asarray(list(y))
@@ -103,9 +103,9 @@ class MotionClassifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
         return self
 
     def predict_proba(self, X: Any) -> npt.NDArray[np.float64]:
-        """A probability for each class, given that a sample is one of them; shape (samples, classes), rows sum to 1.
+        """Probability of each class, assuming that the sample is one of them; shape (samples, classes), rows sum to 1.
 
-        Of a sample in which nothing moves all are the same.
+        For a sample without motion, all are equal.
         """
         check_is_fitted(self)
         rows = self.index_.classify(self._clips(X))

@@ -1,6 +1,6 @@
-"""Synthetic people performing labelled gestures: for tests, examples and first tries.
+"""Synthetic people performing labelled gestures, for tests, examples and first trials.
 
-Nothing measured on them says anything about accuracy on real people.
+Accuracy on synthetic people says nothing about accuracy on real people.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ __all__ = ["database", "everyday", "gestures"]
 
 
 def gestures() -> list[str]:
-    """Names of the gestures that synthetic people know."""
+    """Names of the available synthetic gestures."""
     return _morec.synth_motions()
 
 
@@ -37,7 +37,7 @@ def database(
     seed : int
         The same seed gives the same clips on every platform.
     people, streams, repetitions : int
-        Clips are ``people × streams``; every class occurs ``repetitions`` times in each.
+        There are ``people × streams`` clips; every class occurs ``repetitions`` times in each.
     classes : sequence of str, optional
         The gestures, of `gestures`; all by default.
     unknown_share : float
@@ -67,5 +67,5 @@ def database(
 
 
 def everyday(seed: int = 1, *, clips: int = 4) -> list[Clip]:
-    """Clips of everyday motion at 60 Hz that hold no gesture, about half a minute each; 36 at most."""
+    """Clips of everyday motion without gestures, at 60 Hz, about 0.5 min each; 36 at most."""
     return _morec.synth_everyday(seed, clips)

@@ -64,7 +64,7 @@ pub struct CrossvalData<'a> {
     pub samples: &'a [Sample],
     /// Names of the classes; a `ClassId` is an index into this.
     pub classes: &'a [String],
-    /// Clips that hold none of the classes: what is recognised in them is a false alarm. A clip may be background
+    /// Clips without any class: every detection in them is a false alarm. A clip may be background
     /// too; it is then tested only in folds that leave it out of training.
     pub unknown: &'a [TrainClip],
     /// Other clips to test on, in place of those that teach: each in the fold of its person.

@@ -12,7 +12,7 @@ use super::{EarlyDetection, RecognizerInput};
 
 /// From the poses of one stream to detections. Nothing allocates after construction.
 pub(super) trait Pipeline: fmt::Debug + Send + Sync {
-    /// Seconds from the end of a motion to its report at the earliest.
+    /// Shortest time from the end of a motion to its report, seconds.
     fn latency_secs(&self) -> f64;
 
     /// True if a pose at this time begins a new stretch.

@@ -17,7 +17,8 @@ const MOST_REFRACTORY_SECS: f64 = 3600.0;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct StreamOptions {
-    /// False alarms a minute that background motion may raise, as in training: 0.1 is strict, 1 is generous. As trained, unless given.
+    /// Accepted false alarms a minute in background motion: 0.1 is strict, 1 is generous. As trained by default. As trained,
+    /// unless given.
     pub sensitivity: Option<f64>,
     /// The expected performer: `auto`, `teacher`, `anyone`.
     pub performer: PerformerKind,

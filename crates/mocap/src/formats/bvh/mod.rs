@@ -74,7 +74,7 @@ fn is_bvh(head: &Head) -> bool {
 pub struct BvhOptions {
     /// Meaning of position channels below the root; `None`: decided from the file's data.
     pub positions: Option<PositionChannels>,
-    /// Frames a second, in place of what the file says.
+    /// Frames a second; replaces the file's rate.
     pub rate_hz: Option<f64>,
     /// Share of lines in the motion table that may be broken (and are then interpolated). An incomplete last line
     /// is not counted.
