@@ -73,43 +73,43 @@ pub enum MorecSeverity {
     Error = 3,
 }
 
-/// Figures of a stream. An unknown figure is NaN. Lengths are metres by a guess of the stream's unit.
+/// Measures of a stream. Unknown measures are NaN. Lengths are in metres, converted from the inferred unit of the stream.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MorecDiagnosis {
     /// Set to `sizeof(MorecDiagnosis)` before the call.
     pub struct_size: usize,
-    /// Frames looked at.
+    /// Number of frames examined.
     pub frames: u64,
-    /// `MorecFinding` bits; 0 until there is about a second of stream.
+    /// `MorecFinding` bits; 0 during about the first second of the stream.
     pub findings: u32,
-    /// A `MorecSeverity`: of the gravest finding.
+    /// `MorecSeverity` of the most severe finding.
     pub severity: i32,
-    /// Bit `r` for each `MorecRole` `r` that is never seen.
+    /// Bit `r` for each `MorecRole` `r` that is always missing.
     pub missing_roles: u32,
-    /// Bit `r` for each `MorecRole` `r` that is seen only at times.
+    /// Bit `r` for each `MorecRole` `r` that is missing in some frames.
     pub flickering_roles: u32,
-    /// From the first frame to the last.
+    /// Time from the first frame to the last, seconds.
     pub secs: f64,
     /// Frames a second.
     pub rate_hz: f64,
-    /// Half the range of nine tenths of the intervals at which frames arrived.
+    /// Half the range of 90 % of the intervals between arrivals of frames, seconds.
     pub jitter_secs: f64,
-    /// Share of the frames that were due and did not come.
+    /// Share of the expected frames that did not arrive, 0 to 1.
     pub lost_share: f64,
-    /// Share of the frames that repeat the one before.
+    /// Share of the frames that repeat the previous frame, 0 to 1.
     pub repeated_share: f64,
-    /// Share of the frames that show no body.
+    /// Share of the frames without a body, 0 to 1.
     pub empty_share: f64,
-    /// From the ankles to the head joint along the bones.
+    /// Length from the ankles to the head joint along the bones, metres.
     pub height_m: f64,
-    /// Thigh and shin.
+    /// Length of thigh and shin, metres.
     pub leg_m: f64,
-    /// Angle of a standing body, or of the trunk, with the vertical, radians.
+    /// Angle between a standing body, or the trunk, and the vertical, radians.
     pub tilt_rad: f64,
-    /// Standard deviation of fast noise on each coordinate.
+    /// Standard deviation of fast noise on each coordinate, metres.
     pub noise_m: f64,
-    /// Share of the frames in which a joint is thrown aside.
+    /// Share of the frames in which a joint jumps far away, 0 to 1.
     pub spike_share: f64,
 }
 
@@ -156,7 +156,7 @@ impl From<&Diagnosis> for MorecDiagnosis {
     }
 }
 
-/// Fills in `*diagnosis`, whose `struct_size` must be set, with what is known of the stream so far. Takes no memory.
+/// Fills in `*diagnosis`, whose `struct_size` must be set, with measures of the stream so far. Allocates no memory.
 ///
 /// # Safety
 /// `diagnosis` is null or points to a struct of the size it says.
@@ -172,9 +172,9 @@ pub unsafe extern "C" fn morec_recognizer_diagnosis(
     })
 }
 
-/// Puts what is wrong with the stream into the `size` bytes at `buffer`, a sentence with what to do on each line, the
-/// gravest first, with a zero at the end; an empty text if nothing is. If `needed` is not null, the bytes that takes are
-/// put there. With too little room the text is cut and the status `MOREC_STATUS_BUFFER_TOO_SMALL`.
+/// Writes the problems of the stream into the `size` bytes at `buffer`: one sentence with its remedy on each line, the most
+/// severe first, zero-terminated; an empty text if there are none. If `needed` is not null, it receives the number of bytes
+/// needed. If the buffer is too small, the text is truncated and the status is `MOREC_STATUS_BUFFER_TOO_SMALL`.
 ///
 /// # Safety
 /// `buffer` is null or may be written to for `size` bytes; `needed` is null or may be written to.

@@ -12,30 +12,30 @@ use crate::status::{CallError, MorecStatus, guard};
 #[repr(i32)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MorecPhase {
-    /// A motion seems to be under way. Tentative; only with `MOREC_TENTATIVE`.
+    /// A motion has probably started. Tentative; only with `MOREC_TENTATIVE`.
     Start = 0,
-    /// Its progress, or what it seems to be, has changed. Tentative.
+    /// The progress or the probable class has changed. Tentative.
     Update = 1,
-    /// It came to nothing. Ends what a start began.
+    /// The motion that a start event announced was not confirmed.
     Cancel = 2,
-    /// It has happened. Final: nothing that ended is taken back, and every motion ends once.
+    /// The motion has ended. Final: an end is never revoked, and every motion ends once.
     End = 3,
-    /// One more repetition of an activity is over, from the event's start to its stop; `repetitions` is its number. Only with
+    /// A repetition of an activity is complete, from the event's start to its stop; `repetitions` is its number. Only with
     /// `MOREC_EACH_REPETITION`. (Not in the first version.)
     Repetition = 4,
 }
 
-/// Something said of a motion. Times are seconds on the clock of the frames, if not said otherwise.
+/// An event of a motion. Times are seconds on the clock of the frames unless stated otherwise.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MorecEvent {
     /// A `MorecPhase`.
     pub phase: i32,
-    /// Its class in the index, certain or assumed.
+    /// Class in the index, from 0; tentative before the end.
     pub class_id: u32,
     /// Number of the motion, from 1: its start, updates and end share it.
     pub motion: u64,
-    /// Number of the event, from 1. A gap would be a lost event, and be counted in `MorecStats.lost_events`.
+    /// Number of the event, from 1. A gap means a lost event, which is counted in `MorecStats.lost_events`.
     pub sequence: u64,
     /// Probability that the detection is right, 0 to 1. The lowest accepted score is 0.05 to 0.44, depending on the index. For
     /// held poses and indexes without calibration (svrdm, older files) it is the similarity to a sample instead. Of a tentative
@@ -45,13 +45,13 @@ pub struct MorecEvent {
     pub progress: f64,
     /// Start, seconds of the stream.
     pub start_secs: f64,
-    /// Stop, seconds of the stream; if it has not ended, the time at which it was last seen.
+    /// Stop, seconds of the stream; for a motion that has not ended, the time of its latest frame.
     pub stop_secs: f64,
-    /// The time of the frame that settled it.
+    /// Time of the frame that caused the event, seconds of the stream.
     pub reported_secs: f64,
-    /// Wall clock when that frame was pushed: seconds since 1970, UTC.
+    /// Wall clock when this frame was pushed, seconds since 1970, UTC.
     pub wall_secs: f64,
-    /// Repetitions of an activity so far; 0 where nothing is counted.
+    /// Repetitions of an activity so far; 0 if nothing is counted.
     pub repetitions: u32,
     /// Duration of one, as it was last.
     pub period_secs: f64,
@@ -108,8 +108,8 @@ fn number_of(bone: &str) -> u32 {
 
 /// Writes the name of a bone (`MorecEvent.worst_bone`), such as `left_forearm`, with a zero at the end.
 ///
-/// `*needed`, if `needed` is not null, becomes the number of bytes that takes, with the zero. If `size` is less, the
-/// characters that fit are written with a zero, and the status is `MOREC_STATUS_BUFFER_TOO_SMALL`.
+/// If `needed` is not null, it receives the number of bytes needed, with the zero. If `size` is smaller, the text is truncated,
+/// zero-terminated, and the status is `MOREC_STATUS_BUFFER_TOO_SMALL`.
 ///
 /// # Safety
 /// `buffer` is null or may be written to for `size` bytes; `needed` is null or may be written to.

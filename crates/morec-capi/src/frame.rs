@@ -14,30 +14,30 @@ use crate::status::CallError;
 pub enum MorecSpace {
     /// Unset; the call fails.
     Unknown = 0,
-    /// The world: `positions` are needed; `rotations` turn joints' axes into the world's.
+    /// The world: `positions` are required; `rotations` turn the joints' axes into the world's.
     World = 1,
-    /// The parent's frame: `rotations` are needed; `positions` take the place of the skeleton's offsets. A root's are in
-    /// the world. Needs a skeleton.
+    /// The parent's frame: `rotations` are required; `positions` replace the skeleton's offsets. A root's are in the world.
+    /// Requires a skeleton.
     Local = 2,
 }
 
-/// One performer's pose at one instant. Nothing of it is needed after the call.
+/// One performer's pose at one instant. Nothing of it is used after the call returns.
 ///
-/// A joint that is not seen at this instant has a position, in local space a rotation, that is NaN; in local space a
-/// position that is NaN stands for the skeleton's offset. Metres are best, but any one unit of length will do.
+/// A missing joint has a position of NaN, or in local space a rotation of NaN. In local space, a position of NaN means the
+/// skeleton's offset. Lengths may have any unit, the same in all frames; metres are best.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct MorecFrame {
     /// Set to `sizeof(MorecFrame)`.
     pub struct_size: usize,
-    /// Time of the frame, seconds on any clock that does not go back; at any rate, even or uneven. Late and duplicate frames
-    /// are left out; after a gap of more than half a second, or a step back by as much, the stream begins anew.
+    /// Time of the frame, seconds on any clock that does not go back, at any regular or irregular rate. Late and duplicate frames
+    /// are ignored; after a gap or a step back of more than 0.5 s, the stream starts again.
     pub time_secs: f64,
     /// Number of joints: that of the skeleton; `MOREC_ROLE_COUNT` for a stream of roles.
     pub joint_count: usize,
     /// `joint_count` times x, y, z, or null. For a stream of roles: in the order of `MorecRole`.
     pub positions: *const f64,
-    /// `joint_count` times x, y, z, w, or null; of any length but 0.
+    /// Quaternions: `joint_count` times x, y, z, w, of any length but 0; or null.
     pub rotations: *const f64,
     /// A `MorecSpace`.
     pub space: i32,

@@ -12,7 +12,7 @@ use crate::MorecStatus;
 use crate::status::CallError;
 use crate::stream::Stream;
 
-/// A loaded index: what recognition knows. It does not change; any number of threads may use it at once.
+/// A loaded index. It does not change; any number of threads may use it at once.
 pub struct MorecIndex(());
 
 /// A recogniser of one performer's motions.

@@ -14,9 +14,9 @@ use crate::status::{CallError, MorecStatus, guard};
 #[repr(i32)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MorecMethod {
-    /// Templates matched elastically, over the places of joints.
+    /// Templates of joint positions, matched elastically in time.
     Templates = 0,
-    /// The method of 2009, over the rotations of joints.
+    /// The method of 2009, on joint rotations.
     Svrdm = 1,
 }
 
@@ -28,16 +28,15 @@ pub struct MorecIndexFacts {
     pub struct_size: usize,
     /// Number of classes; they are numbered from 0.
     pub class_count: u32,
-    /// The parts of the body that recognition looks at: bit `r` for the `MorecRole` `r`. A stream that lacks some is
-    /// compared by the others.
+    /// Body parts that recognition uses: bit `r` for `MorecRole` `r`. If a stream lacks some, the others are compared.
     pub roles: u32,
-    /// Number of samples it learned from.
+    /// Number of training samples.
     pub sample_count: u64,
-    /// Comparisons of the stream a second.
+    /// Comparisons with the templates a second.
     pub tick_hz: f64,
-    /// Method of recognition, a `MorecMethod`. Later releases may add some. Not in the first version of this struct.
+    /// Method of recognition, a `MorecMethod`; later releases may add values. Not in the first version of this struct.
     pub method: i32,
-    /// 1 if frames must say how joints are turned, 0 if where they are is enough. Not in the first version of this struct.
+    /// 1 if frames must have joint rotations, 0 if positions are enough. Not in the first version of this struct.
     pub needs_rotations: u32,
 }
 
@@ -49,7 +48,7 @@ unsafe impl Versioned for MorecIndexFacts {
 
 /// Loads an index from a file that `morec train` wrote. `path` is UTF-8.
 ///
-/// Puts the handle into `*index`, to be given back with `morec_index_destroy`.
+/// Writes the handle to `*index`; release it with `morec_index_destroy`.
 ///
 /// # Safety
 /// `path` is null or ends with a zero; `index` is null or may be written to.
@@ -69,7 +68,7 @@ pub unsafe extern "C" fn morec_index_load(
     })
 }
 
-/// Loads an index from the bytes of such a file. They are not needed after the call.
+/// Loads an index from the bytes of such a file. The bytes are not used after the call returns.
 ///
 /// # Safety
 /// `bytes` is null or points to `size` bytes; `index` is null or may be written to.
@@ -100,7 +99,7 @@ pub(crate) fn load(path: &Path) -> Result<MotionIndex, CallError> {
         .map_err(|error| CallError::new(MorecStatus::BadIndex, format!("{shown}: {error}")))
 }
 
-/// Gives an index back. Recognisers that were made of it go on.
+/// Releases an index. Recognisers made from it stay valid.
 #[unsafe(no_mangle)]
 pub extern "C" fn morec_index_destroy(index: *mut MorecIndex) -> MorecStatus {
     guard(|| handles::take_back(index.cast_const()))
@@ -143,9 +142,8 @@ pub unsafe extern "C" fn morec_index_facts(
 
 /// Writes the name of class `class_id` and a zero into the `size` bytes at `buffer`. UTF-8.
 ///
-/// `*needed`, if `needed` is not null, becomes the number of bytes that takes, with the zero. If `size` is less, the
-/// characters that fit are written with a zero, and the status is `MOREC_STATUS_BUFFER_TOO_SMALL`. With a `size` of 0,
-/// `buffer` may be null.
+/// If `needed` is not null, it receives the number of bytes needed, with the zero. If `size` is smaller, the text is truncated,
+/// zero-terminated, and the status is `MOREC_STATUS_BUFFER_TOO_SMALL`. With a `size` of 0, `buffer` may be null.
 ///
 /// # Safety
 /// `buffer` is null or may be written to for `size` bytes; `needed` is null or may be written to.

@@ -14,17 +14,18 @@ use crate::status::{CallError, MorecStatus, guard};
 use crate::stream::Stream;
 use crate::words;
 
-/// Say what seems to be under way, too: starts, updates and cancellations beside the ends.
+/// Also report motions before they end: events of the phases start, update and cancel.
 pub const MOREC_TENTATIVE: u32 = 1;
 
-/// Anyone performs: the bound of the score is never raised. For hands, tracked points and older indexes: more is accepted from the first
-/// frame, not only once the performer's motions show somebody unlike the teacher.
+/// Any performer: the score threshold is never raised. For hands, tracked points and older indexes, matching is relaxed from the
+/// first frame, not only after motions of a performer unlike the training subject.
 pub const MOREC_PERFORMER_ANYONE: u32 = 2;
 
-/// The person who taught performs: the bound of the score is raised from the first frame by the scores of the teacher's samples.
+/// The performer is the training subject: the score threshold is raised from the first frame, by the scores of the training
+/// samples.
 pub const MOREC_PERFORMER_TEACHER: u32 = 4;
 
-/// Each repetition of an activity is an event of its own.
+/// Report each repetition of an activity as an event of its own.
 pub const MOREC_EACH_REPETITION: u32 = 8;
 
 /// Say how far from the nearest sample each gesture that ends, and each repetition that is an event, was.
@@ -36,23 +37,23 @@ pub const MOREC_DEVIATION: u32 = 16;
 pub struct MorecOptions {
     /// Set to `sizeof(MorecOptions)`.
     pub struct_size: usize,
-    /// A `MorecHandedness`; must be said.
+    /// A `MorecHandedness`; required.
     pub handedness: i32,
     /// A `MorecUpAxis`.
     pub up_axis: i32,
-    /// The stream's joints; null for a stream of roles, whose joint `r` plays `MorecRole` `r`.
+    /// The stream's joints; null for a stream of roles, in which joint `r` has the `MorecRole` `r`.
     pub skeleton: *const MorecSkeleton,
-    /// For a stream of roles: bit `r` for each `MorecRole` `r` that it shows; 0 for all.
+    /// For a stream of roles: bit `r` for each `MorecRole` `r` that it contains; 0 for all.
     pub roles: u32,
     /// `MOREC_TENTATIVE`, `MOREC_EACH_REPETITION`, `MOREC_DEVIATION`, and one of `MOREC_PERFORMER_ANYONE` and `MOREC_PERFORMER_TEACHER`; or 0.
     pub flags: u32,
     /// Events that can wait to be polled, 128 to 1048576; 0 for 256. Memory is taken for as many.
     pub event_capacity: usize,
-    /// A motion of the same class that ends less than this after the one before it is not reported, but counted. 0: every
-    /// motion is reported once.
+    /// Least time between two reports of the same class, seconds; suppressed motions are counted. 0: every motion is reported
+    /// once.
     pub refractory_secs: f64,
-    /// Sensitivity: false alarms a minute that background motion may raise, as in training, 0.1 strict … 1 generous.
-    /// 0: as trained. (Not in the first version of this struct.)
+    /// Sensitivity: accepted false alarms a minute in background motion; 0.1 is strict, 1 is generous. 0: as trained. (Not in the
+    /// first version of this struct.)
     pub sensitivity: f64,
 }
 
@@ -62,7 +63,7 @@ unsafe impl Versioned for MorecOptions {
     const FIRST_SIZE: usize = std::mem::offset_of!(Self, sensitivity);
 }
 
-/// Counts of a recogniser since it was made or reset.
+/// Counts of a recogniser since it was created or reset.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MorecStats {
@@ -70,15 +71,15 @@ pub struct MorecStats {
     pub struct_size: usize,
     /// Frames taken.
     pub frames: u64,
-    /// Frames refused because events waited to be polled (`MOREC_STATUS_QUEUE_FULL`).
+    /// Frames refused because the event queue was full (`MOREC_STATUS_QUEUE_FULL`).
     pub refused_frames: u64,
     /// Events produced so far, polled or queued.
     pub events: u64,
-    /// Events for which there was no room in the queue. Frames are refused before that happens: 0.
+    /// Events lost because the queue was full. Always 0, because frames are refused before that.
     pub lost_events: u64,
     /// Motions not reported because of `refractory_secs`.
     pub suppressed_motions: u64,
-    /// From the end of a motion to its event at the earliest, on the clock of the frames.
+    /// Shortest time from the end of a motion to its event, seconds on the clock of the frames.
     pub latency_secs: f64,
 }
 
@@ -88,8 +89,8 @@ unsafe impl Versioned for MorecStats {
     const FIRST_SIZE: usize = size_of::<Self>();
 }
 
-/// Makes a recogniser of one performer's motions and puts its handle into `*recognizer`, to be given back with
-/// `morec_recognizer_destroy`. Takes memory; may take some milliseconds.
+/// Creates a recogniser for one performer's motions and writes its handle to `*recognizer`; release it with
+/// `morec_recognizer_destroy`. Allocates memory and may take some milliseconds.
 ///
 /// # Safety
 /// `options` is null or as its fields say; `recognizer` is null or may be written to.
@@ -163,13 +164,13 @@ fn stream_options(c: &MorecOptions) -> Result<StreamOptions, CallError> {
     })
 }
 
-/// Gives a recogniser back. Events that wait are gone. A call that is under way on another thread ends well.
+/// Releases a recogniser and discards its queued events. A call running on another thread completes safely.
 #[unsafe(no_mangle)]
 pub extern "C" fn morec_recognizer_destroy(recognizer: *mut MorecRecognizer) -> MorecStatus {
     guard(|| handles::take_back(recognizer.cast_const()))
 }
 
-/// Puts the joint that plays the `MorecRole` `role` into `*joint`, or −1 if none does.
+/// Writes the number of the joint with the `MorecRole` `role` to `*joint`, or −1 if no joint has it.
 ///
 /// # Safety
 /// `joint` is null or may be written to.
@@ -194,11 +195,10 @@ pub unsafe extern "C" fn morec_recognizer_joint_of_role(
     })
 }
 
-/// Takes a frame. What it settles waits to be polled. Takes no memory after the first frame, unless it fails, or a second of frames shows
-/// other joints than were declared.
+/// Processes a frame and queues the events that it causes. Allocates no memory after the first frame, unless it fails or a second
+/// of frames has other joints than declared.
 ///
-/// Refused with `MOREC_STATUS_QUEUE_FULL` while too many events wait for there to be room for what it settles:
-/// nothing is ever lost.
+/// Refused with `MOREC_STATUS_QUEUE_FULL` if the queue might not have room for these events, so that none is ever lost.
 ///
 /// # Safety
 /// `frame` is null or as its fields say.
@@ -215,10 +215,11 @@ pub unsafe extern "C" fn morec_recognizer_push(
     })
 }
 
-/// Moves events that wait into the `capacity` places at `events`, the oldest first, and says in `*count` how many.
+/// Moves up to `capacity` queued events to `events`, the oldest first, and writes their number to `*count`.
 ///
-/// `event_size` is `sizeof(MorecEvent)`: how far the places lie apart. If `*count` is `capacity`, more may wait. With a
-/// `capacity` of 0, `events` may be null, and the status is `MOREC_STATUS_BUFFER_TOO_SMALL` if any wait.
+/// `event_size` is `sizeof(MorecEvent)`, the distance of the elements in bytes. If `*count` equals `capacity`, more events may be
+/// queued. With a `capacity` of 0, `events` may be null, and the status is `MOREC_STATUS_BUFFER_TOO_SMALL` if any event is
+/// queued.
 ///
 /// # Safety
 /// `events` is null or may be written to for `capacity` times `event_size` bytes; `count` is null or may be written to.
@@ -252,15 +253,15 @@ pub unsafe extern "C" fn morec_recognizer_poll(
     })
 }
 
-/// Ends the stream: what its last moments hold waits to be polled. The next frame begins a new stream.
+/// Ends the stream and queues its last events. The next frame starts a new stream.
 ///
-/// Refused with `MOREC_STATUS_QUEUE_FULL` as a frame would be.
+/// Refused with `MOREC_STATUS_QUEUE_FULL` under the same condition as a frame.
 #[unsafe(no_mangle)]
 pub extern "C" fn morec_recognizer_finish(recognizer: *mut MorecRecognizer) -> MorecStatus {
     guard(|| handles::find(recognizer.cast_const())?.finish())
 }
 
-/// Makes the recogniser as it was when it was made: the stream so far, events that wait, and counts are forgotten.
+/// Resets the recogniser to its initial state: discards the stream so far, queued events and counts.
 #[unsafe(no_mangle)]
 pub extern "C" fn morec_recognizer_reset(recognizer: *mut MorecRecognizer) -> MorecStatus {
     guard(|| handles::find(recognizer.cast_const())?.reset())

@@ -16,7 +16,7 @@ use crate::memory::{self, Versioned};
 use crate::status::CallError;
 use crate::words;
 
-/// The joints of a stream's skeleton. Everything is copied; nothing is needed after the call it is given to.
+/// The joints of a stream's skeleton. Everything is copied; nothing is used after the call returns.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct MorecSkeleton {
@@ -24,16 +24,16 @@ pub struct MorecSkeleton {
     pub struct_size: usize,
     /// Number of joints, 1 to 4096.
     pub joint_count: usize,
-    /// `joint_count` numbers: the joint's parent, which must come before it, or −1 for a root.
+    /// `joint_count` numbers: each joint's parent, which must come before it, or −1 for a root.
     pub parents: *const i32,
-    /// `joint_count` names, UTF-8, by which roles are found if they are not given; or null. Of joints without parents they may
-    /// be landmarks, and points of hands.
+    /// `joint_count` names, UTF-8, or null. If `roles` is null, roles are inferred from them. Joints without parents may be
+    /// landmarks or points of hands.
     pub names: *const *const c_char,
-    /// `joint_count` times x, y, z: where the joint is in its parent's frame; or null if every frame says it.
+    /// `joint_count` times x, y, z: the joint's position in its parent's frame; or null if every frame has positions.
     pub offsets: *const f64,
-    /// `joint_count` times a `MorecRole`, `MOREC_ROLE_NONE` for most; or null: found by the tree, then the names. Points of hands
-    /// (`left_palm`, `left_thumb_1` … `right_little_tip`), points of a custom skeleton and `face` have the numbers from `MOREC_ROLE_COUNT`
-    /// to below `MOREC_POINT_COUNT`, which `morec_role_from_name` tells.
+    /// `joint_count` values of `MorecRole`, `MOREC_ROLE_NONE` for most joints; or null: inferred from the tree and the names.
+    /// Points of hands (`left_palm`, `left_thumb_1` … `right_little_tip`), points of a custom skeleton and `face` have the
+    /// numbers from `MOREC_ROLE_COUNT` to below `MOREC_POINT_COUNT`; see `morec_role_from_name`.
     pub roles: *const i32,
 }
 

@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use std::ffi::{CStr, CString, c_char};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// Result of a call. Numbers stay what they are; later versions may add some.
+/// Result of a call. Values never change; later versions may add new ones.
 #[repr(i32)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MorecStatus {
@@ -13,27 +13,27 @@ pub enum MorecStatus {
     Ok = 0,
     /// A pointer that must point to something is null.
     NullPointer = 1,
-    /// An invalid handle: never given, of another kind, or destroyed.
+    /// An invalid handle: never created, of another type, or destroyed.
     BadHandle = 2,
     /// Invalid value; no change.
     InvalidValue = 3,
-    /// There is not enough room for the answer; the function's documentation says where the room needed is returned.
+    /// The buffer is too small for the answer; the function returns the needed size as documented there.
     BufferTooSmall = 4,
-    /// Another thread is using this recogniser just now; nothing was changed.
+    /// Another thread is using this recogniser; nothing was changed.
     Busy = 5,
-    /// Events wait to be polled, and there is no room for more; the frame was not taken. Poll, and push it again.
+    /// The event queue is full, so the frame was not processed. Poll events, then push the frame again.
     QueueFull = 6,
     /// A file cannot be read.
     File = 7,
-    /// Bytes are not an index that this release can read.
+    /// The bytes are not an index that this release can read.
     BadIndex = 8,
-    /// The index and what the stream shows of a body have no bone in common.
+    /// The index and the stream have no bone in common.
     NothingInCommon = 9,
-    /// Not now: another call must come first.
+    /// Another call must come first.
     WrongOrder = 10,
     /// A struct is smaller than its first version, or has fields set that this release does not know.
     StructSize = 11,
-    /// A fault in morec itself. The handle should be destroyed; please report it.
+    /// An internal error of morec. Destroy the handle, and please report the error.
     Internal = 12,
 }
 
@@ -132,15 +132,15 @@ pub(crate) fn guard(call: impl FnOnce() -> Result<(), CallError>) -> MorecStatus
     }
 }
 
-/// Message of the last call on this thread that failed, a sentence; empty if none has failed yet.
-/// UTF-8. The text stays where it is until the next call on this thread that does not succeed. Never null.
+/// Message of the last failed call on this thread, one sentence; empty if no call has failed.
+/// UTF-8. The text is valid until the next failing call on this thread. Never null.
 #[unsafe(no_mangle)]
 pub extern "C" fn morec_last_error() -> *const c_char {
     let text = LAST.try_with(|last| last.try_borrow().map_or(c"".as_ptr(), |text| text.as_ptr()));
     text.unwrap_or(c"".as_ptr())
 }
 
-/// Meaning of a status in a few words; null for a number that is no status. The text lives for ever.
+/// Meaning of a status in a few words; null if the number is not a status. The text is valid for ever.
 #[unsafe(no_mangle)]
 pub extern "C" fn morec_status_text(status: i32) -> *const c_char {
     MorecStatus::of_number(status).map_or(std::ptr::null(), |status| status.text().as_ptr())

@@ -6,13 +6,13 @@ use morec::roles::Role;
 
 use crate::memory;
 
-/// A part of the body, played by the joint at its near end: the thigh by the hip joint, the shin by the knee, the hand
-/// by the wrist. Torso is the first joint of the spine above the hips.
+/// A body part, named for the joint at its near end: the hip joint has the role thigh, the knee shin, the wrist hand. Torso is
+/// the first joint of the spine above the hips.
 #[repr(i32)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[allow(missing_docs)] // The names say it all.
 pub enum MorecRole {
-    /// No part that recognition knows.
+    /// No role: a joint that recognition does not use.
     None = -1,
     Hips = 0,
     LeftThigh = 1,
@@ -34,10 +34,10 @@ pub enum MorecRole {
     RightHand = 17,
 }
 
-/// Number of parts of the body; they are numbered from 0.
+/// Number of body parts; they are numbered from 0.
 pub const MOREC_ROLE_COUNT: u32 = 18;
 
-/// Number of parts of the body, points of both hands, points of a custom skeleton and `face` together; they are numbered from 0.
+/// Number of body parts, points of both hands, points of a custom skeleton and `face` together; they are numbered from 0.
 pub const MOREC_POINT_COUNT: u32 = 85;
 
 const _: () = assert!(MOREC_POINT_COUNT as usize == Role::COUNT);
@@ -141,20 +141,22 @@ pub(crate) fn role(number: i32) -> Option<Role> {
         .and_then(|index| Role::ALL.get(index).copied())
 }
 
-/// Version of the library, as in `0.1.0`. The text stays for ever.
+/// Version of the library, such as `0.1.0`. The text is valid for ever.
 #[unsafe(no_mangle)]
 pub extern "C" fn morec_version() -> *const c_char {
     const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), "\0");
     VERSION.as_ptr().cast()
 }
 
-/// The name of a `MorecRole` or a point of a hand or of a custom skeleton, as in `left_forearm`, `right_index_tip` and `point_1`; null for a number without a name. The text stays for ever.
+/// The name of a `MorecRole` or a point of a hand or of a custom skeleton, as in `left_forearm`, `right_index_tip` and `point_1`;
+/// null for a number without a name. The text is valid for ever.
 #[unsafe(no_mangle)]
 pub extern "C" fn morec_role_name(role: i32) -> *const c_char {
     self::role(role).map_or(std::ptr::null(), |role| NAMES[role.index()].as_ptr())
 }
 
-/// The `MorecRole` of this name, or the number of a point of a hand or of a custom skeleton; `MOREC_ROLE_NONE` if there is none, or `name` is null.
+/// The `MorecRole` of this name, or the number of a point of a hand or of a custom skeleton; `MOREC_ROLE_NONE` if there is no
+/// such name, or `name` is null.
 ///
 /// # Safety
 /// `name` is null or ends with a zero.

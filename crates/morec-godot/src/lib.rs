@@ -25,36 +25,36 @@ unsafe impl ExtensionLibrary for MorecExtension {}
 #[derive(GodotConvert, Var, Export, Default, Clone, Copy)]
 #[godot(via = GString)]
 pub enum ExpectedPerformer {
-    /// As the performer's motions show.
+    /// Decided by the performer's motions.
     #[default]
     Auto,
-    /// The person who taught.
+    /// The training subject.
     Teacher,
     /// Anyone, from the first frame.
     Anyone,
 }
 
-/// Recognises the motions of an index in what a skeleton or XR trackers show, frame by frame, and emits signals.
+/// Recognises motions of a skeleton or of XR trackers, frame by frame, with an index, and emits signals.
 #[derive(GodotClass)]
 #[class(base = Node, init, rename = MorecRecognizer)]
 pub struct RecognizerNode {
-    /// The index, as `morec train` and the studio write it.
+    /// The index file, written by `morec train` or the studio.
     #[export(file = "*.index")]
     index_file: GString,
-    /// The skeleton whose motions are recognised. Without one, the trackers' are.
+    /// The skeleton whose motions are recognised. If not set, the trackers are used.
     #[export]
     skeleton: Option<Gd<Skeleton3D>>,
     /// Names of XR trackers of one performer: of a body, or of one or both hands.
     #[export]
     #[init(val = trackers::usual())]
     trackers: PackedStringArray,
-    /// False alarms a minute that background motion may raise: 0.1 is strict, 1 is generous; 0 as trained.
+    /// Accepted false alarms a minute in background motion: 0.1 is strict, 1 is generous; 0: as trained.
     #[export]
     sensitivity: f64,
     /// Who performs: auto, teacher or anyone.
     #[export]
     performer: ExpectedPerformer,
-    /// Also signal what seems to be under way: `motion_started` and `motion_cancelled`.
+    /// Also signal motions before they end: `motion_started` and `motion_cancelled`.
     #[export]
     tentative: bool,
     /// Also signal each repetition of an activity: `motion_repeated`.
@@ -66,7 +66,7 @@ pub struct RecognizerNode {
     /// A motion of the same class that ends less than this after the one before it is not signalled, seconds.
     #[export]
     refractory_secs: f64,
-    /// Bones of the skeleton that play parts of the body, where names do not tell: lines of a role, a tab and the bone's name.
+    /// Bones of body parts that the names do not identify: lines of a role, a tab and the bone's name.
     #[export(multiline)]
     roles: GString,
     /// Bones of the skeleton in the order in which joints come, parents first.
@@ -85,11 +85,12 @@ impl RecognizerNode {
     #[signal]
     fn motion_event(event: VarDictionary);
 
-    /// A motion seems to be under way.
+    /// A motion has probably started.
     #[signal]
     fn motion_started(name: GString, score: f64);
 
-    /// A motion ended: when it began and ended, in seconds since the node was ready. `repetitions` is 0 but for activities that repeat.
+    /// A motion has ended; start and stop are seconds since the node was ready. `repetitions` is 0 except for repeated
+    /// activities.
     #[signal]
     fn motion_ended(name: GString, score: f64, start_secs: f64, stop_secs: f64, repetitions: i64);
 
@@ -97,18 +98,18 @@ impl RecognizerNode {
     #[signal]
     fn motion_cancelled(name: GString);
 
-    /// One repetition of an activity, which still goes on.
+    /// A repetition of an activity is complete; the activity continues.
     #[signal]
     fn motion_repeated(name: GString, number: i64);
 
-    /// What is wrong with what the skeleton or the trackers showed in the last seconds, a sentence each, the gravest first.
+    /// Problems of the skeleton's or the trackers' poses in the last seconds, one sentence each, the most severe first.
     #[func]
     fn diagnosis(&self) -> PackedStringArray {
         let found = self.stream.iter().flat_map(PerformerStream::findings);
         found.map(|text| GString::from(&text)).collect()
     }
 
-    /// Reads the index and begins anew with the properties as they are; false, with an error in the log, if that cannot be.
+    /// Reads the index and starts again with the current properties. Returns false, with an error in the log, if that fails.
     #[func]
     fn start(&mut self) -> bool {
         let bytes = FileAccess::get_file_as_bytes(&self.index_file);

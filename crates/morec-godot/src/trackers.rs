@@ -42,7 +42,7 @@ pub fn usual() -> PackedStringArray {
     NAMES.iter().map(|name| GString::from(*name)).collect()
 }
 
-/// What the trackers of these names show now; nothing of those that are lost.
+/// The current poses of the trackers with these names; lost trackers are left out.
 pub fn pose(names: &PackedStringArray) -> KeyPose {
     let mut pose = KeyPose::default();
     let server = XrServer::singleton();
@@ -88,7 +88,7 @@ fn of_hand(tracker: &Gd<XrHandTracker>, pose: &mut KeyPose) {
     }
 }
 
-/// A place in the engine's units, which are morec's: metres, Y up, right-handed.
+/// A position in the engine's units, which are morec's: metres, Y up, right-handed.
 pub fn vector(at: Vector3) -> Vec3 {
     Vec3::new(f64::from(at.x), f64::from(at.y), f64::from(at.z))
 }

@@ -43,7 +43,7 @@ pub unsafe extern "C" fn mrInit(szClassifierFile: *const c_char) -> bool {
     })
 }
 
-/// Ends whatever goes on and lets go of everything. Never fails; the speed of the source is 1 again.
+/// Ends recognition and releases everything. Never fails; the speed of sources is reset to 1.
 #[unsafe(no_mangle)]
 #[allow(non_snake_case)]
 pub extern "C" fn mrTerminate() {
@@ -53,11 +53,11 @@ pub extern "C" fn mrTerminate() {
     });
 }
 
-/// Takes the clip in a file (BVH; AMC with its ASF beside it) as the source of motion. Of several people in one file,
+/// Sets the clip in a file (BVH; AMC with its ASF in the same folder) as the source of motion; if the file has several people,
 /// the first. `szSourceFile` is UTF-8.
 ///
-/// It is played frame by frame, in the time it took to perform. It begins when recognition does, so that nothing of it
-/// is missed.
+/// The clip is played frame by frame at the speed of the performance. It starts together with recognition, so that no frame is
+/// missed.
 ///
 /// # Safety
 /// `szSourceFile` is null or ends with a zero.
@@ -71,22 +71,22 @@ pub unsafe extern "C" fn mrSetDataSource(szSourceFile: *const c_char) -> bool {
     })
 }
 
-/// Sets how fast sources are played from now on, also while they are: 1 as they were performed, 2 twice as fast, infinity as
-/// fast as recognition goes. Not one of the eight.
+/// Sets the speed of sources, also while they are playing: 1 as performed, 2 twice as fast, infinity as fast as recognition can.
+/// Not one of the eight functions of the thesis.
 #[unsafe(no_mangle)]
 #[allow(non_snake_case)]
 pub extern "C" fn mrSetDataSourceSpeed(speed: f64) -> bool {
     done(|| state().set_speed(speed))
 }
 
-/// Stops the source: no further frame comes from it. What has come is still recognised.
+/// Stops the source. Frames that it has already sent are still recognised.
 #[unsafe(no_mangle)]
 #[allow(non_snake_case)]
 pub extern "C" fn mrStopDataSource() -> bool {
     done(|| state().stop_source())
 }
 
-/// True if nothing more will come from the source: it has played to its end or was stopped, or there is none.
+/// True if the source will send no more frames: it has ended, was stopped, or is not set.
 #[unsafe(no_mangle)]
 #[allow(non_snake_case)]
 pub extern "C" fn mrIsDataSourceDepleted() -> bool {
@@ -98,25 +98,25 @@ pub extern "C" fn mrIsDataSourceDepleted() -> bool {
     depleted
 }
 
-/// Starts recognition of the source, in threads of its own; a source that was played before begins anew.
+/// Starts recognition of the source, in separate threads; a source that was played before starts again.
 #[unsafe(no_mangle)]
 #[allow(non_snake_case)]
 pub extern "C" fn mrStart() -> bool {
     done(|| state().start())
 }
 
-/// Stops recognition, once everything that has come from the source is recognised. The solution remains.
+/// Stops recognition after all frames sent by the source have been recognised. The solution is kept.
 #[unsafe(no_mangle)]
 #[allow(non_snake_case)]
 pub extern "C" fn mrStop() -> bool {
     done(|| state().stop())
 }
 
-/// Gives the solution so far: the last motions that were recognised since `mrStart`, at most `*nSegments`, in the order
-/// of time. `*nSegments` becomes their number.
+/// Returns the solution so far: the last motions recognised since `mrStart`, at most `*nSegments`, in order of time. Sets
+/// `*nSegments` to their number.
 ///
-/// A motion stays in the solution: `number` shows which are new. Of more than 16384 the last are kept. If
-/// `pSegments` is null, `*nSegments` becomes the number of all that are kept.
+/// Motions stay in the solution; `number` shows which are new. At most the last 16384 motions are kept. If `pSegments` is null,
+/// `*nSegments` is set to the number of all kept motions.
 ///
 /// # Safety
 /// `pSegments` is null or has room for `*nSegments`; `nSegments` is null or may be read and written.

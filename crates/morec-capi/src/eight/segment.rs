@@ -5,7 +5,7 @@ use std::ffi::c_char;
 /// Bytes for the name of a class, with the zero at its end; longer names are cut.
 pub(crate) const NAME_BYTES: usize = 64;
 
-/// A motion that was recognised: a segment of the stream, and what it shows.
+/// A recognised motion: a segment of the stream and its class.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MotionSeg {
@@ -13,11 +13,11 @@ pub struct MotionSeg {
     pub number: u64,
     /// Its class in the index, from 0.
     pub class_id: u32,
-    /// Frame of the clip at which it began.
+    /// First frame of the motion in the clip.
     pub start_frame: u32,
-    /// Frame at which it had ended.
+    /// Frame of the clip after the motion's last frame.
     pub stop_frame: u32,
-    /// Bytes of `class_name` without the zero.
+    /// Length of `class_name` in bytes, without the zero.
     pub class_name_bytes: u32,
     /// Start, seconds from the beginning of the clip.
     pub start_secs: f64,
@@ -26,6 +26,6 @@ pub struct MotionSeg {
     /// Probability that the detection is right, 0 to 1. The lowest accepted score is 0.05 to 0.44, depending on the index. For
     /// held poses and indexes without calibration (svrdm, older files) it is the similarity to a sample instead.
     pub confidence: f64,
-    /// The name of its class, UTF-8, with a zero at its end; cut if it is longer.
+    /// Name of its class, UTF-8, zero-terminated; truncated if it is longer.
     pub class_name: [c_char; 64],
 }

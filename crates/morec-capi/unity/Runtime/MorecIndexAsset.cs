@@ -7,7 +7,7 @@ namespace Morec
     public sealed class MorecIndexAsset : ScriptableObject
     {
         [HideInInspector] public byte[] bytes;
-        /// <summary>Names of the classes, to be read in the inspector.</summary>
+        /// <summary>Names of the classes, shown in the inspector.</summary>
         public string[] classes;
     }
 }

@@ -10,20 +10,20 @@ namespace Morec
     public struct RecognisedMotion
     {
         public string name;
-        /// <summary>Its start, updates and end share it.</summary>
+        /// <summary>Number of the motion, shared by its start, updates and end.</summary>
         public ulong number;
         /// <summary>Probability that the detection is right, 0 to 1. The lowest accepted score is 0.05 to 0.44, depending on the
         /// index. For held poses and indexes without calibration (svrdm, older files) it is the similarity to a sample instead.
         /// Of a tentative event: how near what was seen so far is to the beginning of a sample, 0 to 1.</summary>
         public double score;
         public double progress, startSecs, stopSecs;
-        /// <summary>Time of the frame that settled it, and the wall clock then: seconds since 1970.</summary>
+        /// <summary>Time of the frame that caused the event, and the wall clock then, seconds since 1970.</summary>
         public double reportedSecs, wallSecs;
         /// <summary>Number of the event, from 1.</summary>
         public ulong sequence;
-        /// <summary>Repetitions of an activity so far; 0 where nothing is counted.</summary>
+        /// <summary>Repetitions of an activity so far; 0 if nothing is counted.</summary>
         public uint repetitions;
-        /// <summary>Duration of one repetition, as it was last.</summary>
+        /// <summary>Duration of the last repetition, seconds.</summary>
         public double periodSecs;
         /// <summary>With Deviation: mean angle off the nearest sample, degrees; -1 where nothing is compared.</summary>
         public double offDegrees;
@@ -45,9 +45,9 @@ namespace Morec
         public Animator animator;
         [Tooltip("Instead of a humanoid: a transform for each part of the body, in the order of MorecRole; empty where there is none.")]
         public Transform[] joints = new Transform[0];
-        [Tooltip("False alarms a minute that background motion may raise, 0.1 strict to 1 generous; 0 as trained.")]
+        [Tooltip("Accepted false alarms a minute in background motion: 0.1 is strict, 1 is generous; 0: as trained.")]
         [Range(0, 1)] public float sensitivity;
-        [Tooltip("The expected performer: whoever it is, the person who taught, or anyone.")]
+        [Tooltip("The expected performer: decided automatically, the training subject, or anyone.")]
         public Performer performer;
         [Tooltip("Also report what seems to be under way: onStart, onUpdate, onCancel.")]
         public bool tentative;
@@ -119,7 +119,7 @@ namespace Morec
             opened = null;
         }
 
-        /// <summary>Finds the transforms; bit `r` for each role `r` that has one.</summary>
+        /// <summary>Finds the transforms. Returns bit `r` for each role `r` with a transform.</summary>
         uint FindParts()
         {
             var humanoid = animator != null ? animator : GetComponent<Animator>();
@@ -133,7 +133,7 @@ namespace Morec
             return roles;
         }
 
-        /// <summary>After animation and tracking have moved the joints.</summary>
+        /// <summary>Runs after animation and tracking have moved the joints.</summary>
         void LateUpdate()
         {
             if (stream == null) return;

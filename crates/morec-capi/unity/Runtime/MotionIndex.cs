@@ -20,13 +20,13 @@ namespace Morec
         }
     }
 
-    /// <summary>What recognition knows, from a file that `morec train` or the studio wrote. Any number of threads may use it.</summary>
+    /// <summary>A trained index, from a file written by `morec train` or the studio. Any number of threads may use it.</summary>
     public sealed class MotionIndex : IDisposable
     {
         internal IntPtr Handle;
         readonly string[] classes;
 
-        /// <summary>Opens the bytes of an index file. Throws MorecException if they are none.</summary>
+        /// <summary>Reads the bytes of an index file. Throws MorecException if they are not an index.</summary>
         public MotionIndex(byte[] bytes)
         {
             MorecException.Check(Native.morec_index_from_memory(bytes, (UIntPtr)bytes.Length, out Handle));
@@ -36,7 +36,7 @@ namespace Morec
             for (uint i = 0; i < classes.Length; i++) classes[i] = NameOf(i);
         }
 
-        /// <summary>Names of the classes; events name a class by its place here.</summary>
+        /// <summary>Names of the classes; the class number of an event is an index into this list.</summary>
         public string[] Classes { get { return (string[])classes.Clone(); } }
 
         /// <summary>Name of a class.</summary>
@@ -51,7 +51,7 @@ namespace Morec
             return Encoding.UTF8.GetString(bytes, 0, bytes.Length - 1);
         }
 
-        /// <summary>Streams that were made of it go on.</summary>
+        /// <summary>Streams made from this index stay valid.</summary>
         public void Dispose()
         {
             if (Handle != IntPtr.Zero) Native.morec_index_destroy(Handle);
@@ -61,7 +61,7 @@ namespace Morec
 
     static class Text
     {
-        /// <summary>A text of the library, UTF-8 with a zero at its end.</summary>
+        /// <summary>A text of the library, UTF-8, zero-terminated.</summary>
         internal static string Of(IntPtr text)
         {
             var count = 0;

@@ -4,20 +4,20 @@ using System.Text;
 
 namespace Morec
 {
-    /// <summary>The expected performer: whoever it is, the person who taught, or anyone.</summary>
+    /// <summary>The expected performer: decided automatically, the training subject, or anyone.</summary>
     public enum Performer { Auto, Teacher, Anyone }
 
     /// <summary>Options of a stream.</summary>
     public struct StreamOptions
     {
-        /// <summary>True for axes as Unity's; false for right-handed ones.</summary>
+        /// <summary>True for left-handed axes like Unity's; false for right-handed axes.</summary>
         public bool leftHanded;
-        /// <summary>False alarms a minute that background motion may raise, 0.1 strict to 1 generous; 0 as trained.</summary>
+        /// <summary>Accepted false alarms a minute in background motion: 0.1 is strict, 1 is generous; 0: as trained.</summary>
         public double sensitivity;
         public Performer performer;
         /// <summary>Also what seems to be under way: starts, updates and cancellations.</summary>
         public bool tentative;
-        /// <summary>Each repetition of an activity is an event of its own.</summary>
+        /// <summary>Report each repetition of an activity as an event of its own.</summary>
         public bool eachRepetition;
         /// <summary>Say how far from the nearest sample each gesture that ends, and each such repetition, was.</summary>
         public bool deviation;
@@ -37,13 +37,13 @@ namespace Morec
         }
     }
 
-    /// <summary>One performer's motions, recognised as they come. Y is up; any one unit of length will do.</summary>
+    /// <summary>Recognises one performer's motions live. Y is up; lengths may have any unit.</summary>
     public sealed class MotionStream : IDisposable
     {
-        /// <summary>Parts of the body; they are numbered as MorecRole.</summary>
+        /// <summary>Number of body parts, numbered as in MorecRole.</summary>
         public const int Roles = Native.MOREC_ROLE_COUNT;
 
-        /// <summary>x, y, z of each role; NaN where it is not seen. Filled in before Push.</summary>
+        /// <summary>x, y, z of each role; NaN if it is missing. Fill this in before calling Push.</summary>
         public readonly double[] positions = new double[3 * Roles];
 
         IntPtr handle;
@@ -74,7 +74,8 @@ namespace Morec
             };
         }
 
-        /// <summary>Takes the pose in `positions`; each event that it settles is given to `said`. Allocates nothing.</summary>
+        /// <summary>Processes the pose in `positions` and passes each event that it causes to `said`. Allocates no
+        /// memory.</summary>
         public void Push(double timeSecs, Action<MorecEvent> said)
         {
             frame.time_secs = timeSecs;
@@ -82,7 +83,7 @@ namespace Morec
             Poll(said);
         }
 
-        /// <summary>Ends the stream: what its last moments hold. The next pose begins a new one.</summary>
+        /// <summary>Ends the stream and passes on its last events. The next pose starts a new stream.</summary>
         public void Finish(Action<MorecEvent> said)
         {
             MorecException.Check(Native.morec_recognizer_finish(handle));
