@@ -151,11 +151,14 @@ pub(crate) fn find(conn: &Connection, name: &str) -> Result<ClipInfo, DbError> {
 }
 
 impl MotionDb {
-    /// The clips of a filter, by name, where a filter that names what is not there is an error.
+    /// The clips that match a filter, sorted by name. Unlike [`clips`](Self::clips), a filter that matches nothing is an error,
+    /// so that
+    /// a misspelt name is reported.
     ///
     /// # Errors
-    /// [`DbError::Unknown`] with the nearest names: no clip has such a name or matches the pattern, no clip shows this
-    /// person or has this tag, there is no such class.
+    /// [`DbError::Unknown`] with the nearest names: no clip has the name or matches the pattern, no clip shows the person or has
+    /// the
+    /// tag, or the class does not exist.
     pub fn find_clips(&self, filter: &ClipFilter) -> Result<Vec<ClipInfo>, DbError> {
         if let Some(class) = &filter.class {
             self.need_class(class)?;
@@ -180,12 +183,20 @@ impl MotionDb {
         self.clips(filter)
     }
 
-    /// The clips of a filter, by name.
+    /// The clips that match a filter, sorted by name; empty if there is none. [`find_clips`](Self::find_clips) reports an unknown
+    /// name
+    /// instead.
+    ///
+    /// # Errors
+    /// The database cannot be read.
     pub fn clips(&self, filter: &ClipFilter) -> Result<Vec<ClipInfo>, DbError> {
         list(&self.conn, filter)
     }
 
-    /// The clip of a name; its file ending may stand behind it.
+    /// The clip with this name. A file name with its extension finds the clip as well.
+    ///
+    /// # Errors
+    /// [`DbError::Unknown`], with the nearest names, if no clip is called so.
     pub fn find_clip(&self, name: &str) -> Result<ClipInfo, DbError> {
         find(&self.conn, name)
     }
@@ -240,7 +251,12 @@ impl MotionDb {
         })
     }
 
-    /// Changes what is known about clips, all or none. Gives how many there were.
+    /// Changes the descriptions of clips (origin, licence, person, tags, roles), all or none, as one step. Returns the number of
+    /// clips
+    /// that exist.
+    ///
+    /// # Errors
+    /// A text contains control characters, such as tabs or line ends; the database cannot be written.
     pub fn update_clips(
         &mut self,
         clips: &[ClipId],

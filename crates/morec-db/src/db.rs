@@ -177,7 +177,10 @@ impl MotionDb {
             .transaction_with_behavior(TransactionBehavior::Immediate)?)
     }
 
-    /// Reads the database as it is at one moment, whatever others write meanwhile.
+    /// Runs `read` in one transaction, so that all its queries see the same state, even if other programs write meanwhile.
+    ///
+    /// # Errors
+    /// Those of `read`, and a database that cannot be read.
     pub fn at_one_moment<T>(
         &self,
         read: impl FnOnce() -> Result<T, DbError>,
@@ -186,13 +189,23 @@ impl MotionDb {
         read()
     }
 
-    /// A number that is another after other connections have changed the file, and the same after changes of this one.
+    /// A number that changes whenever another connection has changed the file, and not after changes of this connection. The
+    /// studio
+    /// polls it to notice changes of the command.
+    ///
+    /// # Errors
+    /// The database cannot be read.
     pub fn changes_of_others(&self) -> Result<i64, DbError> {
         let number = |row: &rusqlite::Row<'_>| row.get(0);
         Ok(self.conn.pragma_query_value(None, "data_version", number)?)
     }
 
-    /// Contents in numbers.
+    /// Counts of clips, segments, classes, samples and indexes; sizes in bytes; the length of all clips in seconds; and the
+    /// largest
+    /// deviations of stored motion from its files, in radians and metres.
+    ///
+    /// # Errors
+    /// The database cannot be read.
     pub fn summary(&self) -> Result<DbSummary, DbError> {
         let count = |sql: &str| -> Result<u64, DbError> {
             Ok(self
@@ -227,8 +240,12 @@ impl MotionDb {
         })
     }
 
-    /// Lets the file grow to this many bytes at most, until it is closed; what is there already stays. What needs more fails as on a
-    /// full disk, with [`DbError::Full`].
+    /// Limits the size of the file, in bytes, until it is closed. The present content stays, even if it is larger. Changes that
+    /// need
+    /// more space fail as on a full disk, with [`DbError::Full`].
+    ///
+    /// # Errors
+    /// The limit cannot be set.
     pub fn limit_bytes(&mut self, bytes: u64) -> Result<(), DbError> {
         let page: i64 = self
             .conn
@@ -241,7 +258,10 @@ impl MotionDb {
         Ok(())
     }
 
-    /// Gives room that is no longer used back to the disk; `caches` too drops what can be made again.
+    /// Returns unused space of the file to the disk; with `caches`, also drops feature rows, which are rebuilt when needed.
+    ///
+    /// # Errors
+    /// The database cannot be written, for instance because another program is using it.
     pub fn vacuum(&mut self, caches: bool) -> Result<(), DbError> {
         if caches {
             self.conn.execute("DELETE FROM feature_rows", [])?;

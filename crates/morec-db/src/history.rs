@@ -198,13 +198,20 @@ impl MotionDb {
         change(&tx)
     }
 
-    /// All steps that are remembered, the last one first.
+    /// All steps of the history, the newest first, each with the number of rows that it changed in each table.
+    ///
+    /// # Errors
+    /// The database cannot be read.
     pub fn history(&self) -> Result<Vec<HistoryStep>, DbError> {
         self.history_since(&[])
     }
 
-    /// The history where it was `before`, the last step first, before this connection went on: only what was done, taken back
-    /// or done again since then is counted anew.
+    /// The history like [`history`](Self::history), but with counts taken from `before`, an earlier result, for all steps that
+    /// have not
+    /// changed since; only the other steps are counted again. O(rows of these).
+    ///
+    /// # Errors
+    /// The database cannot be read.
     pub fn history_since(&self, before: &[HistoryStep]) -> Result<Vec<HistoryStep>, DbError> {
         let sql = "SELECT id, what, set_secs, undone, made_by FROM edits ORDER BY id DESC";
         let mut statement = self.conn.prepare_cached(sql)?;
@@ -219,13 +226,19 @@ impl MotionDb {
         Ok(steps)
     }
 
-    /// The last step that was not taken back, without its rows.
+    /// The newest step that is not undone, without its counts of rows; `None` if there is none.
+    ///
+    /// # Errors
+    /// The database cannot be read.
     pub fn last_step(&self) -> Result<Option<HistoryStep>, DbError> {
         let sql = "SELECT id, what, set_secs, undone, made_by FROM edits WHERE undone = 0 ORDER BY id DESC LIMIT 1";
         Ok(self.conn.query_row(sql, [], step).optional()?)
     }
 
-    /// Forgets the history: nothing done so far can be taken back. Gives how many steps there were.
+    /// Removes the history, so that earlier changes cannot be undone any more. Returns the number of steps removed.
+    ///
+    /// # Errors
+    /// The database cannot be written.
     pub fn forget_history(&mut self) -> Result<usize, DbError> {
         let tx = self.write()?;
         let steps = tx.execute("DELETE FROM edits", [])?;

@@ -64,15 +64,24 @@ fn taught(conn: &Connection) -> Result<String, DbError> {
 }
 
 impl MotionDb {
-    /// Keeps an index that the accepted samples of now have taught, in place of one of the same name.
+    /// Stores an index file, as trained on the present accepted samples, under a name, and replaces an index of that name. One
+    /// step of
+    /// the history.
+    ///
+    /// # Errors
+    /// The database cannot be written.
     pub fn store_index(&mut self, name: &str, bytes: &[u8]) -> Result<(), DbError> {
         self.edit(&format!("keep the index {name}"), |conn| {
             put(conn, name, &taught(conn)?, bytes)
         })
     }
 
-    /// Keeps the index that was trained last under a name, in place of the one before. It is no step of the history: taking back a
-    /// label after training takes back the label.
+    /// Stores the latest index under a name, without a step of the history, so that undo after training undoes the last label and
+    /// not
+    /// the training.
+    ///
+    /// # Errors
+    /// The database cannot be written.
     pub fn store_last_index(&mut self, name: &str, bytes: &[u8]) -> Result<(), DbError> {
         let tx = self.write()?;
         let recording = record(&tx, "", None, "")?;
@@ -83,7 +92,10 @@ impl MotionDb {
         Ok(())
     }
 
-    /// The bytes of an index.
+    /// The bytes of the index file with this name.
+    ///
+    /// # Errors
+    /// [`DbError::Unknown`], with the nearest names, if no index is called so.
     pub fn index(&self, name: &str) -> Result<Vec<u8>, DbError> {
         let sql = "SELECT bytes FROM indexes WHERE name = ?1";
         let found = self
@@ -93,10 +105,10 @@ impl MotionDb {
         found.ok_or_else(|| names::unknown(&self.conn, "index", name))
     }
 
-    /// Forgets an index.
+    /// Removes an index, as one step.
     ///
     /// # Errors
-    /// There is none of this name.
+    /// [`DbError::Unknown`], with the nearest names, if no index is called so.
     pub fn remove_index(&mut self, name: &str) -> Result<(), DbError> {
         self.edit(&format!("remove the index {name}"), |conn| {
             let sql = "DELETE FROM indexes WHERE name = ?1";
@@ -107,7 +119,10 @@ impl MotionDb {
         })
     }
 
-    /// All indexes, by name.
+    /// All stored indexes, sorted by name, with their size and whether labels or background have changed since training.
+    ///
+    /// # Errors
+    /// The database cannot be read.
     pub fn indexes(&self) -> Result<Vec<IndexInfo>, DbError> {
         let taught = taught(&self.conn)?;
         let sql = "SELECT name, trained_secs, length(bytes) AS bytes, samples, (SELECT count(*) FROM json_each(samples) \

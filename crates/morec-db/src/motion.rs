@@ -163,7 +163,10 @@ impl MotionDb {
         found.optional()?.ok_or_else(unknown)
     }
 
-    /// A clip's motion as it is kept, the bytes of an `.mclip` file.
+    /// The stored motion of a clip: the bytes of an `.mclip` file (docs/formats/mclip.md).
+    ///
+    /// # Errors
+    /// [`DbError::Unknown`] if the clip does not exist.
     pub fn motion_bytes(&self, id: ClipId) -> Result<Vec<u8>, DbError> {
         let found = self
             .conn

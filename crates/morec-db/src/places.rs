@@ -9,7 +9,12 @@ use rusqlite::params;
 use crate::{DbError, MotionDb};
 
 impl MotionDb {
-    /// Places of classes by name, from 0; also of names that no class has now.
+    /// The place of each class, from 0, by name. Names of removed classes are included, so that a class that returns gets its
+    /// place
+    /// again.
+    ///
+    /// # Errors
+    /// The database cannot be read.
     pub fn class_places(&self) -> Result<BTreeMap<String, usize>, DbError> {
         let sql = "SELECT name, place FROM class_places";
         let mut statement = self.conn.prepare(sql)?;
@@ -19,7 +24,10 @@ impl MotionDb {
         Ok(places.collect::<Result<_, _>>()?)
     }
 
-    /// Gives classes places.
+    /// Sets the places of classes, without a step of the history.
+    ///
+    /// # Errors
+    /// The database cannot be written.
     pub fn place_classes(&mut self, places: &BTreeMap<String, usize>) -> Result<(), DbError> {
         let tx = self.write()?;
         for (name, place) in places {

@@ -103,8 +103,12 @@ impl MotionDb {
         Ok(proposals)
     }
 
-    /// Stretches of all clips that may show the classes of accepted samples, the surest first. Nothing is written.
-    /// O(rows · rows of the templates).
+    /// Searches all clips for stretches that may show the classes of accepted samples, most probable first. Nothing is written
+    /// except
+    /// feature rows that were missing. O(rows · rows of the templates).
+    ///
+    /// # Errors
+    /// [`DbError::Invalid`] if no sample is accepted; [`DbError::Cancelled`]; the database cannot be read.
     pub fn propose(
         &mut self,
         options: &ProposeOptions,

@@ -80,8 +80,12 @@ impl Kept {
 }
 
 impl MotionDb {
-    /// The rows of every clip that shows any bone, in the order of clip numbers. What is not kept ready, is damaged, or is
-    /// of another recipe is made in parallel and, if the database may be written, kept.
+    /// The feature rows of every clip with at least one bone, in the order of clip numbers. Rows that are not stored, are
+    /// damaged, or
+    /// were made with other parameters are computed in parallel and, if the database is writable, stored.
+    ///
+    /// # Errors
+    /// [`DbError::Cancelled`] by `progress`; [`DbError::Damaged`] motion; the database cannot be read.
     pub fn rows(
         &mut self,
         params: &FeatureParams,
@@ -95,9 +99,13 @@ impl MotionDb {
         Ok(in_order(whole, made))
     }
 
-    /// [`rows`](Self::rows) of a database that is opened for reading only: what has to be made is kept all the same, for the
-    /// next who reads it, by a writer of its own. Where none may write (a file that is read-only, another writer at work, a full
-    /// disk), rows are made and not kept.
+    /// Like [`rows`](Self::rows), for a database opened for reading only: missing rows are stored for the next reader over a
+    /// second
+    /// connection. If that is not possible (a read-only file, another program writing, a full disk), they are computed and not
+    /// stored.
+    ///
+    /// # Errors
+    /// [`DbError::Cancelled`] by `progress`; [`DbError::Damaged`] motion; the database cannot be read.
     pub fn rows_kept_if_writable(
         &self,
         params: &FeatureParams,
@@ -197,7 +205,10 @@ impl MotionDb {
         Ok(made.collect())
     }
 
-    /// Makes the rows that are missing, damaged or of another recipe; gives how many.
+    /// Computes and stores the feature rows that are missing, damaged or made with other parameters. Returns the number of clips.
+    ///
+    /// # Errors
+    /// [`DbError::Cancelled`] by `progress`; the database cannot be written.
     pub fn refresh_rows(
         &mut self,
         params: &FeatureParams,

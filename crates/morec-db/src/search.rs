@@ -100,13 +100,19 @@ impl SearchIndex {
         }
     }
 
-    /// Of a database; rows that are not kept ready are made.
+    /// The search index of a database. Missing feature rows are computed and stored.
+    ///
+    /// # Errors
+    /// As [`MotionDb::rows`].
     pub fn of_db(db: &mut MotionDb, progress: &dyn Progress) -> Result<Self, DbError> {
         let params = FeatureParams::default();
         Ok(Self::new(&db.rows(&params, progress)?, params.tick_hz()))
     }
 
-    /// Of a database that is opened for reading only: as [`MotionDb::rows_kept_if_writable`].
+    /// The search index of a database that is opened for reading only.
+    ///
+    /// # Errors
+    /// As [`MotionDb::rows_kept_if_writable`].
     pub fn of_reader(db: &MotionDb, progress: &dyn Progress) -> Result<Self, DbError> {
         let params = FeatureParams::default();
         let rows = db.rows_kept_if_writable(&params, progress)?;

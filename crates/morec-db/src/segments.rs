@@ -43,8 +43,12 @@ pub struct Segment {
 }
 
 impl MotionDb {
-    /// Keeps what `method` found in clips, in place of what was found in them before, by whatever method: a clip is cut
-    /// in one way.
+    /// Stores the segments that `method` found in `clips`, as one step, and replaces all earlier segments of these clips: a clip
+    /// has
+    /// the cuts of one method only.
+    ///
+    /// # Errors
+    /// The database cannot be written.
     pub fn set_segments(
         &mut self,
         method: &str,
@@ -55,7 +59,10 @@ impl MotionDb {
         self.edit(&what, |conn| put(conn, method, clips, segments))
     }
 
-    /// Method by which each clip was cut; clips that were not cut are not in it.
+    /// The method by which each clip was cut; clips without cuts are not included.
+    ///
+    /// # Errors
+    /// The database cannot be read.
     pub fn cut_methods(&self) -> Result<BTreeMap<ClipId, String>, DbError> {
         let mut statement = self
             .conn
@@ -65,12 +72,18 @@ impl MotionDb {
         Ok(methods.collect::<Result<_, _>>()?)
     }
 
-    /// The segments of a clip, by time.
+    /// The segments of a clip, in order of time.
+    ///
+    /// # Errors
+    /// The database cannot be read.
     pub fn segments_of(&self, clip: ClipId) -> Result<Vec<Segment>, DbError> {
         of_clip(&self.conn, clip)
     }
 
-    /// The segments of all clips, by clip and time.
+    /// The segments of all clips, sorted by clip and time.
+    ///
+    /// # Errors
+    /// The database cannot be read.
     pub fn segments(&self) -> Result<Vec<Segment>, DbError> {
         let mut statement = self.conn.prepare(
             "SELECT clip, kind, start_secs, stop_secs FROM segments ORDER BY clip, start_secs",

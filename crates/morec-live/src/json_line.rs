@@ -71,7 +71,10 @@ pub struct PoseLine {
 }
 
 impl PoseLine {
-    /// The pose that a line says; the error names the key, what was expected there and what was found.
+    /// Reads one line of JSON (docs/formats/live-json.md).
+    ///
+    /// # Errors
+    /// The line is not a valid pose: the text names the key, what was expected there and what was found.
     pub fn of_line(text: &str) -> Result<Self, String> {
         let text: &str = &without_nan(text, NoNumber::InList);
         // A list would do for the values of a struct in their order; here it is a mistake.

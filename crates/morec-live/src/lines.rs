@@ -49,7 +49,10 @@ pub struct Lines {
 }
 
 impl Lines {
-    /// Standard input.
+    /// Lines from standard input.
+    ///
+    /// # Errors
+    /// The thread that reads them cannot be started.
     pub fn stdin() -> Result<Self, LiveError> {
         let (sender, came) = sync_channel(WAITING);
         spawn("standard input", move || {
@@ -59,13 +62,20 @@ impl Lines {
         Ok(Self { came, places })
     }
 
-    /// Whoever connects to `address` over TCP. Returns where it listens, too; connections that find no place are named in
-    /// `notices`.
+    /// Lines from every program that connects to `address` over TCP. Also returns the actual address, with the port if `address`
+    /// has
+    /// port 0. Refused connections are reported in `notices`.
+    ///
+    /// # Errors
+    /// The address cannot be listened at, for instance because another program uses it.
     pub fn listen(address: SocketAddr, notices: &Notices) -> Result<(Self, SocketAddr), LiveError> {
         Self::serve(address, notices, Arc::new(read))
     }
 
-    /// The same for connections that bring their lines in another way.
+    /// Like [`listen`](Self::listen), for connections whose lines `attend` reads in another way, such as the webcam's page.
+    ///
+    /// # Errors
+    /// As [`listen`](Self::listen).
     pub fn serve(
         address: SocketAddr,
         notices: &Notices,

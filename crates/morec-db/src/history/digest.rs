@@ -70,14 +70,14 @@ fn keep(conn: &Connection, table: &Tracked, sum: &Sum) -> Result<(), DbError> {
     Ok(())
 }
 
-/// Takes all tables as they are.
+/// Writes new checksums of all tables, accepting their present content. Used when a database is created or repaired.
 pub fn take_all(conn: &Connection) -> Result<(), DbError> {
     TRACKED
         .iter()
         .try_for_each(|table| keep(conn, table, &of(conn, table)?))
 }
 
-/// Brings checksums up to date with what a step wrote down after `after`.
+/// Updates the checksums with the rows that step `step` has recorded after row `after` of its record.
 pub fn follow(conn: &Connection, step: i64, after: i64) -> Result<(), DbError> {
     for table in &TRACKED {
         let sql = "SELECT 1 FROM was WHERE edit = ?1 AND tab = ?2 AND seq > ?3 LIMIT 1";
@@ -117,7 +117,7 @@ pub fn follow(conn: &Connection, step: i64, after: i64) -> Result<(), DbError> {
     Ok(())
 }
 
-/// Tables that are not as they were left.
+/// The tables whose content does not match their checksum: damaged, or changed by a program that does not write the history.
 pub fn faults(conn: &Connection) -> Result<Vec<&'static str>, DbError> {
     let mut faults = Vec::new();
     for table in &TRACKED {

@@ -130,7 +130,7 @@ impl Tracked {
         equal.collect::<Vec<_>>().join(" AND ")
     }
 
-    /// Puts a row back as it was before the change numbered `seq`.
+    /// Restores a row of this table to its content before the change numbered `seq`; `present` is whether the row exists now.
     pub fn restore(&self, conn: &Connection, seq: i64, present: bool) -> Result<(), DbError> {
         let (name, same) = (self.name, self.same_row());
         if !present {

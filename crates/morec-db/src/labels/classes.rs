@@ -69,7 +69,10 @@ fn move_samples(conn: &Connection, which: &str, of: i64, to: i64) -> Result<usiz
 }
 
 impl MotionDb {
-    /// All classes, by name.
+    /// All classes, sorted by name, with their numbers of samples by state and the seconds of accepted samples.
+    ///
+    /// # Errors
+    /// The database cannot be read.
     pub fn classes(&self) -> Result<Vec<ClassCount>, DbError> {
         let mut statement = self.conn.prepare(
             "SELECT n.name, coalesce(sum(s.state = 'accepted'), 0) AS accepted, \
@@ -117,8 +120,12 @@ impl MotionDb {
         })
     }
 
-    /// Moves the samples of `from` to `into`, which is made if it is new, and forgets the emptied classes. Gives how
-    /// many samples moved.
+    /// Moves all samples of the classes `from` to the class `into`, which is created if it does not exist, and removes the
+    /// emptied
+    /// classes, as one step. Returns the number of samples moved.
+    ///
+    /// # Errors
+    /// [`DbError::Unknown`] if a class of `from` does not exist; [`DbError::Invalid`] if `into` is not a valid name.
     pub fn merge_classes(&mut self, from: &[String], into: &str) -> Result<usize, DbError> {
         self.edit(&format!("merge {} into {into}", from.join(", ")), |conn| {
             let olds = from
@@ -136,7 +143,12 @@ impl MotionDb {
         })
     }
 
-    /// Moves samples, whatever their class, to `into`, which is made if it is new. Gives how many moved.
+    /// Moves samples, of any class, to the class `into`, which is created if it does not exist, as one step. Returns the number
+    /// of
+    /// samples moved.
+    ///
+    /// # Errors
+    /// [`DbError::Unknown`] if a sample does not exist; [`DbError::Invalid`] if `into` is not a valid name.
     pub fn split_class(&mut self, samples: &[SampleId], into: &str) -> Result<usize, DbError> {
         self.edit(
             &format!("move {} samples to {into}", samples.len()),

@@ -26,20 +26,26 @@ fn need_unchanged(conn: &Connection, seen: &[DbSample]) -> Result<(), DbError> {
 }
 
 impl MotionDb {
-    /// The sample of a number.
+    /// The sample with this number.
     ///
     /// # Errors
-    /// There is none.
+    /// [`DbError::Unknown`] if it does not exist.
     pub fn sample(&self, id: SampleId) -> Result<DbSample, DbError> {
         find(&self.conn, id)
     }
 
-    /// The samples of a filter, by clip and time.
+    /// The samples that match a filter, sorted by clip and start; empty if there is none.
+    ///
+    /// # Errors
+    /// The database cannot be read.
     pub fn samples(&self, filter: &SampleFilter) -> Result<Vec<DbSample>, DbError> {
         list(&self.conn, filter)
     }
 
-    /// Numbers of the samples that a step touched, there or gone.
+    /// Numbers of the samples that a step of the history changed, whether they still exist or not.
+    ///
+    /// # Errors
+    /// The database cannot be read.
     pub fn samples_of_step(&self, step: i64) -> Result<Vec<SampleId>, DbError> {
         let sql = "SELECT DISTINCT c0 FROM was WHERE edit = ?1 AND tab = 'samples'";
         let mut statement = self.conn.prepare_cached(sql)?;
@@ -105,7 +111,11 @@ impl MotionDb {
         })
     }
 
-    /// Says what is thought of samples. Gives how many changed.
+    /// Sets the state of samples (accepted, proposed, rejected) as one step; `by` is the author. Returns the number of samples
+    /// changed.
+    ///
+    /// # Errors
+    /// The database cannot be written.
     pub fn judge(
         &mut self,
         samples: &[SampleId],
@@ -194,7 +204,10 @@ impl MotionDb {
         })
     }
 
-    /// Forgets samples. Gives how many there were.
+    /// Removes samples, as one step. Returns how many existed.
+    ///
+    /// # Errors
+    /// The database cannot be written.
     pub fn remove_samples(&mut self, samples: &[SampleId]) -> Result<usize, DbError> {
         self.edit(
             &format!("remove {}", counted(samples.len(), "sample")),

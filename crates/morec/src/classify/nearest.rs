@@ -7,7 +7,10 @@ use crate::templates::{TemplateModel, TemplateModelError, Trace};
 
 use super::distances::ClipDistances;
 
-/// Of matches anywhere in the clip that move more than a body at rest does.
+/// For each class, the distance of its nearest template anywhere in the clip, among matches that move more than a body at rest.
+///
+/// # Errors
+/// The rows have another width than the model's templates.
 pub fn distances(model: &TemplateModel, rows: &Rows) -> Result<ClipDistances, TemplateModelError> {
     let mut trace = Trace::of(model, rows)?;
     let of_class = |class: usize| {

@@ -104,7 +104,10 @@ impl ExtentColumns {
         self.frames.is_some() || self.secs.is_some()
     }
 
-    /// The extent of a row; `None` for a moment.
+    /// The extent of a row; `None` for a point in time, whose start and stop are equal.
+    ///
+    /// # Errors
+    /// A cell is not a number, or the stop is before the start.
     pub fn read(&self, row: &Row<'_>) -> Result<Option<Extent>, ParseError> {
         let filled = |(start, stop): (usize, usize)| {
             !(row.cell(start).is_empty() && row.cell(stop).is_empty())

@@ -90,7 +90,12 @@ impl TrainingContext<'_> {
         self.parts(&mapped, &all)
     }
 
-    /// What `compare` makes of each stream, in parallel, in the order of the set. `compare` has copies of `matchers` for its own.
+    /// Runs `compare` on every stream of the set in parallel, each call with its own copies of `matchers`, and returns the
+    /// results in
+    /// the order of the set. `stage` names the work in reports of progress.
+    ///
+    /// # Errors
+    /// Progress was cancelled.
     pub fn each_stream<T: Send>(
         &self,
         matchers: &[Matcher],
@@ -125,8 +130,12 @@ impl TrainingContext<'_> {
         }
     }
 
-    /// What comes near of the templates of `samples` in background, and in all streams for a verifier that is to be learned, whose gate is
-    /// `verified`. Without one, nothing farther than `most`, the bound of the threshold, is looked for.
+    /// The matches of the templates of `samples` in background; if a verifier is learned, whose gate is `verified`, in all
+    /// streams.
+    /// Without a verifier, matches farther than `most`, the upper bound of the threshold, are left out.
+    ///
+    /// # Errors
+    /// Progress was cancelled.
     pub fn templates(
         &self,
         samples: &[TrainSample],
@@ -166,8 +175,12 @@ impl TrainingContext<'_> {
         })
     }
 
-    /// What comes near of the `negatives` of other groups than the stream's. Their `gates` admit a body at rest. Without a verifier only
-    /// background is looked at, where templates come nearer than `most`, the bound of the threshold: nothing else is asked for.
+    /// The matches of `negatives` in streams of other groups than their own. The `gates` of negatives admit a body at rest.
+    /// Without a
+    /// verifier, only background is compared, and only where templates come nearer than `most`, the upper bound of the threshold.
+    ///
+    /// # Errors
+    /// Progress was cancelled.
     pub fn negatives(
         &self,
         (negatives, rows): (&[NearMiss], &[Rows]),
@@ -198,8 +211,12 @@ impl TrainingContext<'_> {
         })
     }
 
-    /// Faster copies of samples, for templates: those that match no beginnings of samples of their class, which they would report
-    /// before their end.
+    /// Faster copies of samples, to be used as templates. Copies that match the beginning of a sample of their class are left
+    /// out,
+    /// because they would report such a sample before its end.
+    ///
+    /// # Errors
+    /// Progress was cancelled.
     pub fn faster_copies(
         &self,
         samples: &[TrainSample],
