@@ -25,6 +25,8 @@ pub mod clip;
 pub mod coder;
 pub mod humanoid;
 pub mod kinematics;
+#[cfg(feature = "formats")]
+mod limits;
 pub mod math;
 #[doc(hidden)] // For lines of JSON that arrive live.
 pub mod nan;
@@ -33,6 +35,7 @@ pub mod pose;
 pub mod progress;
 pub mod resample;
 pub mod rng;
+mod role;
 pub mod roles;
 mod signed_axis;
 mod time_span;

@@ -4,11 +4,8 @@ use std::borrow::Cow;
 use std::io::{Cursor, Read};
 
 use super::{ParseError, Place};
+pub use crate::limits::memory_of_packed;
 
-/// Memory for what is unpacked of an archive and made of it, however small it is,
-const FREE_BYTES: usize = 64 << 20;
-/// and this much for each of its bytes: text of motion has 3 to 10, and becomes once or twice as much.
-const BYTES_A_BYTE: usize = 32;
 /// Files in one archive.
 const MOST_MEMBERS: usize = 100_000;
 
@@ -19,14 +16,6 @@ pub struct Member {
     pub path: String,
     /// Its bytes, unpacked.
     pub bytes: Vec<u8>,
-}
-
-/// Memory for all that is unpacked of a packed file of this many bytes and made of it, bytes: 64 MiB and 32 times as many. What
-/// it holds packed once more has no more of its own.
-pub fn memory_of_packed(bytes: usize) -> usize {
-    bytes
-        .saturating_mul(BYTES_A_BYTE)
-        .saturating_add(FREE_BYTES)
 }
 
 /// True if `bytes` begin as a gzip file does.

@@ -67,11 +67,12 @@ mod timing;
 pub mod trc;
 mod xml;
 
+pub use crate::limits::Limits;
 use crate::math::Axis;
 pub use crate::parse_error::{ParseError, Place, Warning};
 use descriptor::FormatDescriptor;
 pub use descriptor::{Beside, FormatInput};
-pub use loaded::{Limits, Loaded};
+pub use loaded::Loaded;
 pub use points::from_positions;
 
 /// A format that can be read.
