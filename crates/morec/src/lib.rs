@@ -124,7 +124,7 @@
 #![warn(clippy::missing_errors_doc, clippy::missing_panics_doc)]
 
 #[cfg(any(feature = "formats", feature = "live"))]
-mod error;
+mod facade;
 
 #[cfg(feature = "files")]
 pub mod tables;
@@ -180,7 +180,9 @@ pub mod reproduce;
 mod readme {}
 
 #[cfg(any(feature = "formats", feature = "live"))]
-pub use error::Error;
+pub use facade::Error;
+#[cfg(feature = "train")]
+pub use facade::Trainer;
 #[cfg(feature = "live")]
 pub use index::MotionIndex;
 #[cfg(feature = "train")]
@@ -203,4 +205,4 @@ pub use morec_features::{ClassId, ClassInfo, classes};
 #[cfg(feature = "live")]
 pub use morec_svrdm::{pca, pivots, svrdm};
 #[cfg(feature = "train")]
-pub use train::{Trainer, TrainingReport};
+pub use train::TrainingReport;

@@ -28,8 +28,6 @@ mod tensors;
 mod write;
 
 use std::collections::BTreeMap;
-#[cfg(feature = "files")]
-use std::path::Path;
 
 use crate::diagnosis::RoleSet;
 use crate::features::HeadingLine;
@@ -65,29 +63,6 @@ pub struct MotionIndex {
 }
 
 impl MotionIndex {
-    /// Reads the index at `path`; see [`from_bytes`](Self::from_bytes).
-    ///
-    /// # Errors
-    /// A file that cannot be read, or is no index that this release knows.
-    #[cfg(feature = "files")]
-    pub fn load(path: impl AsRef<Path>) -> Result<Self, crate::Error> {
-        let path = path.as_ref();
-        let bytes = crate::files::read_file(path);
-        let bytes = bytes.map_err(|error| crate::files::FileErrorKind::Io(error).at(path))?;
-        Ok(Self::from_bytes(&bytes)?)
-    }
-
-    /// Writes the index to `path`, whole or not at all; see [`to_bytes`](Self::to_bytes).
-    ///
-    /// # Errors
-    /// The file cannot be written.
-    #[cfg(feature = "files")]
-    pub fn save(&self, path: impl AsRef<Path>) -> Result<(), crate::Error> {
-        let path = path.as_ref();
-        let written = crate::files::write_whole(path, &self.to_bytes()?);
-        Ok(written.map_err(|error| crate::files::FileErrorKind::Io(error).at(path))?)
-    }
-
     /// A sentence about a stream that shows the parts in `shown` and no other, if the index takes the heading from the hips, saw them in
     /// training, and the stream has shoulders alone; or from where a headset looks, and the stream does not tell.
     pub fn heading_doubt(&self, shown: RoleSet) -> Option<&'static str> {

@@ -15,21 +15,6 @@ const SHOWN_SECS: f64 = 0.9;
 const MISSING_SECS: f64 = 2.0;
 
 impl MotionIndex {
-    /// Detections of `take`, recognised pose by pose as in a live stream; times from its beginning.
-    ///
-    /// # Errors
-    /// The take shows no bone that the index uses, or the index needs joint rotations that it lacks.
-    #[cfg(feature = "formats")]
-    pub fn recognize(
-        &self,
-        take: &crate::Take,
-    ) -> Result<Vec<super::Detection<&str>>, crate::Error> {
-        let mut roles = take.roles.clone();
-        self.complete_roles(&mut roles, &take.clip.skeleton);
-        let found = super::recognize_clip(&self.model, &take.clip, &roles, take.rest())?;
-        Ok(found.into_iter().map(|d| d.named(&self.model)).collect())
-    }
-
     /// An error if a stream of this index's method shows `bones` and none of them is the index's: then it is of another kind of performer.
     ///
     /// # Errors

@@ -2,16 +2,15 @@
 
 use std::collections::BTreeSet;
 
-use crate::Error;
 use crate::import::Take;
-use crate::index::{MotionIndex, Provenance};
+use crate::index::MotionIndex;
 use crate::labels::{Labels, People};
 use crate::progress::Progress;
-
-use super::{
-    LabelSet, Recipe, StreamKind, TrainClip, TrainOptions, TrainingData, TrainingMaterial,
-    TrainingReport, train_model,
+use crate::train::{
+    Recipe, StreamKind, TrainClip, TrainOptions, TrainingMaterial, TrainingReport, train_index,
 };
+
+use super::Error;
 
 /// Data and options of training. Only the labels must be given.
 ///
@@ -86,7 +85,7 @@ impl<'a> Trainer<'a> {
         self
     }
 
-    /// Another method, or other options: [`TrainOptions`] or [`SvrdmOptions`](super::thesis::SvrdmOptions).
+    /// Another method, or other options: [`TrainOptions`] or [`SvrdmOptions`](crate::train::thesis::SvrdmOptions).
     #[must_use]
     pub fn method(mut self, method: impl Into<Recipe>) -> Self {
         self.method = method.into();
@@ -103,8 +102,8 @@ impl<'a> Trainer<'a> {
     /// Trains on `takes`.
     ///
     /// # Errors
-    /// Takes and labels that do not fit together ([`DataError`](super::DataError)); too little to learn from, or options
-    /// out of bounds ([`TrainError`](super::TrainError)).
+    /// Takes and labels that do not fit together ([`DataError`](crate::train::DataError)); too little to learn from, or options
+    /// out of bounds ([`TrainError`](crate::train::TrainError)).
     pub fn train(&self, takes: &[Take]) -> Result<MotionIndex, Error> {
         Ok(self.train_with_report(takes)?.0)
     }
@@ -136,43 +135,4 @@ impl<'a> Trainer<'a> {
         report.notes.extend(data.notes);
         Ok((index, report))
     }
-}
-
-/// Trains on `data` as `recipe` says.
-///
-/// # Errors
-/// Too little to learn from, options out of bounds, or the listener of `progress` cancelled.
-pub fn train_index(
-    data: &TrainingData,
-    recipe: &Recipe,
-    progress: &dyn Progress,
-) -> Result<(MotionIndex, TrainingReport), super::TrainError> {
-    let labelling = LabelSet {
-        samples: &data.samples,
-        held_back: &[],
-        classes: &data.classes,
-        unlabelled_is_background: recipe.unlabelled_is_background(),
-    };
-    let (model, report) = train_model(&data.clips, &labelling, recipe, progress)?;
-    let index = MotionIndex {
-        model,
-        roles: data.role_names(),
-        provenance: Provenance {
-            created: now(),
-            morec_version: env!("CARGO_PKG_VERSION").to_owned(),
-            clips: data.labelled().map(|c| c.name.clone()).collect(),
-            samples: data.samples.len(),
-            background_secs: report.background_secs.clone(),
-        },
-    };
-    Ok((index, report))
-}
-
-/// The present time in UTC to the second, `2026-11-21T04:46:50Z`; the one that `SOURCE_DATE_EPOCH` sets (seconds since
-/// 1970), so that training again gives the same bytes.
-fn now() -> String {
-    let fixed = std::env::var("SOURCE_DATE_EPOCH").ok();
-    let fixed = fixed.and_then(|secs| jiff::Timestamp::from_second(secs.parse().ok()?).ok());
-    let now = fixed.unwrap_or_else(jiff::Timestamp::now);
-    now.strftime("%FT%TZ").to_string()
 }
