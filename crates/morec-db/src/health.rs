@@ -4,7 +4,7 @@ use morec::features::FeatureParams;
 use morec::index::MotionIndex;
 use morec::progress::Progress;
 
-use crate::history::digest;
+use crate::digest;
 use crate::{ClipFilter, DbError, MotionDb};
 
 /// Result of [`MotionDb::check`].

@@ -7,10 +7,8 @@
 //! A step that is not the last can be taken back as long as no later one touched the same rows or depends on them. A new
 //! change forgets the steps that were taken back, as editors do.
 
-pub(crate) mod digest;
 #[cfg(test)]
 mod tests;
-mod tracked;
 mod turn;
 
 use std::collections::BTreeMap;
@@ -19,6 +17,7 @@ use rusqlite::{Connection, OptionalExtension, Row, params};
 
 pub use turn::{Effect, ReplayedStep};
 
+use crate::digest;
 use crate::time::now_secs;
 use crate::{DbError, MotionDb};
 

@@ -4,7 +4,8 @@ use rusqlite::{Connection, OptionalExtension, params};
 
 use serde_json::json;
 
-use crate::history::{digest, record};
+use crate::digest;
+use crate::history::record;
 use crate::labels::{self, DbSample, SampleFilter, SampleState};
 use crate::time::now_secs;
 use crate::{ClipInfo, DbError, MotionDb, background, names};

@@ -55,6 +55,7 @@ mod body;
 mod clips;
 mod cut;
 mod db;
+mod digest;
 mod error;
 pub mod exchange;
 mod health;
@@ -77,6 +78,7 @@ mod testing;
 #[cfg(test)]
 mod tests;
 mod time;
+mod tracked;
 
 pub use background::BackgroundClips;
 pub use clips::{BACKGROUND, ClipFilter, ClipId, ClipInfo, ClipUpdate};

@@ -6,7 +6,7 @@ use std::path::Path;
 use rusqlite::{Connection, TransactionBehavior};
 
 use crate::DbError;
-use crate::history::digest;
+use crate::digest;
 
 /// Marks an SQLite file as a motion database: "mrec".
 pub const APPLICATION_ID: i32 = 0x6d72_6563;

@@ -12,7 +12,7 @@ use crate::{
 /// Everything in the tables whose changes are steps, as text.
 fn dump(db: &MotionDb) -> Vec<String> {
     let mut lines = Vec::new();
-    for table in &super::tracked::TRACKED {
+    for table in &crate::tracked::TRACKED {
         let columns: Vec<String> = table
             .columns
             .iter()
@@ -112,7 +112,7 @@ fn every_kind_of_change_goes_back_and_forth() {
             db.redo(None).unwrap().unwrap();
             assert_eq!(&dump(&db), state);
         }
-        assert!(super::digest::faults(&db.conn).unwrap().is_empty());
+        assert!(crate::digest::faults(&db.conn).unwrap().is_empty());
     }
     while db.undo(None).unwrap().is_some() {}
     assert!(
@@ -302,5 +302,5 @@ fn databases_of_the_first_schema_open_with_their_history() {
     db.redo(None).unwrap();
     db.redo(None).unwrap();
     assert_eq!(name(&db).as_deref(), Some("greet"));
-    assert!(super::digest::faults(&db.conn).unwrap().is_empty());
+    assert!(crate::digest::faults(&db.conn).unwrap().is_empty());
 }

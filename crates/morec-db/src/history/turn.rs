@@ -2,8 +2,9 @@
 
 use rusqlite::{Connection, OptionalExtension, Transaction, params};
 
-use super::tracked::{TRACKED, tracked};
-use super::{HistoryStep, digest, measure_bytes, record, step};
+use super::{HistoryStep, measure_bytes, record, step};
+use crate::digest;
+use crate::tracked::{TRACKED, tracked};
 use crate::{DbError, MotionDb};
 
 /// Effect of undoing or redoing a step on a table.

@@ -6,8 +6,8 @@
 use rusqlite::types::ValueRef;
 use rusqlite::{Connection, OptionalExtension, Row, params};
 
-use super::tracked::{TRACKED, Tracked};
 use crate::DbError;
+use crate::tracked::{TRACKED, Tracked};
 
 type Sum = [u8; 32];
 
