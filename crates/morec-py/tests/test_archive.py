@@ -302,3 +302,31 @@ def test_a_store_that_answers_late_or_with_errors(
     assert ours == local
     rows = [sorted(map(repr, one.recognize(index).to_pylist())) for one in (made, archive)]
     assert rows[0] == rows[1]
+
+
+def test_motions_that_repeat_are_found_in_all_clips(tmp_path: Path) -> None:
+    from morec.synth import database
+
+    clips, labels = database(7, people=4, repetitions=4, classes=["wave", "bow"])
+    for clip in clips:
+        clip.save(tmp_path / f"{clip.name}.bvh")
+    archive = ma.create(tmp_path / "archive", from_files=f"{tmp_path}/*.bvh")
+    half = sum(clip.duration_secs for clip in clips) / 2 / 60
+    sets = archive.discover(minutes=half, rounds=2)
+    # Not every clip was compared in the first round, and each set has one number in both.
+    assert {row["set"] for row in sets.sets} == {int(name.removeprefix("set_")) for name in sets.index.classes}
+    of_motion: dict[str, set[str]] = {}
+    found = 0
+    events = sets.events.to_pylist()
+    for label in labels:
+        overlapping = [
+            event["class"]
+            for event in events
+            if event["name"] == label["clip"]
+            and min(event["stop_secs"], label["stop_secs"]) - max(event["start_secs"], label["start_secs"]) > 0.3
+        ]
+        found += bool(overlapping)
+        of_motion.setdefault(label["class"], set()).update(overlapping)
+    assert found >= 0.8 * len(labels) and not of_motion["wave"] & of_motion["bow"]
+    with pytest.raises(ValueError, match="more than 0 minutes"):
+        archive.discover(minutes=0)

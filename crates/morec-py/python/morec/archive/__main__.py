@@ -1,4 +1,4 @@
-"""``python -m morec.archive create|recognize|search|group|info``."""
+"""``python -m morec.archive create|recognize|discover|search|group|info``."""
 
 from __future__ import annotations
 
@@ -28,6 +28,12 @@ def parser() -> argparse.ArgumentParser:
     one.add_argument("index")
     one.add_argument("-o", "--output", metavar="FOLDER", help="write Parquet there instead")
     one.add_argument("--parts", type=int, default=1, help="divide the index by its classes; no worker holds two parts")
+    one = commands.add_parser("discover", help="motions that repeat, without labels, as tab-separated text")
+    one.add_argument("archive")
+    one.add_argument("-o", "--output", metavar="INDEX", help="write the index that recognises them")
+    one.add_argument("--minutes", type=float, default=60.0, help="of clips that are compared in a round")
+    one.add_argument("--rounds", type=int, default=2)
+    one.add_argument("--seed", type=int, default=1, help="chooses the clips of the first round")
     one = commands.add_parser("search", help="stretches that are like an example")
     one.add_argument("archive")
     one.add_argument("example", help="a file, or a clip of the archive")
@@ -85,6 +91,11 @@ def run(args: argparse.Namespace, s3: dict[str, str] | None) -> int:
             events.write_parquet(args.output)
         else:
             table(events.column_names, events.to_pylist())
+    elif args.command == "discover":
+        sets = archive.discover(minutes=args.minutes, rounds=args.rounds, seed=args.seed)
+        if args.output:
+            sets.index.save(args.output)
+        table(sets.events.column_names, sets.events.to_pylist())
     elif args.command == "search":
         hits = archive.search(
             args.example,

@@ -17,6 +17,7 @@ from .._labels import Labels, label_rows
 from .._morec import Clip, Index, load
 from .._tables import Table
 from . import _layout as layout
+from ._discover import ArchiveSets, discover_sets
 from ._divided import divided_events
 from ._group import group
 from ._search import Found, Sketched, Wanted, search
@@ -323,6 +324,29 @@ class Archive:
             col("secs"),
             cuts.alias("cuts_secs"),
         )
+
+    def discover(self, *, minutes: float = 60.0, rounds: int = 2, seed: int = 1) -> ArchiveSets:
+        """Motions that repeat, without labels: found in a sample of the clips, recognised in all of them.
+
+        `morec.discover` compares every stretch with every other, which is too slow for an archive. Here it compares the clips
+        of a sample, its sets train an index, and the index finds the same motions in all clips. The next round takes the clips
+        of which least is explained, and adds the sets that are new.
+
+        Parameters
+        ----------
+        minutes : float
+            Length of the clips that are compared in a round, in minutes; the time of a round grows with its square.
+        rounds : int
+            At most so many; earlier if a round finds nothing new.
+        seed : int
+            Chooses the clips of the first round.
+
+        Raises
+        ------
+        MorecError
+            No motion repeats.
+        """
+        return discover_sets(self, minutes, rounds, seed)
 
     def moments(self) -> dict[int, dict[str, Any]]:
         """Number, mean and covariance of all feature rows, for each set of bones (a bit each); merged, not sampled.
