@@ -1,4 +1,6 @@
-//! Clips that are marked as background: motion of no class.
+//! Clips marked as background (tag `background`), which contain none of the classes. Training and the studio read them here; a
+//! clip
+//! with accepted samples is never background.
 
 use std::collections::BTreeSet;
 

@@ -1,4 +1,5 @@
-//! Which joint of a clip plays which part of the body, as somebody says it in place of what import found.
+//! Roles set by the user: the joint of each body part, in place of the roles that import inferred. Used by the command
+//! (`db clips --set-role`) and the studio.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,5 @@
-//! Facts about clips, without their motion.
+//! Descriptions of clips: listing, finding, renaming, removing, and changing origin, licence, person and tags. Motion is in
+//! [`motion`](crate::motion) and is not read here.
 
 use rusqlite::{Connection, OptionalExtension, Row, params};
 

@@ -1,4 +1,4 @@
-//! Cutting the clips of a database where their behaviour changes.
+//! Cuts the clips of a database where their behaviour changes, and stores the segments. Clips cut by hand are left unchanged.
 
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};

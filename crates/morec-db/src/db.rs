@@ -1,4 +1,4 @@
-//! The file itself: made, opened, counted, shrunk.
+//! The database file: creating, opening, counting, limiting and shrinking it. All other modules work through [`MotionDb`].
 
 use std::fs::{File, OpenOptions};
 use std::path::{Path, PathBuf};

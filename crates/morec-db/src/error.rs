@@ -1,4 +1,4 @@
-//! Errors of the database, in plain words.
+//! Errors of the database, as sentences that say what to do.
 
 use std::fs::File;
 use std::io::{self, ErrorKind};

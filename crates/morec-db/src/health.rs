@@ -1,4 +1,4 @@
-//! A database looked through for damage, and mended.
+//! Checks a database for damage, and repairs what can be rebuilt (feature rows, checksums). Used by `morec db check`.
 
 use morec::features::FeatureParams;
 use morec::index::MotionIndex;

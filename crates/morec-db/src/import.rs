@@ -1,4 +1,5 @@
-//! Files into the database: in parallel, whole files or nothing, each content once.
+//! Imports files: in parallel, each file wholly or not at all, and each content only once. Reading and normalising are done by
+//! `mocap`; this module stores the result.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,5 @@
-//! Trained indexes, kept with what taught them.
+//! Trained indexes stored in the database, with the samples and background that they were trained on, so that changes since
+//! training are noticed.
 
 use rusqlite::{Connection, OptionalExtension, params};
 

@@ -1,4 +1,4 @@
-//! The stored form of a clip's motion, and back. Nothing else knows what the bytes are.
+//! The stored form of a clip's motion: packing and unpacking. No other module knows the format of these bytes.
 
 use morec::clip::{Clip, Span};
 use morec::formats::ParseError;

@@ -1,4 +1,4 @@
-//! Names that are not there, and the ones that may have been meant.
+//! Errors for unknown names, with the nearest existing names as suggestions.
 
 use morec::labels::hint;
 use rusqlite::Connection;

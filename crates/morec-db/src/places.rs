@@ -1,4 +1,4 @@
-//! Places of classes, by which a program gives them keys and colours.
+//! Places of classes in a fixed order, from which programs derive keys and colours.
 //!
 //! They are kept by name and are no part of the history: a class that goes and comes back has the place that it had.
 

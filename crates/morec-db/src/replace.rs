@@ -1,4 +1,4 @@
-//! Another file in the place of a clip's: name, tags and labels stay with the clip.
+//! Replaces the file of a clip. Name, tags and labels stay with the clip; labels and cuts after the new end are removed.
 
 use std::path::Path;
 

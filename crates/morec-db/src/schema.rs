@@ -1,4 +1,5 @@
-//! The schema, in numbered steps.
+//! The schema of the file, upgraded in numbered steps. A released step must never be changed; a change of the schema is a new
+//! step.
 
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! Stretches that a method found in clips.
+//! Segments that a method of cutting found in clips: motion, stillness and rest poses.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! Clips and databases for all tests.
+//! Clips and databases for the tests of this crate.
 
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,4 @@
-//! The wall clock, for "when was this set".
+//! The wall clock, for times of changes.
 
 use std::time::{SystemTime, UNIX_EPOCH};
 

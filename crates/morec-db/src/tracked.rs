@@ -1,4 +1,4 @@
-//! The tables whose changes are written down, and their rows put back.
+//! The tables whose changes the history records, and restoring their rows. A new table whose changes can be undone is added here.
 
 use rusqlite::{Connection, params};
 

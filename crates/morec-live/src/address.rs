@@ -1,4 +1,5 @@
-//! Sources and sinks as they are typed: `KIND://WHERE?option=value&option`.
+//! Addresses of sources and sinks as the user types them: `KIND://PLACE?option=value&option`. Parsing only; opening is done by
+//! [`sources`](crate::sources) and [`sinks`](crate::sinks).
 
 use std::fmt;
 use std::net::{SocketAddr, ToSocketAddrs};

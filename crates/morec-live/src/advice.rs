@@ -1,4 +1,4 @@
-//! Findings about streams, each reported once and as soon as it is known.
+//! Advice about streams in sentences, each given once and as soon as it is certain. Used by `morec live` and `morec.listen`.
 
 use std::time::{Duration, Instant};
 

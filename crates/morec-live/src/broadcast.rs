@@ -1,4 +1,4 @@
-//! A fake Axis: sends every frame to each TCP connection.
+//! A simulated Axis program: sends every frame to each TCP connection. Used by `morec send`.
 
 use std::io::Write;
 use std::net::{SocketAddr, TcpListener, TcpStream, UdpSocket};

@@ -1,4 +1,4 @@
-//! Clips played as if somebody performed them.
+//! A source that plays a clip at its own pace, as if somebody performed it.
 
 use std::path::PathBuf;
 use std::sync::Arc;

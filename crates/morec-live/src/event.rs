@@ -1,4 +1,4 @@
-//! An event with the names that a sink writes.
+//! An event with the names of its class and source, as sinks write it.
 
 use jiff::Timestamp;
 use morec::live::{Event, Phase};

@@ -1,4 +1,5 @@
-//! Lines of text from standard input or from TCP connections, each on a thread of its own.
+//! Lines of text from standard input or TCP connections, with a thread for each. Limits of length, time and number of connections
+//! are enforced here.
 
 use std::io::{BufRead, BufReader, ErrorKind, Read};
 use std::net::{IpAddr, SocketAddr, TcpListener, TcpStream};

@@ -1,4 +1,4 @@
-//! A simulated bad network, for tests without one at hand.
+//! A simulated bad network (loss, reordering, delay), for tests and `morec send`.
 
 use morec::rng::Rng;
 

@@ -1,4 +1,4 @@
-//! Notices about received data, on their way from a source's thread to the caller.
+//! Notices about received data, passed from a source's thread to the caller.
 
 use std::sync::{Arc, Mutex, PoisonError};
 

@@ -1,4 +1,4 @@
-//! Places of connections over TCP, and the rule by which one is given up when all are taken.
+//! Places of TCP connections: how many are accepted, and which connection is dropped when all are taken.
 
 use std::net::{IpAddr, Ipv6Addr, Shutdown, TcpStream};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};

@@ -1,4 +1,4 @@
-//! Clips made ready for playing: at a rate, without the rest pose at their beginning.
+//! Prepares clips for playing: resampled to a rate, without the rest pose at the beginning.
 
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,4 @@
-//! What a receiver has made of its packets and the session has not taken yet.
+//! Poses and notices that a receiver has made of its packets and that the session has not fetched yet.
 
 use std::collections::VecDeque;
 

@@ -1,4 +1,4 @@
-//! Sinks of events.
+//! Opens sinks by their addresses.
 
 use std::io::{self, Write};
 

@@ -1,4 +1,4 @@
-//! Sources by their addresses.
+//! Opens sources by their addresses.
 
 use std::path::PathBuf;
 

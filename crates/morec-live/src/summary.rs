@@ -1,4 +1,4 @@
-//! Summary of a session in a line.
+//! A summary of a session in one line, printed at its end.
 
 use morec::live::Status;
 

@@ -1,4 +1,4 @@
-//! Threads tied to cores.
+//! Binding of threads to processor cores.
 
 /// Threads in the order in which frames pass them: neighbours go to neighbouring cores.
 const STAGES: [&str; 7] = [

@@ -1,4 +1,4 @@
-//! Points of a performer that a line of JSON names by number, or without the side of the hand that they are of.
+//! Points in a line of JSON that are given by number, or without the side of their hand.
 
 use morec::features::{Hand, KeyPose};
 use morec::math::Vec3;

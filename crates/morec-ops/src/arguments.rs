@@ -1,4 +1,4 @@
-//! Settings as the words of a command line.
+//! Writes settings as the words of a command line. The studio uses it to show the command that does the same.
 
 use clap::{Arg, Args, Command};
 use serde::Serialize;

@@ -1,4 +1,4 @@
-//! What more samples, and more people, are worth.
+//! Learning curves: results with fewer samples and fewer people.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,4 +1,4 @@
-//! Why an operation failed.
+//! Errors of operations.
 
 use morec::crossval::CrossvalError;
 use morec::eval::EvalError;

@@ -1,4 +1,4 @@
-//! Detections held against labels.
+//! Evaluation: detections compared with labels.
 
 use std::collections::{BTreeMap, BTreeSet};
 

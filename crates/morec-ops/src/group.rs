@@ -1,4 +1,4 @@
-//! Groups of stretches that are alike.
+//! Grouping: clusters of similar stretches.
 
 use std::cmp::Reverse;
 use std::collections::BTreeMap;

@@ -1,4 +1,4 @@
-//! Files into a database.
+//! Import of files into a database, and notes about near-duplicates.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;

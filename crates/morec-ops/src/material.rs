@@ -1,4 +1,4 @@
-//! What a database has to train from.
+//! Training material of a database: labelled clips, background and persons.
 
 use std::collections::{BTreeMap, BTreeSet};
 

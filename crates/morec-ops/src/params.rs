@@ -1,4 +1,4 @@
-//! Parameters of a method by their paths.
+//! Parameters of a method, set by their paths (`decode.lag_ticks=2`), with suggestions for misspelt names.
 
 use std::collections::BTreeMap;
 use std::fmt;

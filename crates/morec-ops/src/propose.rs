@@ -1,4 +1,4 @@
-//! Proposals: the other samples of the classes that a few are labelled of.
+//! Proposals: more samples of the labelled classes.
 
 use morec::progress::Progress;
 use morec_db::{DbError, MotionDb, Proposal, ProposeOptions};

@@ -1,4 +1,4 @@
-//! Recognition: how readily motions are reported, for whom, and which events of a stream.
+//! Settings of recognition: sensitivity, expected performer, and the events of a stream.
 
 use morec::live::{Model, StreamOptions};
 use morec::templates::PerformerKind;

@@ -1,4 +1,4 @@
-//! Stretches compared at an even pace.
+//! Stretches resampled to an even pace, as points for comparison and grouping.
 
 use morec::cluster::{
     AffinityParams, Clusters, Hierarchy, affinity_propagation, resampled, squared_distance,

@@ -1,4 +1,4 @@
-//! Values that are written as text, as on the command line.
+//! Serialisation of values that have a text form, as on the command line.
 
 use std::fmt::Display;
 use std::str::FromStr;

@@ -1,4 +1,4 @@
-//! What a command line has in words: choices of libraries, which know nothing of it, and shares.
+//! Words of the command line for choices of libraries that do not depend on `clap`.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use serde::de::DeserializeOwned;

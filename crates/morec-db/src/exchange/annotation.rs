@@ -1,4 +1,5 @@
-//! Annotations, which all forms of labels are read as, and helpers that their readers share.
+//! Annotations, the common form of all label formats, and helpers that their readers share. Readers must not access the database;
+//! [`resolve`](super::resolve) turns annotations into samples.
 
 use std::collections::BTreeMap;
 

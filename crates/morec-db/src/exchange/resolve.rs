@@ -1,4 +1,6 @@
-//! Annotations as samples of the clips of a database.
+//! Turns annotations into samples of clips in the database: finds the clips, cuts labels at the ends of clips, and reports what
+//! is
+//! left out.
 
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! Other texts of one clip that tell when something is: Praat's TextGrids and subtitles (SubRip, WebVTT).
+//! Text formats with times for one clip: Praat's TextGrid, and subtitles (SubRip, WebVTT).
 
 use morec::formats::{ParseError, Place};
 

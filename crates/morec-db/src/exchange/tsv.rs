@@ -1,4 +1,4 @@
-//! Tab-separated tables, as `morec train` reads them.
+//! Tab-separated label tables, in the form that `morec train` reads.
 
 use morec::TimeSpan;
 use morec::formats::ParseError;

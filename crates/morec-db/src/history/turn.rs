@@ -1,4 +1,4 @@
-//! Steps taken back and done again.
+//! Undo and redo of steps.
 
 use rusqlite::{Connection, OptionalExtension, Transaction, params};
 

@@ -1,4 +1,4 @@
-//! Classes: made by labelling; renamed, merged and split by hand.
+//! Classes: created with their first sample, and renamed, merged and split by the user.
 
 use rusqlite::{Connection, OptionalExtension, params};
 

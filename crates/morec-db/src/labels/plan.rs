@@ -1,4 +1,4 @@
-//! Labels as a whole: added to what is there, or in place of it.
+//! Applies a whole set of labels as one step: adds them to the existing labels, or replaces these.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,4 +1,4 @@
-//! Samples read from their rows.
+//! Reads samples from the rows of the table.
 
 use rusqlite::{Connection, OptionalExtension, Row, ToSql};
 

@@ -1,4 +1,4 @@
-//! Samples as values.
+//! Samples as values: their clip, class, extent, state and author.
 
 use crate::ClipId;
 use morec::TimeSpan;

@@ -1,4 +1,4 @@
-//! Samples: added, judged, listed.
+//! Lists, adds, changes, judges and removes samples.
 
 use rusqlite::{Connection, OptionalExtension, params};
 

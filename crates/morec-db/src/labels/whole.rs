@@ -1,4 +1,4 @@
-//! Clips as a whole: which class each shows, and who is in it.
+//! Labels of whole clips: the class of a clip and its person.
 
 use rusqlite::{Connection, params};
 

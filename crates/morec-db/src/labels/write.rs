@@ -1,4 +1,4 @@
-//! Rows of samples, written within a step of the history.
+//! Writes rows of samples. Called only inside a step of the history.
 
 use rusqlite::{Connection, OptionalExtension, params};
 

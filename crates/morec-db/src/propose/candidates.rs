@@ -1,4 +1,4 @@
-//! Matches of the templates in a clip, for each stretch without the templates that were cut from it.
+//! Matches of the templates in a clip. Each stretch is compared without the templates that were cut from it.
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! Input of proposing: rows of all clips, and the stretches that were judged.
+//! Input of proposing: feature rows of all clips, and the stretches that were accepted or rejected.
 
 use std::collections::BTreeMap;
 use std::ops::Range;

@@ -1,4 +1,4 @@
-//! Activities: long labels are looked for by pieces of a repetition or a few.
+//! Activities: long labels are searched for by pieces of one or a few repetitions.
 //!
 //! A label of twenty seconds is like no other as a whole: another person repeats the motion at another pace, and more or less often.
 

@@ -1,4 +1,4 @@
-//! Which proposals to ask about.
+//! Selects the most informative proposals to show first (`db propose --doubtful`).
 
 use std::collections::BTreeMap;
 

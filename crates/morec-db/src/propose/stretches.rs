@@ -1,4 +1,4 @@
-//! Activities: pieces that were found become whole stretches again.
+//! Activities: joins the pieces that were found to whole stretches.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! Templates and metric as clips of one set of bones see them.
+//! Templates and metric reduced to the bones that a clip has.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,4 +1,4 @@
-//! Which stretches come into question: windows of all clips, compared with the example by their summaries.
+//! The first stage of a search: windows of all clips are compared with the example by their summaries.
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! Clips that are other clips over again: resampled, cut a little shorter, on another skeleton, mirrored.
+//! Near-duplicates: clips with the motion of another clip, resampled, trimmed, on another skeleton, or mirrored.
 
 use std::collections::BTreeSet;
 

@@ -1,4 +1,4 @@
-//! One layout for rows of any set of bones, and its mirror image.
+//! One layout for feature rows of any set of bones, and its mirror image, so that all clips can be compared.
 
 use morec::features::{BoneSet, FeatureParams, RowLayout, Rows, mirrored_rows, opposite_bone};
 

@@ -1,4 +1,4 @@
-//! A search that reads few of many clips: which ones next, and when they are enough.
+//! A search that reads only some of many clips: chooses the next clips to read, and stops when no other clip can be better.
 
 use rayon::prelude::*;
 

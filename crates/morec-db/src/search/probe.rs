@@ -1,4 +1,4 @@
-//! An example, and what a clip shares with it, laid out by the lanes of sketches.
+//! The example of a search, laid out for comparison with the sketch of a clip over the bones that both have.
 
 use morec::features::{BoneSet, RowLayout};
 

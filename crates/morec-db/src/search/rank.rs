@@ -1,4 +1,4 @@
-//! Candidates by summary, their company over a graph, exact places by warping, one ranking.
+//! The ranking of a search: candidates by summary, their neighbourhood in a graph, and exact extents by warping.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;

@@ -1,4 +1,4 @@
-//! A window in the sketch of a clip: its parts from prefix sums, and how far these may be off.
+//! A window in the sketch of a clip: its parts from prefix sums, and the bounds of their error.
 
 use super::boxes::total;
 use super::layout::ROOT_WEIGHT;

@@ -1,4 +1,4 @@
-//! The bones of the broadcast, in its order, and where they are in an average person.
+//! The bones of the broadcast in its order, with their positions in an average person.
 
 use morec::clip::{Joint, Skeleton};
 use morec::math::Vec3;

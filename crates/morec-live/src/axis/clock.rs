@@ -1,4 +1,4 @@
-//! When a frame was, from its number and when it arrived.
+//! Times of frames, from their numbers and the times of their arrival.
 
 /// Share of the difference between prediction and arrival that each frame corrects, in time and in period.
 const PULL: f64 = 0.1;

@@ -1,4 +1,4 @@
-//! Bytes to frames, and back.
+//! Decodes the bytes of the broadcast to frames, and encodes frames.
 
 use super::AXIS_BONE_COUNT;
 

@@ -1,4 +1,4 @@
-//! Frames to poses, performer by performer.
+//! Turns frames of the broadcast into poses, for each performer.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! Poses to bytes.
+//! Turns poses into the bytes of the broadcast. Used by `morec send` and tests.
 
 use super::decoder::{BEGIN, END, HEADER, VERSION, values_of};
 use super::{AXIS_BONE_COUNT, AXIS_BONES};

@@ -1,4 +1,4 @@
-//! When a frame was, from when its sender says it was and when it arrived.
+//! Times of frames, from the sender's time stamps and the times of their arrival.
 
 /// Share of the difference between the sender's clock and the arrival that each frame corrects: networks
 /// delay packets unevenly, clocks only drift.

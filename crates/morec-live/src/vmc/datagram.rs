@@ -1,4 +1,4 @@
-//! A datagram of VMC, read once.
+//! Reads a datagram of VMC once, into its time stamps, bones and states.
 
 use super::message::{VmcMessage, understand};
 use crate::osc;

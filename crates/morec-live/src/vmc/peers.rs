@@ -1,4 +1,4 @@
-//! Identity of senders by their addresses.
+//! Identifies senders by their addresses, including a sender whose address changes.
 
 use core::net::SocketAddr;
 

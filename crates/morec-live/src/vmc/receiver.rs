@@ -1,4 +1,4 @@
-//! Senders on a port: which is which, and who has a place.
+//! The senders on a port: tells them apart and gives each a place among the performers.
 
 use super::assembly::{Sender, Taking};
 use super::datagram::Datagram;

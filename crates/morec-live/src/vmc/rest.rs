@@ -1,4 +1,4 @@
-//! The pose of avatars without a tracker.
+//! Recognises the rest pose of avatars that have no tracker.
 
 use morec::features::KeyPose;
 use morec::math::Vec3;

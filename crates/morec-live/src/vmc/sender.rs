@@ -1,4 +1,4 @@
-//! Frames to packets.
+//! Turns frames into packets. Used by `morec send` and tests.
 
 use super::message::{position_from_unity, rotation_to_unity};
 use crate::osc::{Arg, begin_bundle, write_element, write_message};

@@ -1,4 +1,4 @@
-//! The skeleton that a set of bones makes, and what stands in for bones that are not sent.
+//! The skeleton that a set of bones makes, and substitutes for bones that are not sent.
 
 use morec::clip::{Joint, Skeleton};
 use morec::humanoid::{

@@ -1,4 +1,4 @@
-//! The handshake: in time, small, and from whom it may come.
+//! The handshake of a WebSocket: limits of time and size, and the check of the page's origin.
 
 use std::io::{self, ErrorKind, Read, Write};
 use std::net::TcpStream;
