@@ -1,4 +1,4 @@
-//! What both ways of comparing a clip give.
+//! Distances of a clip to each class, the common result of both ways of comparison.
 
 /// Distances of a clip from every class.
 pub struct ClipDistances {

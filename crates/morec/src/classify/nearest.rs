@@ -1,4 +1,4 @@
-//! Distances of the nearest match of each class.
+//! Distances to each class by the nearest match of its templates.
 
 use crate::classes::ClassId;
 use crate::decode::FAR;

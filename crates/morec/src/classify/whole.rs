@@ -1,4 +1,4 @@
-//! Distances by the second look.
+//! Distances to each class by the second look, which compares the whole motion.
 
 use crate::features::Rows;
 use crate::math::portable;

@@ -1,4 +1,4 @@
-//! Samples of any length as points in one space.
+//! Samples of any length as points of one space, for clustering by distance.
 
 use crate::features::Rows;
 

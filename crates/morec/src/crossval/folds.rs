@@ -1,4 +1,4 @@
-//! Folds: the samples that train and the clips that are tested.
+//! Folds of a cross-validation: the samples that train and the clips that are tested.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,4 +1,4 @@
-//! Labels of whole clips, measured as they teach: without the still ends.
+//! Labels of whole clips, reduced to their moving part, as training does.
 
 use crate::TimeSpan;
 use crate::features::{FeatureParams, bones_of_clip, rows_of_clip};

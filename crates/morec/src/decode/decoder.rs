@@ -1,4 +1,4 @@
-//! The decoder.
+//! The decoder: follows the distances of all classes tick by tick and decides when a motion is reported.
 
 use crate::classes::ClassId;
 

@@ -1,4 +1,5 @@
-//! From distances at every tick to one detection for each motion, with nothing taken back.
+//! Decoding: from distances at every tick to one detection for each motion. A reported detection is never revoked. Used by the
+//! template engine; knows distances and thresholds, but neither rows nor templates.
 
 mod decoder;
 mod params;

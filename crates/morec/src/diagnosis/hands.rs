@@ -1,4 +1,4 @@
-//! Hands that come and go, and that change places.
+//! Losses and exchanges of hands in a stream.
 
 use crate::features::{Hand, KeyPose, MAX_GAP_SECS};
 use crate::math::Vec3;

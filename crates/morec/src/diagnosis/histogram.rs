@@ -1,4 +1,4 @@
-//! Counts of positive values over many magnitudes, in fixed memory: quantiles of what has been seen.
+//! A histogram of positive values over many orders of magnitude, in constant memory, for quantiles of a stream.
 
 /// Half octaves from 2⁻⁴⁸ to 2¹⁶.
 const BINS: usize = 128;

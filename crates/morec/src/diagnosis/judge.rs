@@ -1,4 +1,4 @@
-//! Findings about a stream, from its measurements.
+//! Findings about a stream, derived from its measures. Thresholds of all findings are here.
 
 use serde::ser::SerializeSeq;
 use serde::{Serialize, Serializer};

@@ -1,4 +1,4 @@
-//! Proportions of the body, its vertical, and agreement of its sides with the way it bends.
+//! Measures of the body: its proportions, its vertical, and whether left and right agree with the direction in which limbs bend.
 
 use crate::features::KeyPose;
 use crate::math::Vec3;

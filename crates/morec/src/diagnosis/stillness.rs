@@ -1,4 +1,4 @@
-//! Motion of the whole body, of the hips, and the floor.
+//! Measures of motion: of the whole body, of the hips, and of the feet on the floor.
 
 use crate::features::KeyPose;
 use crate::math::Vec3;

@@ -1,4 +1,4 @@
-//! When frames come: rate, rhythm, what is lost, what comes twice.
+//! Measures of time: frame rate, regularity of arrivals, lost and repeated frames.
 
 use crate::features::MAX_GAP_SECS;
 

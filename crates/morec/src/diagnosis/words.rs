@@ -1,4 +1,4 @@
-//! Findings in sentences that say what to do.
+//! Sentences for findings: what is wrong, and what to do.
 
 use std::fmt;
 

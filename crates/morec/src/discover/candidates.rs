@@ -1,4 +1,4 @@
-//! Stretches that may be an instance of a repeated motion: from one moment of little speed to one of the next.
+//! Candidates for repeated motions: stretches from one moment of low speed to a later one.
 
 use std::ops::Range;
 

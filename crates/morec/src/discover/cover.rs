@@ -1,4 +1,4 @@
-//! Sets of neighbours, the best first: each explains as much moving time as it can.
+//! Chooses sets of neighbouring candidates greedily, each covering as much motion as possible.
 
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, BinaryHeap};

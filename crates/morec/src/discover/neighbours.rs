@@ -1,4 +1,4 @@
-//! Candidates that are alike.
+//! Finds the neighbours of each candidate: similar stretches in all clips.
 
 use rayon::prelude::*;
 

@@ -1,4 +1,4 @@
-//! Every candidate held against the sets once more: missed instances are found, bounds move.
+//! Compares every candidate with the sets again: adds missed instances and adjusts their extents.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! The best choice of stretches that do not overlap.
+//! Weighted interval scheduling: the best choice of stretches that do not overlap.
 
 use super::candidates::MovingStretch;
 

@@ -1,4 +1,4 @@
-//! What is found: sets, their instances, and what is in none.
+//! The result: sets, their instances, and the stretches in no set.
 
 use std::collections::BTreeSet;
 

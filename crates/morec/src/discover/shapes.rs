@@ -1,4 +1,4 @@
-//! Candidates as points, and the elastic distance of two of them.
+//! Candidates as points for a first comparison, and the elastic distance of two candidates.
 
 use multiversion::multiversion;
 use rayon::prelude::*;

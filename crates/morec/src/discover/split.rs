@@ -1,4 +1,4 @@
-//! Sets that hold two motions of one clip, taken apart by how much nearer each is to its own than to the other.
+//! Divides sets that contain two motions of one clip, if instances are clearly nearer to their own motion than to the other.
 
 use std::collections::BTreeMap;
 

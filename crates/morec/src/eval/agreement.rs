@@ -1,4 +1,4 @@
-//! How far two annotators of the same streams agree.
+//! Agreement of two annotators: Cohen's kappa, agreement of events beyond chance, and differences of starts and stops.
 
 use std::collections::BTreeMap;
 

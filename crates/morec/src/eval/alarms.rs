@@ -1,4 +1,4 @@
-//! Detections where there is nothing to detect.
+//! False alarms: detections in unlabelled motion and in clips without classes.
 
 use serde::Serialize;
 

@@ -1,4 +1,4 @@
-//! All measures together.
+//! All measures of an evaluation in one value, as `morec evaluate --json` prints it.
 
 use serde::Serialize;
 

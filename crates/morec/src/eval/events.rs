@@ -1,4 +1,4 @@
-//! Detections as events: right if one happens about where the sample is.
+//! Measures of detections as events: a detection is right if its middle lies within a sample of its class.
 
 use crate::TimeSpan;
 use serde::Serialize;

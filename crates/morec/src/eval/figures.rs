@@ -1,4 +1,4 @@
-//! Small arithmetic that every measure uses.
+//! Arithmetic that the measures share: shares, means, medians.
 
 /// `part` of `whole`; nothing if there is no whole.
 pub(super) fn share(part: usize, whole: usize) -> Option<f64> {

@@ -1,4 +1,4 @@
-//! How much of the time is right, and how much of the order: what matters of activities, which go on.
+//! Measures of time: the share with the right class, and the agreement of the order of classes. They suit activities.
 
 use serde::Serialize;
 

@@ -1,4 +1,6 @@
-//! Evaluation: how good are these detections, held against labelled samples.
+//! Evaluation: measures of detections, compared with labelled samples. Used by `evaluate`, `crossval`, the studio and tests;
+//! reads
+//! no files.
 //!
 //! [`Evaluation::of`] computes every measure, [`timelines`] says of each sample and each detection what became of
 //! it. Both are functions of their arguments alone and do not depend on the order of rows.

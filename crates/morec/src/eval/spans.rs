@@ -1,4 +1,4 @@
-//! Stretches of time and what they share.
+//! Spans of time and their overlaps.
 
 use crate::TimeSpan;
 

@@ -1,4 +1,4 @@
-//! When detections are reported, and how well their ends are placed.
+//! Measures of reports: delay, and the errors of starts and stops.
 
 use serde::Serialize;
 

@@ -1,4 +1,4 @@
-//! How well the motions of a clip were performed.
+//! Compares the recognised motions of a clip with their nearest samples, bone by bone.
 
 use crate::TimeSpan;
 use crate::clip::{Clip, Span};

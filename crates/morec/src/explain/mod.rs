@@ -1,4 +1,4 @@
-//! Why a sample was missed: what kept a labelled motion from being reported; and how well one was performed.
+//! Explanations: why a labelled motion was not reported, and how well a reported motion was performed.
 //!
 //! The stream is compared with the index once more, and the nearest match of the sample's class within the sample is
 //! followed through the conditions of [`decode`](crate::decode) in their order. The first that fails is the reason.

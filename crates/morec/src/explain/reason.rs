@@ -1,4 +1,4 @@
-//! The reasons, and their sentences.
+//! Reasons for missed samples, with their sentences for tables and reports.
 
 use std::fmt;
 

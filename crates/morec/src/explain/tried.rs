@@ -1,5 +1,5 @@
-//! Rates of false alarms at which a missed sample is reported: tried, as scores and distances promise more than a recogniser
-//! then does.
+//! Finds the rate of false alarms at which a missed sample is reported. Each rate is tried with a real recogniser, because scores
+//! alone would promise too much.
 
 use crate::clip::{Clip, Span};
 use crate::eval::EVENT_TOLERANCE_SECS;

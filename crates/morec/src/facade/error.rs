@@ -1,4 +1,4 @@
-//! One error over those of the areas.
+//! One error type over the errors of all areas, for callers that do not distinguish them.
 
 /// Any error of this library's main path: files to takes, takes to an index, an index to a recogniser.
 ///

@@ -1,4 +1,4 @@
-//! Training in one call: takes and labels in, an index out.
+//! [`Trainer`](crate::Trainer): clips and labels in, an index out, in one call.
 
 use std::collections::BTreeSet;
 

@@ -1,4 +1,4 @@
-//! Reasons why bytes are no usable index.
+//! Errors of reading an index.
 
 /// Why bytes are not a usable index.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

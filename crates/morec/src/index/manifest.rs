@@ -1,4 +1,4 @@
-//! The manifest of an index file, in words.
+//! The manifest of an index file: its description in JSON.
 
 use std::collections::BTreeMap;
 

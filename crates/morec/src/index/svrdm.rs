@@ -1,4 +1,4 @@
-//! An index of the thesis's method, as words and tables.
+//! Reads and writes the model of the method svrdm as manifest and tensors.
 //!
 //! The tree is divided: its nodes and their figures are words, in the order of the nodes, and the points, weights and exemplars of all
 //! branches lie one behind the other in tables, in the order of the branches, beside tables of how many each has.

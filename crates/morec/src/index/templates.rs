@@ -1,4 +1,4 @@
-//! An index of templates, as words and tables.
+//! Reads and writes the model of the method templates as manifest and tensors.
 //!
 //! Words ([`Manifest`]) are what a person may want to read or another program to check: classes, parameters, thresholds, where it
 //! comes from. Tables ([`Tensor`]) are rows and matrices. A table that a file lacks was not there when it was written: older files have

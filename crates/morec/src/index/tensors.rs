@@ -1,4 +1,4 @@
-//! Tables of numbers as named tensors of bytes, little-endian.
+//! Named tensors of numbers in the bytes of a file, little-endian, and the checks of their sizes and values.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;

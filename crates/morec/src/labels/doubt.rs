@@ -1,4 +1,4 @@
-//! Tables that are probably not meant as they are read: seconds in columns of frames, misspelled names.
+//! Checks for tables that were probably misread: seconds in columns of frames, misspelt names.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! Tables of detections: what recognition writes, and what others write.
+//! Tables of detections, written by recognition or by other programs.
 
 use std::collections::BTreeMap;
 use std::fmt;

@@ -1,4 +1,4 @@
-//! What happens when.
+//! A class at a span of time, without a clip.
 
 use crate::TimeSpan;
 use crate::eval::GroundTruth;

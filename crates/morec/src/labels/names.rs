@@ -1,4 +1,4 @@
-//! Names that are not there, and many names in a sentence.
+//! Suggestions for unknown names, and lists of many names in a sentence.
 
 use std::cmp::Reverse;
 

@@ -1,4 +1,4 @@
-//! From rows of a table to samples in seconds of clips that exist.
+//! Turns the rows of a table into samples of existing clips, in seconds.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,4 +1,4 @@
-//! Tables of text separated by tabs, or as R and spreadsheets write them: the part that all of them share.
+//! Text tables separated by tabs, or in the variants of R and spreadsheets: the common part of all readers of tables.
 
 use crate::formats::{ParseError, Place, Warning};
 use mocap::shortened;

@@ -1,4 +1,4 @@
-//! Delivery of a session's events: a ring for each reader.
+//! Delivers the events of a session: one ring buffer for each reader, so that a slow reader delays nobody.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};

@@ -1,4 +1,4 @@
-//! One clock for arrivals, reports and events.
+//! The clock for arrivals, reports and events of a session.
 
 use std::sync::OnceLock;
 use std::time::{Instant, SystemTime, UNIX_EPOCH};

@@ -1,4 +1,4 @@
-//! Detections, final and tentative, and the buffer of one push.
+//! Detections, final and tentative, and the buffer for the results of one push.
 
 use std::fmt;
 

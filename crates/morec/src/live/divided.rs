@@ -1,4 +1,4 @@
-//! Recognition with an index whose classes lie on several machines.
+//! Recognition with an index that is divided by its classes among several machines.
 //!
 //! Matching the templates is nearly all of the work and of the memory, and it is independent from class to class. So each
 //! machine matches some classes ([`PartMatcher`] with a [part](TemplateModel::part) of the model), and one

@@ -1,4 +1,4 @@
-//! Detections to events: the refractory rule.
+//! Turns detections into events: numbers motions and applies the refractory time.
 
 use super::early::EarlyTracker;
 use super::event_buffer::EventBuffer;

@@ -1,4 +1,4 @@
-//! Frames from one thread to another: a bounded, wait-free ring whose buffers go round.
+//! Passes frames from one thread to another over a bounded, wait-free ring that reuses its buffers.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};

@@ -1,4 +1,4 @@
-//! Values that a live source delivers: a skeleton, and frames of it posed in the world.
+//! Values that a live source delivers: a skeleton, and frames posed in the world.
 
 use crate::clip::{Joint, Skeleton};
 use crate::features::{BoneSet, KeyPose};

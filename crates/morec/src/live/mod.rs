@@ -1,4 +1,6 @@
-//! Live recognition: poses in, detections out, nothing taken back.
+//! Live recognition: poses in, detections out. A reported detection is never revoked. [`PerformerStream`] has all options of a
+//! stream and is the place to start; [`Session`] runs a source, recognition and readers on threads. Nothing here opens files or
+//! sockets: sources and sinks are in `morec-live`.
 //!
 //! Four ways to run it, with the same detections:
 //!

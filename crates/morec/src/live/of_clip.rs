@@ -1,4 +1,4 @@
-//! A stored clip played through the live recogniser.
+//! Plays a stored clip through the live recogniser, as `morec recognize` does.
 
 use std::sync::Arc;
 use std::thread;

@@ -1,4 +1,4 @@
-//! One performer's way from posed skeletons to events.
+//! One performer of a source: from posed skeletons through diagnosis and recognition to events.
 
 use std::borrow::Cow;
 use std::sync::Arc;

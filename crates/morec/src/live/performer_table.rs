@@ -1,4 +1,4 @@
-//! Places of a source's performers: who has which, and who has gone.
+//! The performers of a source: their places, and which have left.
 
 use super::{MAX_PERFORMERS, PerformerId};
 

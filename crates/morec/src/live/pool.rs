@@ -1,4 +1,4 @@
-//! Many streams in one process, on a few threads.
+//! Runs many streams in one process on a few threads.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};

@@ -1,4 +1,4 @@
-//! One instant of a stream, as recognition takes it.
+//! A pose at one instant, in the form that recognition uses.
 
 use crate::clip::{Clip, Skeleton};
 use crate::features::{BoneSet, KeyPose};

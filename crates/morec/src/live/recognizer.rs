@@ -1,4 +1,4 @@
-//! The recogniser on a live stream, whatever the method.
+//! The recogniser of a live stream, for every method. Batches rows if asked to, and measures its own time.
 
 use std::sync::Arc;
 

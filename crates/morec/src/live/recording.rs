@@ -1,4 +1,4 @@
-//! Frames of a live stream kept, and made a clip of.
+//! Records frames of a live stream and makes a clip of them.
 
 mod tree;
 

@@ -1,4 +1,4 @@
-//! A source, recognition and readers, each at its own pace.
+//! A session: a source, recognition and readers, each at its own pace on its own thread.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};

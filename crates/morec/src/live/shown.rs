@@ -1,4 +1,4 @@
-//! Which bones a stream really shows.
+//! Determines which bones a stream contains, as joints appear.
 
 use crate::features::{ALL_BONES, BoneSet, KeyPose, breaks_stretch};
 

@@ -1,4 +1,4 @@
-//! Status of a session, readable at any time without holding anything up.
+//! Status of a session, readable at any time without delaying recognition.
 
 use std::array;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};

@@ -1,4 +1,4 @@
-//! From values to places on the paper, with round numbers at the ticks.
+//! Axes: scales values to positions on paper and chooses round numbers for ticks.
 
 /// Maps `from..to` in values to `low..high` on the paper.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,4 +1,4 @@
-//! A grid of values as a picture: the stronger, the denser.
+//! Heat maps: a grid of values, drawn darker for larger values.
 
 use super::axis::PlotAxis;
 use super::{Text, colour, open};

@@ -1,4 +1,4 @@
-//! Named stretches of time, lane by lane: what is labelled above what was found.
+//! Lanes of named spans of time, with labels above detections.
 
 use super::axis::PlotAxis;
 use super::{Text, colour, open};

@@ -1,4 +1,4 @@
-//! Writing SVG and HTML: names come from files and may hold anything.
+//! Escaping for SVG and HTML: names come from files and may contain any character.
 
 use std::fmt::{self, Display, Write};
 

@@ -1,4 +1,4 @@
-//! Trees, from the root at the left to the leaves at the right.
+//! Trees, drawn from the root on the left to the leaves on the right.
 
 use super::{Text, open};
 

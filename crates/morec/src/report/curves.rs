@@ -1,4 +1,4 @@
-//! Curves: what another sensitivity would have found, what scores are worth, what worse captures cost.
+//! Curves of the report: results at other sensitivities, reliability of scores, results on degraded captures.
 
 use std::mem::discriminant;
 

@@ -1,4 +1,4 @@
-//! Many short clips of one sample each: a small square for every clip, a block for every class.
+//! The overview of many short clips with one sample each: one square for each clip, one block for each class.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! Figures and times as the report writes them.
+//! Numbers and times in the form of the report.
 
 use std::fmt::{self, Display};
 

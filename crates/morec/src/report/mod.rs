@@ -1,4 +1,6 @@
-//! A report: one HTML file that stands alone, with figures, timelines, confusion and notes on what to teach next.
+//! The report: one self-contained HTML file with figures, timelines, the confusion matrix and notes on what to add next. Written
+//! by
+//! `evaluate` and `crossval`; contains no script except the player of clips.
 //!
 //! Timelines follow the thesis's Figures 5.13 and 5.14: ground truth above, detections below, colour by class.
 //! The file has no outside links, and no script but that of the [player](crate::player), if clips were given to play; its

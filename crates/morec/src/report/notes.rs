@@ -1,4 +1,4 @@
-//! Notes in plain words: what the figures say about what to teach next.
+//! Notes of the report: conclusions from the figures about missing labels and training data.
 
 use std::collections::BTreeSet;
 

@@ -1,4 +1,4 @@
-//! A colour for each class, light enough for dark writing on it in either theme.
+//! A colour for each class, light enough for dark text in both themes.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! How well motions were performed: the angle from the nearest sample over time, and the bones in order.
+//! How well motions were performed: the angle from the nearest sample over time, and the bones that differ most.
 
 use super::html::Text;
 use crate::explain::{BoneDeviation, Performance};

@@ -1,4 +1,4 @@
-//! A clip's cuts, from passes in both directions.
+//! The cuts of a clip, from forward and backward passes.
 
 use nalgebra::DMatrix;
 

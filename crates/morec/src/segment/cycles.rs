@@ -1,4 +1,4 @@
-//! Cycles: how long one repetition is, and how many a stretch holds.
+//! Cycles: the length of one repetition, and the number of repetitions in a stretch.
 
 use crate::features::Rows;
 pub use crate::periodicity::CycleParams;

@@ -1,4 +1,4 @@
-//! Kernel change points: the cuts that make segments as alike within as they can be, for a price a cut.
+//! Kernel change points: cuts that make segments as uniform as possible, at a penalty for each cut.
 //!
 //! The cost of a segment is the spread of its rows in the space of a cosine kernel, `n − |Σ u|² / n` over unit rows `u`:
 //! with prefix sums O(values) for any segment. The best sequence of cuts is found exactly (Killick, Fearnhead, Eckley:

@@ -1,4 +1,4 @@
-//! One way through a clip: Algorithm 2.
+//! One pass through a clip (thesis, Algorithm 2).
 
 use crate::pca::{ComponentCount, Moments};
 

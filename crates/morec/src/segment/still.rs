@@ -1,4 +1,4 @@
-//! Still stretches, and T-poses among them.
+//! Stretches without motion, and T-poses among them.
 
 use std::ops::Range;
 

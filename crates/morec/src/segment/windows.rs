@@ -1,4 +1,4 @@
-//! Statistics of sliding windows: what a stretch of a second or two is like, whatever its phase.
+//! Statistics of sliding windows that describe one or two seconds of motion independently of its phase.
 
 use crate::features::{FeatureParams, Rows};
 

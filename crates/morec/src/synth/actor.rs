@@ -1,4 +1,4 @@
-//! An actor: a person with a timeline, the words in which motions are written.
+//! An actor: a synthetic person with a timeline, and the vocabulary in which motions are written.
 
 use super::body::SyntheticBody;
 use super::person::Person;

@@ -1,4 +1,4 @@
-//! Everyday motion: what a recogniser has to keep silent at.
+//! Everyday motion, at which a recogniser must not report anything.
 //!
 //! Broad and random on purpose: walking, reaching and gesticulating of all sizes and speeds. None of it is one
 //! of the demo's gesture classes, and what people choose as signals is left out: both arms raised alike, one arm

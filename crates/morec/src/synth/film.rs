@@ -1,4 +1,4 @@
-//! From a timeline to a clip: sway, sensor noise, frames.
+//! Turns a timeline into a clip: adds sway and sensor noise and samples frames.
 
 use nalgebra::Quaternion;
 

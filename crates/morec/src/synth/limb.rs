@@ -1,4 +1,4 @@
-//! Two-bone inverse kinematics: where elbow and knee are when hand and foot are known.
+//! Two-bone inverse kinematics: positions of elbow and knee from hand and foot.
 
 use nalgebra::{Matrix3, Rotation3};
 

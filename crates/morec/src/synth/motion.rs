@@ -1,4 +1,4 @@
-//! The motions by name.
+//! The available motions, by name.
 
 use super::actor::{Actor, Perform};
 use super::{everyday, gestures, unknown};

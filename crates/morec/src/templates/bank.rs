@@ -1,4 +1,4 @@
-//! Subsequence dynamic time warping of many templates against one stream, a tick at a time.
+//! Subsequence dynamic time warping of many templates against one stream, tick by tick.
 
 use std::sync::Arc;
 

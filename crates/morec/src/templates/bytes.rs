@@ -1,4 +1,4 @@
-//! Rows as whole multiples of a step, column by column: bytes in a file.
+//! Rows as whole multiples of a step for each column, stored in bytes.
 
 use crate::features::Rows;
 

@@ -1,4 +1,4 @@
-//! The nearest match of every class, tick by tick.
+//! The nearest match of every class at each tick.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! The nearest matches of a stream's classes, kept: what one part of a divided index finds.
+//! Serialised nearest matches of the classes in a stream: the result of one part of a divided index.
 
 use crate::decode::{ClassDistance, FAR};
 

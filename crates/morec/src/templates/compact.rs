@@ -1,4 +1,4 @@
-//! Rows in steps of a byte, so that index files are small.
+//! Rounds rows to steps of a byte, which makes index files small.
 
 use crate::features::Rows;
 

@@ -1,4 +1,4 @@
-//! How well a motion was performed: its bones against those of the nearest sample.
+//! Compares a performed motion with the nearest sample, bone by bone.
 
 use crate::TimeSpan;
 use crate::features::{ALL_BONES, BONE_WEIGHTS, BoneSet, Rows};

@@ -1,4 +1,4 @@
-//! Feature rows in, detections in ticks out.
+//! The engine of the method templates: feature rows in, detections in ticks out.
 
 use crate::decode::{Candidate, Decoder, TickDetection};
 use crate::features::RowLayout;

@@ -1,4 +1,4 @@
-//! Poses that are held: signs of a hand that are recognised by what is kept, not by how it was reached.
+//! Held poses: signs of a hand that are recognised by the pose that is held, not by the motion that leads to it.
 //!
 //! A template says how a motion goes; a sign that is held for a second goes nowhere, and standing still is near it by definition.
 //! Each tick's pose is compared with poses of the held classes and with poses of anything else, and a class whose poses stay the

@@ -1,4 +1,4 @@
-//! Templates matched against a stream, each match held against a body at rest.
+//! Matches templates with a stream and rejects matches that are not clearly better than a body at rest.
 
 use std::sync::Arc;
 

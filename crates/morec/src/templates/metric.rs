@@ -1,4 +1,4 @@
-//! The metric that forgets what differs between people doing the same.
+//! The metric, which suppresses the differences between people who perform the same motion.
 
 use std::sync::Arc;
 

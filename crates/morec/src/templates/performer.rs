@@ -1,4 +1,4 @@
-//! Performers other than the one who taught: a wider gate, and when it is open.
+//! Relaxed matching for performers other than the training subject, and the decision when it applies.
 
 use serde::{Deserialize, Serialize};
 

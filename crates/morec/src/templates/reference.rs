@@ -1,4 +1,4 @@
-//! Rows that a stream is compared with, one by one, under a metric of their own.
+//! Rows with which a stream is compared one by one, with a metric of their own.
 
 use crate::classes::ClassId;
 use crate::features::Rows;

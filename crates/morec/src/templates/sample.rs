@@ -1,4 +1,4 @@
-//! A labelled sample as templates are made of it.
+//! A labelled sample, from which templates are made.
 
 use crate::classes::ClassId;
 use crate::features::Rows;

@@ -1,4 +1,4 @@
-//! Divisors that make distances of small and of large motions comparable.
+//! Divisors that make the distances of small and large motions comparable.
 
 use multiversion::multiversion;
 

@@ -1,4 +1,4 @@
-//! Means and spreads of the stretches of a stream that end now, and its noise.
+//! Means and spreads of all stretches that end at the present tick, and the noise of the stream.
 
 use crate::features::{Rows, USUAL_NOISE_GAIN};
 

@@ -1,4 +1,4 @@
-//! Distance of a stream from every class at each tick, before any decision.
+//! The distance of a stream to every class at each tick, before any decision. Used by training and explanations.
 
 use crate::classes::ClassId;
 use crate::decode::{Candidate, FAR};

@@ -1,4 +1,4 @@
-//! Rows in whole units of 16 bits, whose products are fast and whose distances are exact.
+//! Rows in whole units of 16 bits, with fast products and exact distances.
 
 use crate::features::Rows;
 

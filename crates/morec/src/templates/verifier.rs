@@ -1,4 +1,4 @@
-//! A second look at every candidate: is this stretch, as a whole, one of the class's samples?
+//! The verifier: a learned examination of each candidate as a whole stretch.
 //!
 //! Warping finds where a class could be and is generous with it. The verifier compares the whole stretch, at eight
 //! even steps, with stretches that were the class and stretches that only came near it, and weighs how near the

@@ -1,4 +1,4 @@
-//! Which classes are activities, and what windows they are known by.
+//! Decides which classes are activities, and computes the windows that describe them.
 
 use std::collections::{BTreeMap, BTreeSet};
 

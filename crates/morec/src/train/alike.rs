@@ -1,4 +1,4 @@
-//! Classes whose samples are as near to another class as to their own: where two are about as near, neither is reported.
+//! Finds classes whose samples are as near to another class as to their own; motions near to both would not be reported.
 
 use std::collections::BTreeSet;
 use std::ops::Range;

@@ -1,4 +1,4 @@
-//! Training from clips, all in one.
+//! Training from clips and labels in one call.
 
 use std::sync::{Mutex, PoisonError};
 

@@ -1,4 +1,4 @@
-//! Streams compared with templates, in parallel: the part of a training that takes the time.
+//! Compares streams with templates in parallel. Most of the time of a training is spent here.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 

@@ -1,4 +1,4 @@
-//! Clips and labels sorted out: which clip teaches, which is background, which is of no use.
+//! Sorts clips and labels into training clips, background and unused clips, with notes about the latter.
 
 use std::collections::{BTreeMap, BTreeSet};
 

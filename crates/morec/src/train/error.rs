@@ -1,4 +1,4 @@
-//! Why nothing could be trained.
+//! Errors of training.
 
 use crate::templates::TemplateModelError;
 

@@ -1,4 +1,4 @@
-//! Everyday motion to train with: synthetic, and real motion that is built in.
+//! Built-in everyday motion for training: synthetic and recorded.
 
 use rayon::prelude::*;
 

@@ -1,4 +1,4 @@
-//! Stretches that came near a class in training, and whether they were it: what the verifier learns from.
+//! Stretches that came near a class in training, right or wrong, from which the verifier is learned.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;

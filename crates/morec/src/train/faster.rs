@@ -1,4 +1,4 @@
-//! Faster copies of samples as templates, for people who perform faster than those who teach.
+//! Faster copies of samples as templates, for people who perform faster than the training subjects.
 
 use std::collections::BTreeSet;
 use std::ops::Range;

@@ -1,4 +1,4 @@
-//! From clips and labels to what training works on.
+//! Turns clips and labels into streams of feature rows with samples.
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};

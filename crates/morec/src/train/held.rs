@@ -1,4 +1,4 @@
-//! Which classes are held poses, and what poses they are.
+//! Decides which classes are held poses, and computes these poses.
 
 use std::collections::BTreeSet;
 

@@ -1,4 +1,4 @@
-//! Whether a class is a gesture or goes on, by its labels.
+//! Decides by its labels whether a class is a gesture or an activity.
 
 use std::collections::BTreeMap;
 use std::ops::Range;

@@ -1,5 +1,6 @@
-//! Every template matched against every stream, and what comes near: a match is looked at when it is made, and of each tick only the
-//! nearest is kept, so that memory grows with the ticks and not with the templates.
+//! Matches every template with every stream and keeps the near matches. Only the nearest match of each tick is kept, so that
+//! memory
+//! grows with the ticks and not with the templates.
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! Mirrored copies of samples: what is shown with one hand teaches the other, or what the class is not.
+//! Mirrored copies of samples: used as samples of the other side, or as negative examples.
 
 use crate::classes::ClassId;
 use crate::features::{BoneSet, mirrored_rows};

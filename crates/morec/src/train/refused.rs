@@ -1,4 +1,4 @@
-//! Motion that is named as background, and would be reported all the same, becomes other motion of the second look.
+//! Background motion that the trained index would still report becomes other motion of the second look.
 
 use rayon::prelude::*;
 

@@ -1,4 +1,4 @@
-//! Samples that stand for their class among the templates, where whole motions are judged.
+//! Chooses the samples that represent their class among the templates, if whole motions are judged by the second look.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! Ridge regression, linear and with a kernel, and what it says of each sample when its group is left out.
+//! Ridge regression, linear and with a kernel, and its predictions for each sample with the sample's group left out.
 
 use std::collections::BTreeSet;
 

@@ -1,4 +1,4 @@
-//! Scatter of samples within a class, and of rows at all.
+//! Scatter matrices: of samples within a class, and of all rows.
 
 use std::collections::BTreeMap;
 

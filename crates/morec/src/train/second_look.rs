@@ -1,4 +1,4 @@
-//! What the second look learns: taught segments, their metric, and the bound of its score.
+//! Trains the second look: segments, their metric, and the bound of its score.
 
 use std::collections::BTreeMap;
 

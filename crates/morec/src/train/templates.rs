@@ -1,4 +1,4 @@
-//! The training itself, step by step as in the method's description.
+//! Training of the method templates, step by step as in docs/method.md.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,4 +1,4 @@
-//! The distance threshold of all classes together.
+//! The distance threshold, common to all classes.
 
 use crate::decode::FAR;
 use crate::templates::Match;

@@ -1,4 +1,4 @@
-//! Detection of the moving part of a whole clip.
+//! Finds the moving part of a whole clip.
 
 use std::ops::Range;
 

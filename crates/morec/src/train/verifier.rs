@@ -1,4 +1,4 @@
-//! Learning to verify candidates.
+//! Training of the verifier.
 
 use std::collections::BTreeMap;
 

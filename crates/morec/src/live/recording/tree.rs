@@ -1,4 +1,4 @@
-//! Recorded places and rotations to joints that hang together.
+//! Makes a connected skeleton of recorded positions and rotations.
 
 use crate::clip::{Clip, Joint, JointTrack, Skeleton};
 use crate::features::Hand;

@@ -1,4 +1,4 @@
-//! Pictures of what other modules compute: they return numbers, and are drawn here.
+//! Pictures of results of other modules, which return numbers only.
 
 mod confidence_map;
 mod curves;

@@ -1,4 +1,4 @@
-//! Repetitions of an activity while it goes on.
+//! Counts the repetitions of an activity while it continues.
 
 use crate::decode::Repetitions;
 use crate::periodicity::{CycleParams, period};

@@ -1,4 +1,4 @@
-//! Rows of the second look, made of feature rows.
+//! Rows of the second look, computed from feature rows.
 //!
 //! Feature rows hold bone directions in the heading frame. With the proportions of an average body (Winter, *Biomechanics and Motor
 //! Control of Human Movement*, 2009, Fig. 4.1) they place hands, elbows, feet and knees, in any performer. A row has

@@ -1,4 +1,4 @@
-//! A lower bound of what aligning two segments costs: most samples are not near, and need no alignment.
+//! A lower bound of the cost of aligning two segments, which saves the alignment of most samples.
 
 use multiversion::multiversion;
 

@@ -1,4 +1,4 @@
-//! One comparison of a segment, from end to end, with every taught sample.
+//! Compares one segment, from end to end, with every training sample.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! From matches at every tick to one report for each motion, with nothing taken back.
+//! Decoding with the second look: from matches at every tick to one report for each motion, which is never revoked.
 
 use crate::classes::ClassId;
 use crate::decode::{ClassDistance, MIN_AGE_TICKS, TickDetection, copy_with_room};

@@ -1,4 +1,4 @@
-//! Taught segments and stretches of other motion, laid out for comparing.
+//! Training segments and stretches of other motion, laid out for fast comparison.
 
 use crate::features::Rows;
 use crate::math::portable;

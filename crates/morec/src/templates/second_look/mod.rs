@@ -1,4 +1,6 @@
-//! The whole motion around a match, compared once with every taught sample.
+//! The second look: compares the whole motion around a match once with every training sample. It decides in indexes of bodies;
+//! the
+//! template match only proposes candidates.
 //!
 //! A subsequence match explains only a part of a motion: a push is found inside a serve. The second look takes each match as a
 //! candidate, finds the whole motion around it, compares that segment from end to end with the taught segments of

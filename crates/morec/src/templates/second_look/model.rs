@@ -1,4 +1,4 @@
-//! What an index holds for the second look.
+//! The trained data of the second look, as stored in an index.
 
 use crate::classes::ClassId;
 use crate::features::{BoneSet, Rows};

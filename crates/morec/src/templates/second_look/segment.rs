@@ -1,4 +1,4 @@
-//! Where a motion begins and ends, and its rows.
+//! Finds where a motion begins and ends around a match, and its rows.
 
 use std::ops::Range;
 
