@@ -1,4 +1,6 @@
-//! A clip: a skeleton and its motion, as a file gave it.
+//! A clip: a skeleton and its motion, with the units and axes of its file. Readers produce it, [`import`](crate::import) converts
+//! it
+//! to metres with Y up, and everything after that works on the result.
 
 #[cfg(feature = "formats")]
 use crate::math::same_hemisphere;

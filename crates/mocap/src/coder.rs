@@ -1,4 +1,4 @@
-//! An adaptive binary range coder, and whole numbers on top of it.
+//! An adaptive binary range coder, and the coding of whole numbers with it. Used by the stored forms of clips and feature rows.
 //!
 //! The coder narrows a range bit by bit and carries into bytes already made (Martin, *Range encoding: an algorithm for
 //! removing redundancy from a digitised message*, 1979); chances follow what comes as in Howard and Vitter, *Arithmetic

@@ -1,4 +1,4 @@
-//! Rotations for clips of points: a skeleton of fixed bone lengths laid into the positions of the body's joints.
+//! Rotations for clips of points: fits a skeleton of constant bone lengths to the positions of the joints.
 //!
 //! Bones get the median of their measured lengths. In each frame every joint in turn, from the hips outwards, is turned by the rotation
 //! that brings all joints behind it nearest to where they were measured, in least squares (Kabsch 1976); rounds of this

@@ -1,4 +1,4 @@
-//! The bones of a humanoid as VMC names them, how they hang together, and where they are in an average person.
+//! The bones of a humanoid with their names in VMC, their hierarchy, and their positions in an average person.
 
 use crate::math::Vec3;
 use crate::pose::Hand;

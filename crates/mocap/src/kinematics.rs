@@ -1,4 +1,4 @@
-//! Forward kinematics: from joint rotations to joint positions in the world.
+//! Forward kinematics: joint positions in the world from joint rotations.
 //!
 //! ```
 //! use mocap::kinematics::WorldPose;

@@ -1,4 +1,4 @@
-//! The few pieces of geometry that every stage shares, over [`nalgebra`].
+//! Geometry shared by all modules, on top of [`nalgebra`].
 
 use nalgebra::{Unit, UnitQuaternion, Vector3};
 

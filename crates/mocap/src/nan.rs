@@ -1,4 +1,4 @@
-//! JSON as Python writes it: with `NaN` and `Infinity`, which JSON does not have.
+//! Reads JSON with `NaN` and `Infinity`, as Python writes it, which standard JSON does not allow.
 
 use std::borrow::Cow;
 

@@ -1,4 +1,4 @@
-//! Errors and warnings with their place in a file: shared by everything that reads bytes.
+//! Errors and warnings with their place in a file, used by all readers.
 
 use std::fmt;
 

@@ -1,4 +1,4 @@
-//! The same motion at another rate.
+//! Resamples a clip to another rate.
 //!
 //! ```
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {

@@ -1,4 +1,4 @@
-//! A seeded source of chance that gives the same numbers on every platform, for ever.
+//! A seeded random number generator with the same numbers on every platform, in every version.
 
 /// SplitMix64 (Steele, Lea, Flood: Fast splittable pseudorandom number generators, OOPSLA 2014).
 ///

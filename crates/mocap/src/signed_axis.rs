@@ -1,4 +1,4 @@
-//! Axes with a direction.
+//! Coordinate axes with a sign.
 
 use std::fmt;
 use std::str::FromStr;

@@ -1,4 +1,5 @@
-//! For tests of every crate: bodies, the folder of real clips, and how a test says that it is skipped. No part of the interface.
+//! Test helpers for all crates: bodies, the folder of real clips, and the report of skipped tests. Not part of the public
+//! interface.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};

@@ -31,7 +31,9 @@ pub struct Args {
     /// Draw a panel into this file and end; needs no display
     #[arg(long, value_name = "FILE.png")]
     screenshot: Option<PathBuf>,
-    /// The panel to show: library, label, classes, train or live [default: library, or the last session's panel]
+    /// The panel to show [default: the last session's panel, or library]
+    ///
+    /// library, label, classes, train or live.
     #[arg(long, value_name = "NAME", value_parser = panel)]
     panel: Option<Panel>,
     /// The clip that is shown in a screenshot
@@ -45,10 +47,12 @@ pub struct Args {
         requires = "screenshot"
     )]
     at: f64,
-    /// In a screenshot, search for the clip's first label of this class and compare the nearest hit
+    /// Search for the clip's first label of this class, compare the nearest hit
     #[arg(long, value_name = "CLASS", requires = "screenshot")]
     like: Option<String>,
-    /// In a screenshot of the panel train, show the tree of the method of 2009 instead of a cross-validation
+    /// Show the tree of the method of 2009 instead of a cross-validation
+    ///
+    /// In a screenshot of the panel train.
     #[arg(long, requires = "screenshot")]
     tree: bool,
     /// Width and height of a screenshot, pixels

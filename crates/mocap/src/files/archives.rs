@@ -1,4 +1,4 @@
-//! Files that are packed, in UTF-16, or hold several clips of which one is meant.
+//! Packed files, files in UTF-16, and the choice among several clips of one file.
 
 use std::borrow::Cow;
 use std::fs::File;

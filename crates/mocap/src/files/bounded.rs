@@ -1,4 +1,4 @@
-//! Whole files: into memory up to a limit, and out of it at once.
+//! Reads whole files into memory up to a limit, and writes whole files at once.
 
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read};

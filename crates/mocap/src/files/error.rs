@@ -1,4 +1,4 @@
-//! Why a file cannot be used.
+//! Errors of reading files.
 
 use std::io;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! Clips among the files of a folder.
+//! Finds the clips among the files of a folder and its subfolders.
 
 use std::collections::{HashMap, HashSet};
 use std::fs::{self, File};

@@ -1,4 +1,4 @@
-//! Places of the files that another file needs.
+//! Finds the other files that a file needs, such as buffers of glTF. Only files in the same folder or below are read.
 
 use std::borrow::Cow;
 use std::io;

@@ -1,4 +1,4 @@
-//! Motions whose skeleton is in a file of its own: AMC with ASF, OpenSim's `.mot` with `.osim`.
+//! Motions with a separate skeleton file: AMC with ASF, OpenSim's `.mot` with `.osim`.
 
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,5 @@
-//! Reader of clip files: from bytes and their path to clips, and on to takes.
+//! The reader of clip files: from a path and its bytes to clips, and to takes. The command, the studio and Python read through
+//! it.
 
 use std::fs::File;
 use std::path::{Path, PathBuf};

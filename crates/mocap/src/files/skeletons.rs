@@ -1,4 +1,4 @@
-//! The ASF skeleton of an AMC motion, or the model of an OpenSim motion: which files near it may be it, the likeliest first.
+//! Candidates for the ASF skeleton of an AMC motion, or for the model of an OpenSim motion, most likely first.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! The takes of many files.
+//! Reads the takes of many files in parallel.
 
 use std::ops::Deref;
 

@@ -1,4 +1,4 @@
-//! From poses, frame by frame, to a clip: what every reader of formats with rotations ends with.
+//! Builds a clip from poses, frame by frame. All readers of formats with rotations use it; limits of size are enforced here.
 
 use super::{ParseError, Place};
 use crate::clip::{Clip, Joint, JointTrack, Skeleton, Span};

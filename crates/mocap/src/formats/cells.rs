@@ -1,4 +1,4 @@
-//! Rows and cells of tables of text, and the numbers in them.
+//! Rows and cells of text tables, and the numbers in them.
 
 use std::borrow::Cow;
 

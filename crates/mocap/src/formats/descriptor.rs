@@ -1,4 +1,4 @@
-//! All that is known of a format, and what its reader is given.
+//! The description of a format (names, extensions, reader), and the input of a reader. A new format is added by its descriptor.
 
 use std::io;
 

@@ -1,4 +1,4 @@
-//! Encodings of names in files of text.
+//! Text encodings of names in files.
 
 /// Encoding of the names in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,4 +1,4 @@
-//! What is known of FBX, whether or not its reader is built.
+//! The descriptor of FBX, present even if its reader is not built.
 
 use super::descriptor::{FormatDescriptor, FormatInput};
 use super::{Loaded, ParseError};

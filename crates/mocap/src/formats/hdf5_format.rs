@@ -1,4 +1,4 @@
-//! What is known of HDF5, whether or not its reader is built.
+//! The descriptor of HDF5, present even if its reader is not built.
 
 use super::descriptor::{FormatDescriptor, FormatInput};
 use super::{Loaded, ParseError};

@@ -1,4 +1,4 @@
-//! The beginning of a file, by which formats are recognised.
+//! The first bytes of a file, by which its format is recognised.
 
 /// The beginning of a file.
 pub(super) struct Head<'a> {

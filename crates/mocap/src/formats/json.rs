@@ -1,4 +1,4 @@
-//! JSON documents that break off: what a recorder that was stopped leaves.
+//! Reads incomplete JSON documents, as a stopped recorder leaves them.
 
 use serde_json::Value;
 

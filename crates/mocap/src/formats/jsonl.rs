@@ -1,4 +1,4 @@
-//! Poses as lines of JSON: what live sources send, recorded.
+//! Poses as lines of JSON: a recording of what live sources send.
 //!
 //! One object a line, right-handed axes, Y up; `{"t": 1.25, "positions": {"hips": [0, 0.92, 0], …}}` for points, by role
 //! or by any other name, or `{"t": 1.25, "root": [0, 0.92, 0], "rotations": {"left_arm": [x, y, z, w], …}}` for joints

@@ -1,4 +1,4 @@
-//! The rate of keys that stand anywhere in time.
+//! Chooses a frame rate for keyframes at arbitrary times.
 
 use super::{Place, Warning};
 

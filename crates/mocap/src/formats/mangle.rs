@@ -1,4 +1,4 @@
-//! For the readers' tests: files cut short and altered, and what must hold of whatever is read of them.
+//! Test helpers for readers: truncated and altered files, and properties that every result must have.
 
 use super::Loaded;
 

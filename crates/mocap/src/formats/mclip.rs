@@ -1,4 +1,4 @@
-//! The stored form of compressed clips, read as any other clip: its curves at the frames of their source.
+//! Reads the stored form of compressed clips: its curves, sampled at the frames of their source.
 
 use super::descriptor::FormatDescriptor;
 use super::{Limits, Loaded, ParseError, Place, Warning};

@@ -1,4 +1,4 @@
-//! Recorded packets of Sony's mocopi, one behind the other.
+//! Recorded packets of Sony's mocopi, one after the other in a file.
 //!
 //! Boxes of a little-endian length, a four-letter name and a value, some of them nested; after t-34400's
 //! *mocopi_protocol_supplement*. `skdf` holds the skeleton, `fram` one frame: for each of 27 bones a quaternion (x, y, z, w)

@@ -1,4 +1,4 @@
-//! From a table of points to clips: what C3D, TRC and tables of positions have in common.
+//! Builds clips from tables of points: the common part of C3D, TRC and tables of positions.
 
 mod gaps;
 mod point;

@@ -1,4 +1,4 @@
-//! Scenes of nodes: which of them are skeletons, and what these do over time.
+//! Scenes of nodes: finds the skeletons among them, and their motion.
 
 use super::builder::{ClipBuilder, check_size};
 use super::keys::KeyGrid;

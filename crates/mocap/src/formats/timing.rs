@@ -1,4 +1,4 @@
-//! From the times of frames to a fixed rate, and points at these times to clips.
+//! Resamples frames at arbitrary times to a constant rate, and makes clips of points from them.
 
 mod ordered;
 mod schedule;

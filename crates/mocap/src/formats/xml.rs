@@ -1,4 +1,4 @@
-//! XML as the readers of suits and models need it: text of any encoding, a located error, elements by name.
+//! XML for readers: text of any encoding, errors with their place, elements by name.
 
 use std::borrow::Cow;
 

@@ -1,4 +1,4 @@
-//! Which way is up, and making it Y.
+//! Infers the up axis, and rotates the clip so that Y is up.
 
 use super::body::BodyMeasures;
 use super::options::Stated;

@@ -1,4 +1,4 @@
-//! Measurements of the body over a clip, in the file's own units and axes.
+//! Measures of the body over a clip, in the units and axes of its file.
 
 use crate::clip::Clip;
 use crate::kinematics::WorldPose;

@@ -1,4 +1,4 @@
-//! From a clip in its file's units and axes to a take: metres, Y up, roles.
+//! Turns a clip in its file's units and axes into a take: metres, Y up, with roles.
 
 use crate::clip::Clip;
 use crate::formats::bvh::{self, BvhOptions};

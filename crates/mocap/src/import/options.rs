@@ -1,4 +1,4 @@
-//! Options of the import, and what formats state about lengths and axes.
+//! Options of the import, and the units and axes that formats define.
 
 use crate::formats::Format;
 use crate::roles::mapping::Mapping;

@@ -1,4 +1,4 @@
-//! Roles of points, and joints where a role is played by a place between points.
+//! Roles of points, and joints computed between points.
 
 use crate::clip::{Clip, Gap, Span};
 use crate::formats::ParseError;

@@ -1,4 +1,4 @@
-//! Telling a rest pose in the first frame from motion.
+//! Detects a rest pose in the first frame.
 //!
 //! Converters put a T-pose (or the zero pose) before the motion, for programs that take the first frame as the
 //! skeleton's rest. The frame stays in the data; features and segments leave it out.

@@ -1,4 +1,4 @@
-//! A clip made ready for everything that follows.
+//! A take: a clip after import.
 
 use crate::clip::{Clip, Joint, Skeleton, Span};
 use crate::formats::Warning;

@@ -1,4 +1,4 @@
-//! Whether the body moves along the floor.
+//! Determines whether the body moves along the floor.
 
 use crate::clip::{Clip, Span};
 use crate::kinematics::position_of;

@@ -1,4 +1,4 @@
-//! How long the file's unit of length is, from how tall a body is.
+//! Infers the file's unit of length from the height of the body.
 
 use std::ops::RangeInclusive;
 

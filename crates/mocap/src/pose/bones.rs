@@ -1,4 +1,4 @@
-//! The bones whose directions describe a pose, and which of them a skeleton offers.
+//! The bones whose directions describe a pose, and which of them a skeleton has.
 
 use std::fmt;
 

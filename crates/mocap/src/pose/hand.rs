@@ -1,4 +1,4 @@
-//! Hands: their points, the frame of the palm, their length.
+//! Hands: their points, the frame of the palm, and their length.
 
 use crate::math::Vec3;
 use crate::roles::Role;

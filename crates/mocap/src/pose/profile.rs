@@ -1,4 +1,4 @@
-//! Kinds of performers: what their rows are made of.
+//! Profiles: kinds of performers, which determine the values of feature rows.
 
 use crate::math::Vec3;
 use crate::roles::{Role, RoleMap};

@@ -1,4 +1,4 @@
-//! Role maps that cannot be true: each doubt is a sentence that says what to do.
+//! Checks role maps for impossible bodies. Each doubt is a sentence that says what to do.
 
 use super::meaning::NameMeaning;
 use super::names::JointNames;

@@ -1,4 +1,4 @@
-//! Finding the roles: limbs and trunk by the shape of the tree, then names, then sides.
+//! Infers roles: limbs and trunk by the shape of the tree, then names, then sides.
 
 use super::limbs::{self, Limb, Part};
 use super::meaning::{NameMeaning, Side};

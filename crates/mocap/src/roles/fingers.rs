@@ -1,4 +1,4 @@
-//! Fingers of a skeleton: by names, in the order of the tree.
+//! Fingers of a skeleton, by names in the order of the tree.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;

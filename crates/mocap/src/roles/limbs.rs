@@ -1,4 +1,4 @@
-//! Which joints of a limb's chain are thigh, shin and foot, or collar, arm, forearm and hand.
+//! Assigns the joints of a limb's chain: thigh, shin and foot, or collar, arm, forearm and hand.
 //!
 //! Every choice of three points along the chain is judged: by what the names say, by the proportions of people, by how
 //! far the two limbs of the pair begin apart, and by where the chain bends in the poses at hand. Names weigh most, but no

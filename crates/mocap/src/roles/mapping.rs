@@ -1,4 +1,4 @@
-//! Mapping files: who plays what, said by a person.
+//! Mapping files, in which the user assigns roles.
 //!
 //! Text, one role a line: the role's name, a tab, the joint's name as the clip spells it, blanks and all (the
 //! first of that name). `-` gives the role to no joint. Roles that are not named keep what was found. Empty lines

@@ -1,4 +1,4 @@
-//! Which joint of a skeleton plays which part of the body.
+//! Roles: the joint of each body part in a skeleton.
 
 mod check;
 mod find;

@@ -1,4 +1,4 @@
-//! Joint names read as a side and a possible part of the body.
+//! Reads joint names as a side and a possible body part.
 //!
 //! Names are evidence, not truth: `LeftLeg` is the shin where there is a `LeftUpLeg`, `LeftShoulder` the collar
 //! where there is a `LeftArm`. Such words get a kind of their own here and are settled in [`super::limbs`].

@@ -1,4 +1,4 @@
-//! The legs and the arms among the pairs of limbs that mirror each other.
+//! Identifies legs and arms among the pairs of mirrored limbs.
 
 use super::RoleMap;
 use super::limbs::{self, Limb, Part};

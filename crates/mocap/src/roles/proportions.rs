@@ -1,4 +1,4 @@
-//! The proportions of people, as far as they distinguish skeletons.
+//! Proportions of people that distinguish human skeletons from others.
 //!
 //! Lengths of segments as shares of body height: Drillis and Contini, *Body Segment Parameters* (1966), as tabled by
 //! Winter, *Biomechanics and Motor Control of Human Movement*, figure 4.1: thigh .245, shin .246, upper arm .186, forearm

@@ -1,4 +1,4 @@
-//! Which limb of a pair is the left one.
+//! Determines the left limb of a pair.
 
 use super::limbs::Limb;
 use super::meaning::Side;

@@ -1,4 +1,4 @@
-//! Hips, torso, neck and head.
+//! Assigns hips, torso, neck and head.
 
 use super::Role;
 use super::meaning::NameMeaning;

@@ -1,4 +1,4 @@
-//! The words of joint names: taking names apart, and what each word means.
+//! The words of joint names: splitting names, and the meaning of each word.
 
 use super::meaning::{NameMeaning, Side};
 

@@ -1,4 +1,4 @@
-//! Keeping joints where they were in the world: thresholds by reach, then closer fits where that is not enough.
+//! Keeps joints near their positions in the world: thresholds by reach first, then closer fits if that is not enough.
 
 use super::measure::angle_between;
 use super::params::{SmoothError, SmoothParams};

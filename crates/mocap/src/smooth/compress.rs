@@ -1,4 +1,4 @@
-//! A clip to curves.
+//! Compresses a clip to curves.
 
 use super::bound::{self, chord, too_coarse};
 use super::errors::Errors;

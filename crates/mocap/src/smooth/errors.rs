@@ -1,4 +1,4 @@
-//! Distances of a compressed clip from its source, as numbers.
+//! Differences between a compressed clip and its source, as numbers.
 
 /// Distances between a clip and its curves, over all frames and joints.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize)]

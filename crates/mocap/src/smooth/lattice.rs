@@ -1,4 +1,4 @@
-//! Control points in whole steps: what is fitted is what is stored.
+//! Rounds control points to whole steps before the fit is checked, so that the stored curve is the fitted one.
 //!
 //! A key of a rotation is kept as its modified Rodrigues parameters `v / (1 + w)`, three numbers of at most 1 that
 //! need no square root's care anywhere (Schaub and Junkins, *Stereographic orientation parameters for attitude

@@ -1,4 +1,4 @@
-//! Distance of a compressed clip from its source, frame by frame.
+//! Measures the difference between a compressed clip and its source, frame by frame.
 
 use super::CompressedClip;
 use super::errors::Errors;

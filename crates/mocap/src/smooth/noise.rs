@@ -1,4 +1,4 @@
-//! How much of a clip is sensor noise.
+//! Estimates the sensor noise of a clip.
 
 use super::SmoothParams;
 use crate::clip::Clip;

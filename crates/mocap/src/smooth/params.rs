@@ -1,4 +1,4 @@
-//! Allowed distance of a compressed clip from its source.
+//! Thresholds of the difference between a compressed clip and its source.
 
 /// Thresholds of [`compress`](super::compress).
 ///

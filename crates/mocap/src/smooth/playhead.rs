@@ -1,4 +1,4 @@
-//! Curves frame by frame: only the frame at hand is held, however long the clip is.
+//! Samples curves frame by frame in constant memory, however long the clip is.
 
 use super::bezier::{ChannelKind, ChannelValue, CurveSegment, rotation};
 use crate::clip::{Clip, JointTrack, Skeleton};

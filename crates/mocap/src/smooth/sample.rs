@@ -1,4 +1,4 @@
-//! Curves back to frames, at any rate.
+//! Samples curves at any rate.
 
 use super::bezier::rotation;
 use super::{CompressedClip, Curve};

@@ -5,6 +5,11 @@ use morec::formats::{ParseError, Place};
 use super::annotation::{Annotation, ClipLengths, ReadLabels, secs};
 use super::timed_text;
 
+/// Reads a label track, a TextGrid or subtitles of one clip. Times are seconds from the clip's beginning. `clip` must be given,
+/// because these formats do not name it; `tiers` chooses tiers of a TextGrid.
+///
+/// # Errors
+/// No clip is given, or a line is not `start<TAB>stop<TAB>name`.
 pub fn read(text: &str, clip: Option<&str>, tiers: &[String]) -> Result<ReadLabels, ParseError> {
     let clip = clip.ok_or_else(|| {
         ParseError::new(
@@ -50,6 +55,10 @@ pub fn read(text: &str, clip: Option<&str>, tiers: &[String]) -> Result<ReadLabe
     Ok(read)
 }
 
+/// Writes annotations, all of one clip, as a label track.
+///
+/// # Errors
+/// A label covers a whole clip of unknown length.
 pub fn write(annotations: &[Annotation], lengths: &ClipLengths) -> Result<String, String> {
     annotations
         .iter()

@@ -6,6 +6,10 @@ use serde_json::{Map, Value, json};
 use super::annotation::{Annotation, ClipLengths, ReadLabels, json_error, secs};
 use crate::labels::SampleState;
 
+/// Reads BABEL's JSON. Labels of whole sequences are left out where they repeat the labels of their parts.
+///
+/// # Errors
+/// The JSON is invalid, or does not have BABEL's structure.
 pub fn read(bytes: &[u8]) -> Result<ReadLabels, ParseError> {
     let expected = "a BABEL object: sequence number to {feat_p, dur, seq_ann, frame_ann}";
     let file: Map<String, Value> =
@@ -106,6 +110,10 @@ fn read_label(clip: &str, label: &Value, timed: bool, read: &mut ReadLabels) -> 
     Ok(())
 }
 
+/// Writes annotations as BABEL's JSON, one sequence for each clip.
+///
+/// # Errors
+/// A label covers a whole clip of unknown length.
 pub fn write(annotations: &[Annotation], lengths: &ClipLengths) -> Result<String, String> {
     let mut file: Map<String, Value> = Map::new();
     for a in annotations {

@@ -14,7 +14,12 @@ const OVERLAP: &str = "overlap ";
 /// What BORIS writes where no subject is in focus.
 const NO_SUBJECT: &str = "No focal subject";
 
-/// States from their start to their stop; an observation is a clip. Points, and states that never stop, are left out with a warning.
+/// Reads the state events of a project, each from its start to its stop; an observation is a clip. Point events, and states
+/// without
+/// a stop, are left out with a warning.
+///
+/// # Errors
+/// The file is not a project of BORIS.
 pub fn read(bytes: &[u8], context: &LabelContext) -> Result<ReadLabels, ParseError> {
     let expected = "a project of BORIS: {behaviors_conf, observations}";
     let project: Value =

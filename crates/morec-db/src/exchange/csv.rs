@@ -9,6 +9,10 @@ use crate::labels::SampleState;
 const HEADER: &str =
     "file,label,start_s,end_s,start_frame,end_frame,whole_clip,score,actor,source,state";
 
+/// Reads a table with a header row. Columns are found by their names, in any order; the separator is found from the first lines.
+///
+/// # Errors
+/// A required column is missing, or a cell is not what its column requires.
 pub fn read(bytes: &[u8], context: &LabelContext) -> Result<ReadLabels, ParseError> {
     let text = super::annotation::text(bytes)?;
     let separator = separator(text);
@@ -256,6 +260,10 @@ fn quoted(text: &str) -> String {
     }
 }
 
+/// Writes annotations as a table, with times in seconds and, where the frame rate is known, in frames.
+///
+/// # Errors
+/// A label covers a whole clip of unknown length.
 pub fn write(annotations: &[Annotation], lengths: &ClipLengths) -> Result<String, String> {
     let mut out = format!("{HEADER}\n");
     for a in annotations {

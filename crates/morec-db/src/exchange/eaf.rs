@@ -18,6 +18,10 @@ const RATE: &str = "morec:rate_hz";
 /// Most elements read of one file.
 const MOST_NODES: u32 = 4_000_000;
 
+/// Reads an ELAN file. Only the tiers that `context` chooses are read; annotations that refer to others get their times.
+///
+/// # Errors
+/// The XML is invalid, no tier has a chosen name, or the file does not name its clip and `context` does not either.
 pub fn read(text: &str, context: &LabelContext) -> Result<ReadLabels, ParseError> {
     let options = ParsingOptions {
         nodes_limit: MOST_NODES,
@@ -282,6 +286,10 @@ fn writable(text: &str) -> Result<(), String> {
     }
 }
 
+/// Writes annotations, all of one clip, as an ELAN file, with a tier for each person and state and for labels that overlap.
+///
+/// # Errors
+/// A text contains characters that XML cannot store, or a label covers a whole clip of unknown length.
 pub fn write(annotations: &[Annotation], lengths: &ClipLengths) -> Result<String, String> {
     let mut tiers: Vec<Tier> = Vec::new();
     for a in annotations {

@@ -51,6 +51,10 @@ pub fn which(bytes: &[u8]) -> LabelFormat {
     }
 }
 
+/// Reads morec's own JSON of labels.
+///
+/// # Errors
+/// The JSON is invalid, a field is missing, or a stop is not after its start.
 pub fn read(bytes: &[u8], context: &LabelContext) -> Result<ReadLabels, ParseError> {
     let expected = "{\"labels\": [{\"clip\", \"class\", \"start_secs\", \"stop_secs\"}]}";
     let file: File = serde_json::from_slice(bytes).map_err(|error| json_error(&error, expected))?;
@@ -99,6 +103,10 @@ pub fn read(bytes: &[u8], context: &LabelContext) -> Result<ReadLabels, ParseErr
     Ok(read)
 }
 
+/// Writes annotations as morec's own JSON, with times in seconds and, where the frame rate is known, in frames.
+///
+/// # Errors
+/// A label covers a whole clip of unknown length.
 pub fn write(annotations: &[Annotation], lengths: &ClipLengths) -> Result<String, String> {
     let row = |a: &Annotation| -> Result<JsonRow, String> {
         let (start_secs, stop_secs) = secs(a, lengths)?;

@@ -6,6 +6,10 @@ use serde_json::{Value, json};
 use super::annotation::{Annotation, ClipLengths, LabelContext, ReadLabels, json_error, secs};
 use crate::labels::SampleState;
 
+/// Reads Label Studio tasks: annotations as accepted labels, predictions as proposed ones.
+///
+/// # Errors
+/// The JSON is invalid, or a task does not name its clip.
 pub fn read(bytes: &[u8], context: &LabelContext) -> Result<ReadLabels, ParseError> {
     let expected = "Label Studio tasks: [{data, annotations, predictions}]";
     let file: Value =

@@ -7,6 +7,10 @@ use morec::labels::{Extent, Labels};
 use super::annotation::{Annotation, ClipLengths, LabelContext, ReadLabels, frames, secs};
 use crate::labels::SampleState;
 
+/// Reads a tab-separated label table, as `morec train` does.
+///
+/// # Errors
+/// A required column is missing, or a cell is not what its column requires.
 pub fn read(bytes: &[u8], context: &LabelContext) -> Result<ReadLabels, ParseError> {
     if is_of_boris(bytes) {
         return super::csv::read(bytes, context);
@@ -62,6 +66,10 @@ fn fits_a_cell(name: &str) -> bool {
         && !name.starts_with("# ")
 }
 
+/// Writes annotations as a tab-separated table: in frames where times fall on frames, else in seconds.
+///
+/// # Errors
+/// A name contains a tab or a line end, which the format cannot store.
 pub fn write(annotations: &[Annotation], lengths: &ClipLengths) -> Result<String, String> {
     let people = annotations.iter().any(|a| a.person.is_some());
     let judged = annotations.iter().any(|a| a.state != SampleState::Accepted);

@@ -139,7 +139,10 @@ impl Tables {
         )))
     }
 
-    /// Finite single-precision numbers.
+    /// A tensor of finite single-precision numbers.
+    ///
+    /// # Errors
+    /// The tensor is missing, has another type, or contains a value that is not finite.
     pub fn f32s(&self, name: &str) -> Result<Vec<f32>, IndexError> {
         let bytes = self.get(name, Dtype::F32)?.bytes.as_chunks::<4>().0.iter();
         let values: Vec<f32> = bytes.map(|b| f32::from_le_bytes(*b)).collect();
@@ -151,7 +154,10 @@ impl Tables {
         )))
     }
 
-    /// Whole numbers.
+    /// A tensor of whole numbers.
+    ///
+    /// # Errors
+    /// The tensor is missing or has another type.
     pub fn u32s(&self, name: &str) -> Result<Vec<u32>, IndexError> {
         let bytes = self.get(name, Dtype::U32)?.bytes.as_chunks::<4>().0.iter();
         Ok(bytes.map(|b| u32::from_le_bytes(*b)).collect())
@@ -162,7 +168,10 @@ impl Tables {
         self.0.contains_key(name)
     }
 
-    /// The steps of `width` columns in which rows are stored, if the file has this tensor. A step is 0 or more.
+    /// The steps in which the `width` columns of stored rows are rounded, each 0 or more; `None` if the file has no such tensor.
+    ///
+    /// # Errors
+    /// The tensor has another width, or contains a negative step.
     pub fn steps(&self, name: &str, width: usize) -> Result<Option<Vec<f32>>, IndexError> {
         if !self.has(name) {
             return Ok(None);

@@ -23,7 +23,10 @@ pub(super) struct Row<'a> {
 }
 
 impl<'a> Table<'a> {
-    /// Reads the header: the first line that is not blank.
+    /// Reads the header, the first line that is not blank.
+    ///
+    /// # Errors
+    /// The file is empty, or not text.
     pub fn new(bytes: &'a [u8]) -> Result<Self, ParseError> {
         let text = decode(bytes)?;
         let (line, raw) = numbered_lines(text)
@@ -72,7 +75,10 @@ impl<'a> Table<'a> {
             .position(|h| h.eq_ignore_ascii_case(name))
     }
 
-    /// Index of a column that must be there; the error names what the header holds instead.
+    /// Index of a required column.
+    ///
+    /// # Errors
+    /// The column is missing; the message lists the columns that the header has.
     pub fn need(&self, name: &str) -> Result<usize, ParseError> {
         self.find(name).ok_or_else(|| {
             let expected = format!("a column `{name}` (tab-separated)");
@@ -193,7 +199,10 @@ impl<'a> Row<'a> {
         ParseError::new(self.place(column), expected, found)
     }
 
-    /// A cell that must hold text.
+    /// The text of a cell; `expected` describes it in errors.
+    ///
+    /// # Errors
+    /// The cell is missing or empty.
     pub fn text(&self, column: usize, expected: &str) -> Result<String, ParseError> {
         match self.cell(column) {
             "" => Err(self.error(column, expected)),
@@ -201,7 +210,10 @@ impl<'a> Row<'a> {
         }
     }
 
-    /// A cell that must hold a frame number; `146.0`, as some programs write it, is one.
+    /// A cell with a frame number. `146.0`, as some programs write it, is accepted.
+    ///
+    /// # Errors
+    /// The cell is not a whole number of 0 or more.
     pub fn frame(&self, column: usize) -> Result<usize, ParseError> {
         let cell = self.cell(column);
         let digits = match cell.split_once('.') {
@@ -213,7 +225,10 @@ impl<'a> Row<'a> {
             .map_err(|_| self.error(column, "a frame: a whole number, 0 or more"))
     }
 
-    /// A cell that must hold a time.
+    /// A cell with a time in seconds.
+    ///
+    /// # Errors
+    /// The cell is not a number of 0 or more.
     pub fn secs(&self, column: usize) -> Result<f64, ParseError> {
         match self.number(column) {
             Some(secs) if secs >= 0.0 => Ok(secs),
@@ -221,7 +236,10 @@ impl<'a> Row<'a> {
         }
     }
 
-    /// A cell that may be empty but otherwise holds a finite number.
+    /// A cell with a finite number; `None` if it is empty.
+    ///
+    /// # Errors
+    /// The cell contains something else.
     pub fn optional_number(&self, column: usize) -> Result<Option<f64>, ParseError> {
         if self.cell(column).is_empty() {
             return Ok(None);

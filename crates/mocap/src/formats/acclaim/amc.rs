@@ -1,4 +1,4 @@
-//! Reading a motion (AMC): which rows the file has, and which of them can be used.
+//! Reads a motion (AMC): the rows of the file, and which of them are usable.
 
 use std::collections::{HashMap, HashSet};
 

@@ -1,4 +1,4 @@
-//! Reading a skeleton (ASF).
+//! Reads a skeleton (ASF).
 
 use std::collections::HashMap;
 

@@ -1,4 +1,4 @@
-//! From the rows of a motion file to a clip: every joint gets a rotation in every frame.
+//! Turns the rows of a motion file into a clip, with a rotation of every joint in every frame.
 
 use super::skeleton::{AmcChannel, Asf, composed};
 use crate::clip::{Clip, JointTrack, Span};

@@ -1,4 +1,4 @@
-//! An Acclaim skeleton, and the joints it makes.
+//! An Acclaim skeleton, and its joints in morec's form.
 
 use crate::clip::{Joint, Skeleton};
 use crate::math::{Axis, Quat, Vec3};

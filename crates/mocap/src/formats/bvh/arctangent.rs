@@ -1,4 +1,4 @@
-//! Angles of many points in the plane, as the Euler angles of a frame need them.
+//! Angles of many points in a plane at once, for the Euler angles of a frame.
 //!
 //! Writing BVH spent a third of its time on the standard library's `atan2`. The loop here has no branches, so that the compiler makes
 //! it work on several points at once; figures are in `docs/figures.md`, "Reading and writing BVH".

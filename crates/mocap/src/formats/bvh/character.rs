@@ -1,4 +1,4 @@
-//! One character's share of the motion table, turned into rotations and positions row by row.
+//! The columns of one character in the motion table, converted to rotations and positions row by row.
 
 use super::gaps::{self, Gaps};
 use super::half_angles::HalfAngles;

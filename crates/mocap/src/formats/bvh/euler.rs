@@ -1,4 +1,4 @@
-//! Rotations to the angles of `Zrotation Yrotation Xrotation`, without jumps.
+//! Converts rotations to the angles of `Zrotation Yrotation Xrotation`, continuous over time.
 
 use std::f64::consts::{PI, TAU};
 

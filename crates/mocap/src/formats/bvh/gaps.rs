@@ -1,4 +1,4 @@
-//! Frames that a file lacks or spoils: kept in order, then filled from their neighbours.
+//! Missing and damaged frames: recorded in order, then interpolated from their neighbours.
 
 use crate::clip::Span;
 use crate::math::{Quat, Vec3, slerp};

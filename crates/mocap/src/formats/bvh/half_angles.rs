@@ -1,4 +1,4 @@
-//! Sines and cosines of half the angles of a row, as the quaternions of its rotations need them.
+//! Sines and cosines of half the angles of a row, for the quaternions of its rotations.
 //!
 //! Reading BVH spent most of its time on the standard library's `sin_cos`. The loop here has no branches, so that the compiler
 //! makes it work on several angles at once; figures are in `docs/figures.md`, "Reading and writing BVH".

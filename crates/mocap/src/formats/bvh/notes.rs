@@ -1,4 +1,4 @@
-//! Warnings that say a thing once, however often a file does it.
+//! Warnings that are given once, with a count, however often the cause occurs in a file.
 
 use crate::formats::{Place, Warning};
 

@@ -1,4 +1,4 @@
-//! Clips of points in BVH, which knows skeletons alone: every point hangs on one root that never moves.
+//! Clips of points in BVH, which has skeletons only: every point is a child of one root that never moves.
 
 use crate::clip::{Clip, Joint, JointTrack, Points, Skeleton};
 use crate::math::{Quat, Vec3};

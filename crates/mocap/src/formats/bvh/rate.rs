@@ -1,4 +1,4 @@
-//! `Frame Time:` to frames a second.
+//! Converts `Frame Time:` to frames a second.
 
 use super::notes::Notes;
 use crate::formats::Place;

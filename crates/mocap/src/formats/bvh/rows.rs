@@ -75,7 +75,11 @@ impl<'t> MotionLines<'t> {
         }
     }
 
-    /// The next line with numbers on it and its line number; `values` becomes its numbers.
+    /// Reads the next line that contains numbers into `values` and returns its line number and kind; `None` at the end of the
+    /// table.
+    ///
+    /// # Errors
+    /// The file cannot be read, or a line is longer than the limit.
     pub fn next(
         &mut self,
         values: &mut Vec<f64>,

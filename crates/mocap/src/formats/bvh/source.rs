@@ -1,4 +1,4 @@
-//! Where the text of a motion table is: in memory, or in a file of which a piece at a time is held.
+//! The text of a motion table, in memory or in a file that is read piece by piece.
 
 use std::io::{Read, Seek, SeekFrom};
 

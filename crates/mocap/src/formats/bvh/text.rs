@@ -1,4 +1,4 @@
-//! Bytes to lines, tokens and names.
+//! Splits bytes into lines, tokens and names.
 
 use super::number::{is_blank, is_newline};
 use crate::formats::encoding::Encoding;
@@ -48,7 +48,10 @@ impl<'a> Cursor<'a> {
         self.peek().is_none_or(is_newline)
     }
 
-    /// Moves past one line end, if at one. Fails if the line was too long.
+    /// Moves past one line end, if the position is at one.
+    ///
+    /// # Errors
+    /// The line before it was longer than the limit.
     #[inline]
     pub fn newline(&mut self) -> Result<(), ParseError> {
         if self.pos - self.line_start > self.line_limit {
@@ -71,6 +74,9 @@ impl<'a> Cursor<'a> {
     }
 
     /// Moves past blanks and line ends.
+    ///
+    /// # Errors
+    /// A line was longer than the limit.
     pub fn skip_space(&mut self) -> Result<(), ParseError> {
         loop {
             self.skip_blanks();
@@ -97,7 +103,10 @@ impl<'a> Cursor<'a> {
         self.text[self.pos..].starts_with(b"#") || self.text[self.pos..].starts_with(b"//")
     }
 
-    /// The next token, `None` at the end: a brace, or what stands up to a blank, a brace or the line's end.
+    /// The next token: a brace, or text up to a blank, a brace or the line's end; `None` at the end of the file.
+    ///
+    /// # Errors
+    /// A line was longer than the limit.
     pub fn token(&mut self) -> Result<Option<&'a [u8]>, ParseError> {
         self.skip_space()?;
         Ok(self.token_on_line())
@@ -120,8 +129,11 @@ impl<'a> Cursor<'a> {
         (self.pos > start).then(|| &self.text[start..self.pos])
     }
 
-    /// A joint's name: the rest of the line (of the next one, if nothing is left) up to a `{`, trimmed; empty if
-    /// there is none.
+    /// A joint's name: the rest of the line, or the next line if nothing is left, up to a `{` and trimmed; empty if there is no
+    /// name.
+    ///
+    /// # Errors
+    /// A line was longer than the limit.
     pub fn name(&mut self, encoding: Encoding) -> Result<String, ParseError> {
         self.skip_space()?;
         let start = self.pos;

@@ -1,4 +1,4 @@
-//! Clips to BVH.
+//! Writes clips as BVH.
 
 use std::io::{self, Write};
 

@@ -1,5 +1,4 @@
-//! How the frames of a C3D file are laid out: what header and parameters say, settled by the length of the file where
-//! they disagree.
+//! The layout of the frames of a C3D file, from its header and parameters; where they disagree, the length of the file decides.
 
 use super::header::C3dHeader;
 use super::params::{BLOCK, Parameters};

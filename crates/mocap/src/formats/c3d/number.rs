@@ -1,4 +1,4 @@
-//! Numbers as the three processors of C3D files wrote them.
+//! Number formats of the three processors for which C3D files exist.
 
 /// Processor whose byte order and floating point a file uses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

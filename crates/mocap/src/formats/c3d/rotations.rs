@@ -1,4 +1,4 @@
-//! Segments of a body in place of points, as Theia and Visual3D write them: a place and a rotation each.
+//! Segments of a body instead of points, with position and rotation, as Theia and Visual3D write them.
 //!
 //! After C-Motion's description of the group ROTATION: for each segment of each frame the 16 numbers of a matrix by columns, whose
 //! fourth holds the place, and a residual, which is negative if the segment was not seen.

@@ -1,4 +1,4 @@
-//! Numbers in buffers: accessors, views, sparse replacements.
+//! Reads numbers from buffers through accessors and views, including sparse replacements.
 
 use std::borrow::Cow;
 use std::collections::HashMap;

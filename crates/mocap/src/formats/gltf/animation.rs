@@ -1,4 +1,4 @@
-//! Keys and what lies between them.
+//! Animations: keyframes and the interpolation between them.
 
 use serde_json::Value;
 

@@ -1,4 +1,4 @@
-//! The JSON of a glTF file and the binary chunk behind it.
+//! The JSON of a glTF file, and the binary chunk after it.
 
 use serde_json::Value;
 

@@ -1,4 +1,4 @@
-//! Nodes, skins and humanoids: which nodes are joints, and what they are called.
+//! Nodes, skins and humanoids: which nodes are joints, and their names.
 
 use serde_json::Value;
 

@@ -1,4 +1,4 @@
-//! Times and numbers of frames, and rates, in fields of any name.
+//! Finds times, frame numbers and rates in fields of any name.
 
 use serde_json::Value;
 

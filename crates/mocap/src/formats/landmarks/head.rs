@@ -1,4 +1,4 @@
-//! How documents of landmarks begin.
+//! Recognises documents of landmarks by their first bytes.
 
 /// True if text begins like a document of landmarks.
 pub(in crate::formats) fn looks_so(head: &[u8]) -> bool {

@@ -1,4 +1,4 @@
-//! The segments of an MVNX subject and how they hang together.
+//! The segments of an MVNX subject and their hierarchy.
 
 use roxmltree::Node;
 

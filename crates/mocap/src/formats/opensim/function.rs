@@ -1,4 +1,4 @@
-//! Functions of OpenSim models: how far a joint turns or slides along an axis, given its coordinates.
+//! Functions in OpenSim models: the rotation or translation of a joint along an axis, by its coordinates.
 
 use roxmltree::Node;
 

@@ -1,4 +1,4 @@
-//! OpenSim: joint angles and the model that gives them a meaning.
+//! OpenSim: joint angles, and the model that defines them.
 //!
 //! A motion (`.mot`, `.sto`) is a table of coordinates, one for each way in which a joint of a model (`.osim`) turns or slides. The
 //! model says where each body hangs in another and how the joint between them follows its coordinates (*OpenSim User's Guide*,

@@ -1,4 +1,4 @@
-//! The model: bodies, the joints between them, and how these follow their coordinates.
+//! The model: bodies, the joints between them, and how these depend on their coordinates.
 
 use std::collections::HashMap;
 

@@ -1,4 +1,4 @@
-//! The motion: a table of coordinates over time, carried out by a model.
+//! The motion: a table of coordinates over time, applied to a model.
 
 use super::super::builder::{ClipBuilder, check_size};
 use super::super::cells::{Decimal, lines, number, split};

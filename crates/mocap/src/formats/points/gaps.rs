@@ -1,4 +1,4 @@
-//! Gaps of points: found, filled, reported.
+//! Finds, fills and reports gaps of points.
 
 use super::point::{Point, SHORT_GAP_SECS, SHOWN, is_seen};
 use crate::clip::{Gap, Span};

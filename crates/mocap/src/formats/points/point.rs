@@ -1,4 +1,4 @@
-//! A point over time, seen or not.
+//! The positions of one point over time, with gaps.
 
 use crate::math::Vec3;
 

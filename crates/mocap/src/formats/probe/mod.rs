@@ -1,4 +1,4 @@
-//! Telling formats apart: by content first, by name where the content says nothing.
+//! Recognises formats, by content first and by name if the content is ambiguous.
 //!
 //! Formats that are recognised only to be refused by their names are in `unread.tsv`.
 

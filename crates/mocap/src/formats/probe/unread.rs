@@ -1,4 +1,4 @@
-//! Formats that are recognised only to be refused by their names, with how to convert them: the table `unread.tsv`.
+//! Formats that are recognised but not supported, with advice on how to convert them: the table `unread.tsv`.
 //!
 //! Its columns are what the format is called, signs of its content, an ending of files whose content does not tell, and the way to a
 //! format that is read. A row fits if each of its signs, with spaces between them, holds; of signs with `|` between them, one must. The

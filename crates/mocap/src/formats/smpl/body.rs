@@ -1,4 +1,4 @@
-//! A person of our own with SMPL's joints: the body models of that family may not be shipped.
+//! An average person with SMPL's joints. The body models of this family cannot be distributed.
 
 use crate::clip::Joint;
 use crate::math::Vec3;

@@ -1,4 +1,4 @@
-//! Which columns are a point's x, y and z, by the rows above them.
+//! Finds the x, y and z columns of each point, from the header rows.
 
 use super::axis_labels::{axis_number, is_mark, prefix, suffix};
 use super::glued::{axis_glued, prefix_glued, suffix_glued, unit_of, without_unit};

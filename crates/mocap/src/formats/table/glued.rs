@@ -1,4 +1,4 @@
-//! Labels without a mark between a point's name, its axis and its unit.
+//! Labels in which name, axis and unit follow each other without a separator.
 
 use super::axis_labels::{axis_number, is_mark, prefix, suffix};
 use super::quantities::{self, is_other, is_other_unit, unit_in};

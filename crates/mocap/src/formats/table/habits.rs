@@ -1,4 +1,4 @@
-//! Habits of programs that export tables, in files made by hand.
+//! Conventions of programs that export tables, tested on small examples.
 
 use super::*;
 

@@ -1,4 +1,4 @@
-//! Layout of a table from its header, and its rows and frames.
+//! The layout of a table, from its header, and the reading of its rows and frames.
 
 use crate::formats::points::Point;
 use crate::formats::timing::Stamps;

@@ -1,4 +1,4 @@
-//! The long form: a row for each joint of each frame.
+//! Tables in long form: one row for each joint of each frame.
 
 use super::columns::{is_frame, is_time, seconds_of};
 use super::layout::{ColumnLayout, TableFrames, TableLine};

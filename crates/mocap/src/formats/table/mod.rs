@@ -1,4 +1,4 @@
-//! Tables of positions as text: CSV, TSV and their kin.
+//! Text tables of positions: CSV, TSV and variants.
 //!
 //! - One joint in three columns, named in one row (`hips_x`, `Hips.X`, `Hips Tx`) or in several (DeepLabCut's `bodyparts`
 //!   and `coords`), with a column of times or frames or none.

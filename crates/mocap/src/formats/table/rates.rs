@@ -1,4 +1,4 @@
-//! Columns and rows of a table that say when its frames are.
+//! Columns and rows of a table that contain times, frame numbers or rates.
 
 use super::layout::TableLine;
 use crate::formats::cells::{Decimal, clock, number};

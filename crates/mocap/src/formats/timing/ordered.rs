@@ -1,4 +1,4 @@
-//! Frames put in order by their times or numbers.
+//! Sorts frames by their times or numbers.
 
 use super::schedule::{BetweenFrames, Schedule};
 use crate::formats::points::SHORT_GAP_SECS;

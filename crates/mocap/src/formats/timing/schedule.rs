@@ -1,4 +1,4 @@
-//! A fixed rate, and what its frames are made of.
+//! A constant rate, and the source frames from which each of its frames is made.
 
 /// A fixed rate, and where its frames lie among those of the file.
 pub(in crate::formats) struct Schedule {

@@ -1,4 +1,4 @@
-//! Which points of a clip without rotations play which parts of the body: by names and count, from tables.
+//! Roles of points in clips without rotations, by their names and number, from tables of known sets.
 //!
 //! A flat set of points has no tree to look at, but its names come from few sources: landmark models and published
 //! marker sets. A role is played by one point or by something between several: the hips by the middle

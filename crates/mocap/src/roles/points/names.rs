@@ -1,4 +1,4 @@
-//! Names of points in one spelling.
+//! Normalises the names of points to one spelling.
 
 use crate::roles::languages::{in_english, words_in_english};
 use crate::roles::words::words_of;

@@ -1,4 +1,4 @@
-//! Where a joint is, given points.
+//! Positions of joints, computed from points.
 
 use super::names::normalised_one;
 use crate::math::Vec3;

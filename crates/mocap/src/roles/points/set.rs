@@ -1,4 +1,4 @@
-//! A published set of points, and what its names say of a clip's.
+//! A published set of points, and its comparison with the names of a clip.
 
 use super::place::{Expression, PointJoint};
 use crate::roles::Role;

@@ -1,4 +1,4 @@
-//! Points that trackers follow: a headset and what is in the hands, or points of a custom skeleton by their roles' names.
+//! Tracked points: a headset and controllers, or points of a custom skeleton by the names of their roles.
 
 use super::names::words;
 use crate::roles::Role;

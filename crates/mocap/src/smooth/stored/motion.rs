@@ -1,4 +1,4 @@
-//! The curves of all channels through the coder, each number as its difference from what those before it promise.
+//! Codes the curves of all channels; each number as its difference from a prediction.
 
 use crate::coder::{Coder, Flag, Whole};
 use crate::smooth::ChannelKind;
@@ -59,7 +59,12 @@ struct ChannelState {
 const REACH_OF_TANGENT: f64 = 1.8;
 
 impl MotionCoder {
-    /// Writes `channel`, or reads one (whatever `channel` then is) of `frames` frames and at most `most` pieces.
+    /// Writes `channel`, or reads a channel of `frames` frames and at most `most` curve segments, depending on `coder`. When
+    /// reading,
+    /// the content of `channel` is ignored.
+    ///
+    /// # Errors
+    /// When reading: the bytes end early, or a value is out of range.
     pub fn channel<C: Coder>(
         &mut self,
         coder: &mut C,

@@ -90,6 +90,9 @@ impl<'a> Fields<'a> {
     }
 
     /// A little-endian number of `N` bytes, at most 8.
+    ///
+    /// # Errors
+    /// The bytes end before it.
     pub fn word<const N: usize>(&mut self) -> Result<u64, ParseError> {
         let mut bytes = [0; 8];
         bytes[..N].copy_from_slice(self.take(N, "a number")?);
@@ -108,7 +111,10 @@ impl<'a> Fields<'a> {
         Err(self.wrong(what, "a number of more than 64 bits"))
     }
 
-    /// A number of at most `most`.
+    /// A whole number from 0 to `most`; `what` names it in errors.
+    ///
+    /// # Errors
+    /// The bytes end within it, or it is larger than `most`.
     pub fn up_to(&mut self, most: usize, what: &str) -> Result<usize, ParseError> {
         let found = self.natural(what)?;
         usize::try_from(found)
