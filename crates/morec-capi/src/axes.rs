@@ -1,4 +1,4 @@
-//! A caller's coordinates, and ours: right-handed, Y up.
+//! Converts between the caller's coordinates and morec's (right-handed, Y up).
 
 use std::f64::consts::FRAC_PI_2;
 

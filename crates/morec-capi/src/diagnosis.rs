@@ -1,4 +1,4 @@
-//! Diagnosis of a recogniser's stream: figures, and findings in words.
+//! Diagnosis of a recogniser's stream: measures, and findings as sentences.
 
 use std::ffi::c_char;
 

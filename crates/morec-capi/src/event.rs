@@ -1,4 +1,4 @@
-//! Events as C sees them.
+//! Events in their C form.
 
 use std::ffi::c_char;
 

@@ -1,4 +1,4 @@
-//! Frames as C gives them, to frames as recognition takes them: the one place where this happens, whatever the method.
+//! Converts frames of C to frames of recognition, for every method.
 
 use morec::live::{Frame, wall_now_secs};
 use morec::math::{Quat, Vec3};

@@ -1,4 +1,4 @@
-//! Handles: numbers that look like pointers and are never followed.
+//! Handles: numbers in the form of pointers, which are looked up and never dereferenced.
 //!
 //! A table says what each stands for, so a null, foreign or destroyed handle is found missing instead of crashing.
 //! Numbers are odd, which no object's address is, and never given twice.

@@ -1,4 +1,4 @@
-//! Loading an index, and what it says of itself.
+//! Loading an index, and facts about it.
 
 use std::ffi::c_char;
 use std::path::Path;

@@ -1,4 +1,5 @@
-//! Following pointers that a caller gave. All of it is here, but for handing on from the exported functions.
+//! Checked access to memory behind a caller's pointers. Except for exported functions that pass pointers on, all such access is
+//! here.
 //!
 //! Pointers that are null, misaligned or longer than memory can be are refused. That a pointer points to the data its
 //! function asks for cannot be checked: the caller must see to it.

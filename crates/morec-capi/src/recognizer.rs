@@ -1,4 +1,4 @@
-//! Recognisers: made of an index, fed with frames, asked for events.
+//! Recognisers: creation, frames in, events out.
 
 use morec::live::StreamOptions;
 use morec::roles::Role;

@@ -1,4 +1,4 @@
-//! Skeletons as a caller describes them.
+//! Reads the caller's description of a skeleton.
 
 use std::ffi::c_char;
 

@@ -1,4 +1,4 @@
-//! Result of a call: a code, and a text for people.
+//! The result of a call: a status and a message.
 
 use std::borrow::Cow;
 use std::cell::RefCell;

@@ -1,4 +1,4 @@
-//! One performer's stream behind a handle: what pushing and polling do once every pointer was followed.
+//! The stream behind a recogniser's handle: pushing frames and polling events, without unsafe code.
 
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, MutexGuard, TryLockError};

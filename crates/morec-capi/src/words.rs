@@ -1,4 +1,4 @@
-//! Version, and the parts of the body by number and by name.
+//! The version, and body parts by number and by name.
 
 use std::ffi::{CStr, c_char};
 

@@ -1,5 +1,4 @@
-//! Databases as the commands open them: no output of the same run may take their place, and older ones are brought up
-//! to date first.
+//! Opens databases for commands: upgrades older ones first, and registers them so that no output of the same run overwrites them.
 
 use std::fs::File;
 use std::io::Read;

@@ -1,4 +1,4 @@
-//! Moments as dates in UTC, ISO 8601.
+//! Points in time as dates in UTC (ISO 8601).
 
 use jiff::Timestamp;
 

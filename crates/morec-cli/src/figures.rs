@@ -1,4 +1,4 @@
-//! Results in the terminal: the same tables for every command that evaluates, JSON for every command.
+//! Results in the terminal: the tables that all evaluating commands share.
 
 use std::io::{self, Write};
 use std::path::Path;

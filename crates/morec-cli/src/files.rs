@@ -1,4 +1,4 @@
-//! Clips on disk: from what was typed to bytes, and from bytes to clips.
+//! Reads clips from the paths on the command line, with the options for reading that all commands share.
 
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,4 @@
-//! Ctrl-C as a request to end, passed to whatever runs.
+//! Ctrl-C as a request to end, passed to the running operation.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};

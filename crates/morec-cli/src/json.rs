@@ -1,4 +1,4 @@
-//! JSON as the command prints it: indented, and every object says of which version of the form it is.
+//! JSON output: indented, with the version of its form in every object.
 
 use std::io::{self, Write};
 

@@ -1,4 +1,4 @@
-//! Labels on disk, in every form that `morec db label` reads, as the table that training and measuring take.
+//! Reads label files, in all supported formats, as the table that training and measuring need.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

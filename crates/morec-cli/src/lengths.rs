@@ -1,4 +1,4 @@
-//! How long clips are, from their files.
+//! Lengths and frame rates of clips, from their files.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;

@@ -1,4 +1,4 @@
-//! The command `morec`: what was typed becomes arguments, each command's file does the rest.
+//! The command `morec`: parses the command line and runs the chosen command. Each command has a file in `commands`.
 
 // First: its macros take the place of the standard library's in all files behind it.
 #[macro_use]

@@ -1,4 +1,4 @@
-//! Clips, labels and people as training and cross-validation need them, from what was typed.
+//! Clips, labels and persons for training and cross-validation, from the command line.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! The clips of a report, to be played in it.
+//! The clips that a report plays.
 
 use std::path::PathBuf;
 

@@ -1,4 +1,4 @@
-//! Values of the libraries' enums as arguments, by the names that the libraries give them.
+//! Enums of the libraries as arguments, by the libraries' own names.
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 

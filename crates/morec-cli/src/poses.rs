@@ -1,4 +1,4 @@
-//! Clips as pose rows: what cutting, grouping and reducing work on.
+//! Pose rows of clips, for cutting, grouping and reducing.
 
 use std::path::{Path, PathBuf};
 

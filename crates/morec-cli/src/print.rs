@@ -1,4 +1,4 @@
-//! Answers on standard output: JSON, text, tables, numbers with their units.
+//! Prints results on standard output: JSON, text, tables, numbers with units.
 
 use std::io::{IsTerminal, Write};
 

@@ -1,4 +1,4 @@
-//! How far work is that takes more than a second, on standard error: a bar on a terminal, now and then a line elsewhere.
+//! Progress on standard error, for work of more than a second: a bar in a terminal, occasional lines otherwise.
 
 use std::io::IsTerminal;
 use std::sync::atomic::{AtomicBool, Ordering};

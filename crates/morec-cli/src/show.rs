@@ -1,4 +1,4 @@
-//! The demo's show: a stream played in the terminal, with what is said about it and when.
+//! Plays a stream in the terminal, with its labels and detections.
 //!
 //! [`frame::draw`] makes one picture as text and knows no terminal. [`play`] writes pictures to one at accelerated
 //! real time, or only the events if standard output is no terminal.

@@ -1,4 +1,4 @@
-//! How fast recognition runs, as a whole and stage by stage.
+//! Speed of recognition, in total and by stage.
 
 use std::fmt;
 use std::sync::Arc;

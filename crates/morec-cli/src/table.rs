@@ -1,4 +1,4 @@
-//! Plain tables in the terminal: columns aligned by blanks, the first to the left, the others to the right.
+//! Text tables in the terminal, aligned with blanks: the first column left, the others right.
 
 use std::fmt;
 

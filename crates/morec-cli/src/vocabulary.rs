@@ -1,4 +1,4 @@
-//! An option means the same in every command.
+//! Tests that options have the same name, values and meaning in all commands, and that help fits the terminal.
 
 use std::collections::BTreeMap;
 

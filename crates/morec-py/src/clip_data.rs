@@ -1,4 +1,4 @@
-//! A clip and what is known of it, as every part of the package holds it.
+//! A clip with its description, in the form that all parts of the package use.
 
 use std::ops::Range;
 use std::path::PathBuf;

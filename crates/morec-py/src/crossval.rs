@@ -1,4 +1,4 @@
-//! `morec.Crossval`: how good an index would be on what it has not seen.
+//! `morec.Crossval`: the results of a cross-validation.
 
 use std::path::PathBuf;
 

@@ -1,4 +1,4 @@
-//! Errors as Python people expect them.
+//! Exceptions and warnings of Python for the errors of the libraries.
 
 use std::fmt::Display;
 use std::io::ErrorKind;

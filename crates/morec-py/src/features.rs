@@ -1,4 +1,4 @@
-//! Feature rows and the places of the parts of the body, for other people's models.
+//! Feature rows and positions of body parts as arrays.
 
 use morec::features::{
     ALL_BONES, BoneSet, FeatureParams, KeyPose, bones_of_clip, for_each_pose, rows_of_clip,

@@ -1,4 +1,4 @@
-//! Long jobs: off the interpreter's lock, with progress, ended by Ctrl-C.
+//! Runs long jobs without the interpreter's lock, with progress and Ctrl-C.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, sync_channel};

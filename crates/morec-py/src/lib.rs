@@ -1,4 +1,4 @@
-//! The native part of the Python package `morec`. What is easier said in Python lies in `python/morec`.
+//! The native part of the Python package `morec`. Parts that are simpler in Python are in `python/morec`.
 
 mod archive;
 mod archive_search;

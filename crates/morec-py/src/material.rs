@@ -1,4 +1,4 @@
-//! Clips, labels and people as training and cross-validation need them, from what Python gives.
+//! Clips, labels and persons for training and cross-validation, from Python objects.
 
 use std::collections::{BTreeMap, BTreeSet};
 

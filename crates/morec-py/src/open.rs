@@ -1,4 +1,4 @@
-//! Clip files: from what Python names to clips.
+//! Reads clips from paths, bytes and open files of Python.
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};

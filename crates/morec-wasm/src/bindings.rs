@@ -1,4 +1,4 @@
-//! What JavaScript sees of index files and recognition.
+//! The JavaScript interface of index files and recognition.
 
 use std::sync::Arc;
 

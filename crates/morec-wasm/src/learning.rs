@@ -1,4 +1,4 @@
-//! What JavaScript sees of clips and training.
+//! The JavaScript interface of clips and training.
 
 use std::cell::RefCell;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! What training takes from JavaScript: rows of labels.
+//! Reads rows of labels from JavaScript.
 
 use morec::Labels;
 use morec::TimeSpan;

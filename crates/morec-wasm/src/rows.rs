@@ -1,4 +1,4 @@
-//! What is reported, as the objects that JavaScript gets. Their fields are those of the command's JSON lines.
+//! Results as JavaScript objects, with the same fields as the command's JSON lines.
 
 use morec::TimeSpan;
 use morec::decode::Repetitions;

@@ -1,4 +1,4 @@
-//! A clip played as if somebody performed it.
+//! Plays a clip at the speed of the performance.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};

@@ -1,4 +1,4 @@
-//! A recognised motion, as the eight calls give it.
+//! A recognised motion, as returned by the eight calls.
 
 use std::ffi::c_char;
 

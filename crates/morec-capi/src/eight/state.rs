@@ -1,4 +1,4 @@
-//! Work of the eight calls, and the order in which they are allowed.
+//! The state of the eight calls, and the order in which they may be called.
 
 use std::collections::VecDeque;
 use std::ffi::c_char;

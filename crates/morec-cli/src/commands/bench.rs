@@ -1,4 +1,4 @@
-//! `morec bench`: how fast this machine recognises.
+//! `morec bench`: the speed of recognition on this machine.
 
 use std::path::PathBuf;
 use std::process::ExitCode;

@@ -1,4 +1,4 @@
-//! `morec completions` and `morec man`: what shells and `man` need to know, made from the command itself.
+//! `morec completions` and `morec man`: shell completions and man pages, generated from the definition of the command line.
 
 use std::io::Write;
 use std::path::PathBuf;

@@ -1,4 +1,4 @@
-//! `morec convert`: clips become BVH, points over time, scenes, or tables of numbers.
+//! `morec convert`: writes clips as BVH, points, scenes, or tables of numbers.
 
 mod args;
 mod folder;

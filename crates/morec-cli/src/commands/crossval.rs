@@ -1,4 +1,4 @@
-//! `morec crossval`: how good would an index be on what it has not seen.
+//! `morec crossval`: measures how well an index would recognise motion outside its training data.
 
 mod curve;
 

@@ -1,4 +1,4 @@
-//! `morec cut`: where behaviours begin and end, in clips or in a database.
+//! `morec cut`: finds where behaviours change, in clips or in a database.
 
 mod args;
 mod files;

@@ -1,4 +1,4 @@
-//! `morec demo`: the whole job on a few clips, with the commands that do it.
+//! `morec demo`: trains, recognises and measures on a few clips, and prints the commands that do it.
 
 mod cast;
 mod folder;

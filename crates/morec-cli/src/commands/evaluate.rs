@@ -1,4 +1,4 @@
-//! `morec evaluate`: detections held against labels.
+//! `morec evaluate`: measures detections against labels.
 
 use std::collections::BTreeSet;
 use std::io::{Read, Write};

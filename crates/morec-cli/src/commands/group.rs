@@ -1,4 +1,4 @@
-//! `morec group`: which samples are alike, and whether classes would say the same.
+//! `morec group`: groups similar samples or segments and compares the groups with the classes.
 
 mod args;
 mod files;

@@ -1,4 +1,4 @@
-//! `morec inspect`: what a clip is, and what will be made of it.
+//! `morec inspect`: shows a clip and everything that is inferred about it.
 
 mod draw;
 mod report;

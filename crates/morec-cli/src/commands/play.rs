@@ -1,4 +1,4 @@
-//! `morec play`: clips in the terminal, or on a page that plays them.
+//! `morec play`: plays clips in the terminal, or writes a page that plays them.
 
 use std::collections::BTreeMap;
 use std::io::IsTerminal;

@@ -1,4 +1,4 @@
-//! `morec recognize`: clips played through an index as a live stream would be.
+//! `morec recognize`: recognises motions in clips, as in a live stream.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! `morec record`: what a tracker shows, as clips.
+//! `morec record`: records takes from a tracker as clips.
 
 use std::path::PathBuf;
 use std::process::ExitCode;

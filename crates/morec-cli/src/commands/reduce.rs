@@ -1,4 +1,4 @@
-//! `morec reduce`: how few numbers describe a pose of a database.
+//! `morec reduce`: the number of dimensions of the poses in clips.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};

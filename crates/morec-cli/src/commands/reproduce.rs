@@ -1,4 +1,4 @@
-//! `morec reproduce`: the thesis's evaluation on one's own clips.
+//! `morec reproduce`: the thesis's evaluation on the user's clips.
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;

@@ -1,4 +1,4 @@
-//! `morec send`: a clip played as a tracker would send it.
+//! `morec send`: plays clips as a tracker would send them.
 
 use std::net::UdpSocket;
 use std::path::PathBuf;

@@ -1,4 +1,4 @@
-//! `morec smooth`: clips as keyframes and Bézier curves, and what that costs and saves.
+//! `morec smooth`: approximates clips by keyframes and Bézier curves, and reports errors and sizes.
 
 mod output;
 mod picture;

@@ -1,4 +1,4 @@
-//! `morec studio`: starts the window, where it is installed.
+//! `morec studio`: starts the window, if it is installed.
 
 use std::ffi::OsString;
 use std::io::ErrorKind;

@@ -1,4 +1,4 @@
-//! `morec teach`: name a gesture, perform it, see it recognised.
+//! `morec teach`: teaches gestures live by performing them.
 
 mod lesson;
 

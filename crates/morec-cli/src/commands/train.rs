@@ -1,4 +1,4 @@
-//! `morec train`: labelled clips in, one index file out.
+//! `morec train`: trains an index from labelled clips.
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;

@@ -1,4 +1,4 @@
-//! Recordings into files: BVH, lines of JSON, or clips of a database.
+//! Saves recordings as BVH, lines of JSON, or clips of a database.
 
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,4 @@
-//! How recognition is laid out on threads, as it is typed.
+//! The option `--layout`: the threads of recognition.
 
 use morec::live::{SessionOptions, Threading};
 use morec_live::pin_thread;

@@ -1,4 +1,4 @@
-//! Live recognition at a terminal: sources and sinks as they are typed, what is said of sessions, takes.
+//! Live recognition in the terminal: sources, sinks, status and takes. Used by `live`, `record` and `teach`.
 
 pub mod keep;
 pub mod layout;

@@ -1,4 +1,4 @@
-//! The accidents of a network, as they are typed.
+//! Options of a simulated bad network.
 
 use morec_live::Accidents;
 

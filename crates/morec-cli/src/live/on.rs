@@ -1,4 +1,4 @@
-//! Commands that run when a motion of a class has happened.
+//! `--on CLASS=COMMAND`: runs programs when a motion of a class ends.
 
 use std::process::{Child, Command, Stdio};
 use std::str::FromStr;

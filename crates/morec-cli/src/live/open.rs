@@ -1,4 +1,4 @@
-//! Sources as they are typed, opened.
+//! Opens the sources on the command line, with the options of trackers.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};

@@ -1,4 +1,4 @@
-//! Where events go, as it is typed.
+//! Opens the sinks on the command line, and prints events.
 
 use std::io::{self, BufWriter, Write};
 use std::path::Path;

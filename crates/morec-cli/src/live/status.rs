@@ -1,4 +1,4 @@
-//! One line that says how a session stands, renewed in place.
+//! The status line of a session, updated in place.
 
 use std::io::{IsTerminal, Write};
 use std::time::{Duration, Instant};

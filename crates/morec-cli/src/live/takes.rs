@@ -1,4 +1,4 @@
-//! Takes: countdown, bell, what a performer does until a time is over, bell.
+//! Takes: countdown, bell, recording, bell.
 
 use std::io::{BufRead, IsTerminal, Write};
 use std::sync::Arc;

@@ -1,4 +1,4 @@
-//! A clip recognised as if it had come over VMC, without a network: the same accidents every time.
+//! Recognises a clip as if it had been sent over VMC, with simulated, repeatable faults of the network.
 
 use morec::kinematics::WorldPose;
 use morec::live::{

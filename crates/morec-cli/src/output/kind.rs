@@ -1,4 +1,4 @@
-//! Kind of a file by its first bytes, in words for people.
+//! Recognises the kind of an existing file by its first bytes, for messages.
 
 use morec::formats::probe::probe;
 

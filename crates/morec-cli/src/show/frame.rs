@@ -1,4 +1,4 @@
-//! One picture of the show: the person from the front, the last events, truth and detections over time.
+//! One picture of the show: the person from the front, the last events, labels and detections over time.
 
 use morec::TimeSpan;
 use morec::clip::Clip;

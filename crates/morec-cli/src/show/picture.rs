@@ -1,4 +1,4 @@
-//! Text and fine lines on a grid of characters.
+//! Draws text and thin lines on a grid of characters.
 
 /// Style of a character; 0 is plain, 1 dimmed, from 2 on a colour each.
 pub type Style = u8;

@@ -1,4 +1,4 @@
-//! Many clips at once: each becomes a file in a folder, in the order of the folders they are from.
+//! Writes many clips into a folder, one file for each, with the subfolders that they come from.
 
 use std::collections::BTreeSet;
 use std::fs;

@@ -1,4 +1,4 @@
-//! The forms that clips are written in, and which ending stands for which.
+//! The formats in which clips are written, and their extensions.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! How clips are to be written.
+//! The requested form of the output: format, rate, fitting.
 
 use anyhow::{Context, Result};
 use morec::clip::Clip;

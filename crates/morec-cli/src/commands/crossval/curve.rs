@@ -1,4 +1,4 @@
-//! What more samples and more people are worth, as a table and as a picture.
+//! Learning curves, as a table and as a picture.
 
 use std::io::Write;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! Cuts of the clips of a database, kept in it.
+//! Cuts the clips of a database and stores the cuts in it.
 
 use std::path::Path;
 use std::process::ExitCode;

@@ -1,4 +1,4 @@
-//! `morec db check`: whether a database is whole.
+//! `morec db check`: checks a database for damage.
 
 use std::path::PathBuf;
 use std::process::ExitCode;

@@ -1,4 +1,4 @@
-//! `morec db classes`: list, rename, merge, split and forget classes.
+//! `morec db classes`: lists, renames, merges, splits and removes classes.
 
 use std::path::PathBuf;
 use std::process::ExitCode;

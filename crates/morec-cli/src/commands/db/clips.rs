@@ -1,4 +1,4 @@
-//! `morec db clips`: list clips, and say more about them.
+//! `morec db clips`: lists clips and changes their descriptions.
 
 use std::path::PathBuf;
 use std::process::ExitCode;

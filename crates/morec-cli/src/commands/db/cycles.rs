@@ -1,4 +1,4 @@
-//! `morec db cycles`: how often something is repeated, and how long one repetition is.
+//! `morec db cycles`: counts repetitions and measures their length.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;

@@ -1,4 +1,4 @@
-//! `morec db export`: labels in other programs' forms, or the motion of clips.
+//! `morec db export`: writes labels in other programs' formats, or the motion of clips.
 
 mod args;
 mod motion;

@@ -1,4 +1,4 @@
-//! `morec db history`, `undo` and `redo`: what was changed, and the way back.
+//! `morec db history`, `undo` and `redo`: lists, undoes and redoes changes.
 
 use std::path::PathBuf;
 use std::process::ExitCode;

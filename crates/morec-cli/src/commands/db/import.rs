@@ -1,4 +1,4 @@
-//! `morec db import`: clips into a database.
+//! `morec db import`: imports clips into a database.
 
 use std::path::PathBuf;
 use std::process::ExitCode;

@@ -1,4 +1,4 @@
-//! `morec db indexes`: indexes that training kept in a database.
+//! `morec db indexes`: lists, writes and removes the indexes stored in a database.
 
 use std::path::PathBuf;
 use std::process::ExitCode;

@@ -1,4 +1,4 @@
-//! `morec db info`: how much is in a database.
+//! `morec db info`: prints the size and content of a database.
 
 use std::path::PathBuf;
 use std::process::ExitCode;

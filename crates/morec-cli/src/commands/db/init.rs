@@ -1,4 +1,4 @@
-//! `morec db init`: a new database.
+//! `morec db init`: creates an empty database.
 
 use std::path::PathBuf;
 use std::process::ExitCode;

@@ -1,4 +1,4 @@
-//! `morec db label`: labels in, and judging them.
+//! `morec db label`: reads labels from files, sets labels, and accepts or rejects samples.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;

@@ -1,4 +1,4 @@
-//! `morec db propose`: label a few, confirm the rest.
+//! `morec db propose`: proposes more samples of labelled classes, and accepts or rejects them by score.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;

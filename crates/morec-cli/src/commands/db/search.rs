@@ -1,4 +1,4 @@
-//! `morec db search`: where in the database is a motion like this one?
+//! `morec db search`: finds motions like an example.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

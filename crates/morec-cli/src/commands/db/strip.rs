@@ -1,4 +1,4 @@
-//! A strip of stick figures: what a stretch of motion looks like at a glance.
+//! A strip of stick figures that shows a stretch of motion.
 
 use std::fmt::Write;
 

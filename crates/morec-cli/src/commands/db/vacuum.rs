@@ -1,4 +1,4 @@
-//! `morec db vacuum`: give unused room back.
+//! `morec db vacuum`: returns unused space to the disk.
 
 use std::path::PathBuf;
 use std::process::ExitCode;

@@ -1,4 +1,4 @@
-//! Who performs in the demo: real people whose clips come with the command, or synthetic ones.
+//! The people of the demo: recordings of real people that come with the command, or synthetic people.
 
 use std::fmt::Write;
 

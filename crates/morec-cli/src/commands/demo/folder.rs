@@ -1,4 +1,4 @@
-//! The demo's folder: what lies where, and the commands that work on it.
+//! The demo's folder: its files, and the commands that use them.
 
 use std::ffi::OsString;
 use std::fmt::Write;

@@ -1,4 +1,4 @@
-//! Samples or segments of clips in files that are alike.
+//! Groups samples or segments of clips in files.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;

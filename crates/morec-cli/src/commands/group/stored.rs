@@ -1,4 +1,4 @@
-//! Samples or segments of a database that are alike.
+//! Groups samples or segments of a database.
 
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! The mapped body as a small picture: which joint is taken for what is seen at a glance.
+//! A small picture of the body with its roles, front and side.
 
 use std::fmt::Write as _;
 

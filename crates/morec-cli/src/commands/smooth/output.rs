@@ -1,4 +1,4 @@
-//! Where smoothed clips go, and in which form.
+//! The files that `smooth` writes, and their format.
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};

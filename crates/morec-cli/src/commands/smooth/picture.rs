@@ -1,4 +1,4 @@
-//! `--plot`: one channel of a clip as a picture.
+//! `--plot`: a picture of one channel of a clip.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! The lesson so far: takes and labels in a folder beside the index, and the index trained from them.
+//! The state of teaching: takes and labels in a folder beside the index, and the index trained on them.
 
 use std::fs::{self, OpenOptions};
 use std::io::Write;

@@ -1,4 +1,4 @@
-//! The motion of clips, each in a file of its own.
+//! Writes the motion of clips, one file for each clip.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! Several files in a few lines: how many, how long, which skeletons, which are odd.
+//! A summary of several files: their number, length, skeletons, and unusual files.
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
