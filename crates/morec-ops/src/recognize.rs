@@ -20,7 +20,7 @@ pub struct RecognizeSettings {
     pub sensitivity: Option<f64>,
     /// Expected performer, for indexes of one or two training subjects
     ///
-    /// auto: after four reports, the score threshold rises to half of the performer's recent scores; teacher: it is raised from
+    /// auto: from the fourth report on, the score threshold rises to half of the performer's recent scores; teacher: it is raised from
     /// the first frame, by the scores of the training samples; anyone: it is never raised. For hands, tracked points and older
     /// indexes, auto relaxes matching after four motions by a performer unlike the training subject, anyone relaxes it from the
     /// start, teacher never [default: auto].

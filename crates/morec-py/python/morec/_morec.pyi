@@ -177,7 +177,7 @@ class Index:
         sensitivity : float, optional
             Accepted false alarms a minute in background motion: 0.1 is strict, 1 is generous. As trained by default.
         performer : {"auto", "teacher", "anyone"}, optional
-            The expected performer. "auto" (default): after four reports, the score threshold rises to half of the performer's
+            The expected performer. "auto" (default): from the fourth report on, the score threshold rises to half of the performer's
             recent scores; "teacher": it is raised from the first frame, by the scores of the training samples; "anyone": it is
             never raised.
         deviation : bool

@@ -327,7 +327,7 @@ fn who_performs(ui: &mut Ui, state: &State, out: Out) {
         });
         widgets::named(&combo.response, WidgetType::ComboBox, "Performer", false);
         combo.response.on_hover_text(
-            "Automatic: after four reports, the score threshold rises to half of the performer's recent scores. Training \
+            "Automatic: from the fourth report on, the score threshold rises to half of the performer's recent scores. Training \
              subject: half of the training samples' scores from the start. Another person: the threshold is never raised",
         );
     });
