@@ -431,7 +431,7 @@ fn crossval_says_by_what_it_divides_and_refuses_one_person() {
     let said = run("nobody.tsv", "person").ok();
     assert!(
         said.starts_with(&format!(
-            "Left out: each clip in turn, {} clips, as no person is named",
+            "Left out: each clip in turn, {} clips, because no persons are named",
             takes.len()
         )),
         "{said}"

@@ -365,12 +365,12 @@ fn a_class_is_a_gesture_or_an_activity_and_it_can_be_said() {
     ));
     person.click("Always an activity");
     assert_eq!(person.state().train.settings.activities, ["wave"]);
-    assert!(person.sees("wave is an activity: so it was chosen"));
+    assert!(person.sees("wave is an activity: chosen by you"));
     person.click("Start training");
     person.settle();
     assert!(person.state().command_line.contains("--activities wave"));
     assert!(person.sees_part("reported when it ends: wave (named one)"));
-    person.click("wave is an activity: so it was chosen");
+    person.click("wave is an activity: chosen by you");
     person.click("By its labels: a gesture");
     person.click("Start training");
     person.settle();
