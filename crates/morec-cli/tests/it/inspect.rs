@@ -444,7 +444,7 @@ fn a_folder_ends_in_a_summary_of_what_is_there_and_what_is_odd() {
     );
     let odd = summary
         .iter()
-        .find(|line| line.starts_with("  look at odd: "));
+        .find(|line| line.starts_with("  check odd: "));
     assert!(
         odd.unwrap().contains("left and right are exchanged"),
         "{summary:#?}"
