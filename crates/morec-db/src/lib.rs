@@ -69,6 +69,7 @@ mod names;
 mod places;
 mod propose;
 mod replace;
+mod reports;
 pub mod rows;
 mod schema;
 pub mod search;
@@ -93,6 +94,7 @@ pub use kept::{KeptClip, KeptFile, NotKept, clip_rows, packed_rows, rows_recipe,
 pub use motion::StoredClip;
 pub use propose::{Proposal, ProposeOptions, most_informative};
 pub use replace::Replaced;
+pub use reports::{REPORTS_KEPT, ReportInfo, ReportKind};
 pub use rows::bones_of_bits;
 pub use schema::{APPLICATION_ID, SCHEMA};
 pub use segments::{Segment, SegmentKind};

@@ -38,6 +38,8 @@ mod group;
 #[cfg(feature = "db")]
 mod import;
 #[cfg(feature = "db")]
+mod kept;
+#[cfg(feature = "db")]
 mod material;
 mod params;
 #[cfg(feature = "db")]
@@ -49,6 +51,8 @@ mod search;
 mod shapes;
 mod text;
 mod train;
+#[cfg(feature = "db")]
+mod unlearned;
 #[cfg(feature = "clap")]
 mod words;
 
@@ -74,6 +78,8 @@ pub use group::{
 #[cfg(feature = "db")]
 pub use import::{CopiedClip, ImportSettings, ImportedFiles};
 #[cfg(feature = "db")]
+pub use kept::{KeptCrossval, KeptTraining, MissedLabel, tested_together, training_in_words};
+#[cfg(feature = "db")]
 pub use material::{MaterialBeside, accepted_labels, training_data};
 pub use params::{Param, ParamError, from_fields};
 #[cfg(feature = "db")]
@@ -86,5 +92,7 @@ pub use search::{SearchSettings, example_of_clip, example_of_database};
 #[cfg(feature = "db")]
 pub use shapes::Shapes;
 pub use train::{Method, TrainSettings, Unlabelled};
+#[cfg(feature = "db")]
+pub use unlearned::Unlearned;
 #[cfg(feature = "clap")]
 pub use words::share;

@@ -68,6 +68,7 @@ impl Studio {
         self.state.tick(dt);
         self.fonts.follow(ctx, &mut self.state);
         let mut commands: Vec<Command> = Vec::new();
+        panels::focus::follow(ctx);
         keys::read(ctx, &self.state, self.dialogs.is_open(), &mut commands);
         dialogs::dropped(ctx, &mut commands);
         panels::show(ctx, &self.state, &mut commands);

@@ -158,6 +158,11 @@ pub fn dialog(ask: &Ask) -> Dialog {
         Ask::ImportLabels => open(DialogKind::Files, "Import labels", None),
         Ask::Save => save("Save a copy of the database", DATABASES, "motions.mdb"),
         Ask::ExportIndex => save("Export the index", ("indexes", "index"), "studio.index"),
+        Ask::ExportReport(id) => save(
+            "Export the report",
+            ("reports", "json"),
+            &format!("report_{id}.json"),
+        ),
         Ask::ExportLabels(form) if form.is_of_one_clip() => open(
             DialogKind::Folder,
             "A folder for the labels of each clip",
@@ -227,6 +232,7 @@ pub fn command(ask: &Ask, paths: Vec<PathBuf>) -> Option<FileCommand> {
         Ask::ImportLabels => FileCommand::ImportLabels(paths),
         Ask::Save => FileCommand::Save(first),
         Ask::ExportIndex => FileCommand::ExportIndex(first),
+        Ask::ExportReport(id) => FileCommand::ExportReport(*id, first),
         Ask::ExportLabels(form) => FileCommand::ExportLabels(*form, first),
         Ask::ExportClip(_) => FileCommand::ExportClip(first),
         Ask::ExportStretch(_) => FileCommand::ExportStretch(first),

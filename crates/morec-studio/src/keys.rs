@@ -5,6 +5,7 @@ mod typing;
 
 use egui::{Key, Modifiers};
 
+use crate::panels::lists;
 use crate::state::{
     ClassCommand, Command, CompareCommand, CutCommand, FileCommand, Grip, LibraryCommand,
     LiveCommand, Panel, PlayCommand, SimilarCommand, State, TimelineCommand, TrainCommand,
@@ -45,7 +46,12 @@ pub fn read(ctx: &egui::Context, state: &State, asks_a_file: bool, out: &mut Vec
         remember_change(ctx, false);
     }
     let covered = state.is_covered() || asks_a_file || egui::Popup::is_any_open(ctx);
-    let typing = asked || ctx.wants_keyboard_input();
+    if !asked && !covered && !in_field {
+        // The other panels have a list that is gone through without the keyboard being in it.
+        lists::read(ctx, matches!(state.panel, Panel::Classes | Panel::Live));
+    }
+    // On a selected row keys act on what is selected, as without it.
+    let typing = asked || (ctx.wants_keyboard_input() && !lists::is_on_selected(ctx));
     ctx.input_mut(|i| {
         commands(i, in_text || covered, out);
         if typing || covered {
@@ -60,13 +66,14 @@ pub fn read(ctx: &egui::Context, state: &State, asks_a_file: bool, out: &mut Vec
             Panel::Live => return live(i, state, out),
             Panel::Library => library(i, state, out),
             Panel::Label => {
-                rows(i, out);
+                // Home and End are the clip's.
+                rows(i, &STEPS[..2], out);
                 labels(i, state, out);
                 timeline(i, state, out);
             }
             Panel::Classes => labels(i, state, out),
             Panel::Train => {
-                for (key, by) in [(Key::ArrowUp, -1), (Key::ArrowDown, 1)] {
+                for (key, by) in STEPS {
                     if i.consume_key(Modifiers::NONE, key) {
                         out.push(Command::Train(TrainCommand::StepMoment(by)));
                     }
@@ -143,16 +150,24 @@ fn library(i: &mut egui::InputState, state: &State, out: &mut Vec<Command>) {
     if i.consume_key(Modifiers::COMMAND, Key::A) {
         out.push(Command::Library(LibraryCommand::SelectAll));
     }
-    rows(i, out);
+    rows(i, &STEPS, out);
     class_keys(i, state, out);
     if i.consume_key(Modifiers::NONE, Key::B) {
         out.push(Command::Library(LibraryCommand::Background));
     }
 }
 
-/// Up and down in the list of clips.
-fn rows(i: &mut egui::InputState, out: &mut Vec<Command>) {
-    for (key, by) in [(Key::ArrowUp, -1), (Key::ArrowDown, 1)] {
+/// Keys of a list, with the number of rows that each goes on.
+const STEPS: [(Key, i64); 4] = [
+    (Key::ArrowUp, -1),
+    (Key::ArrowDown, 1),
+    (Key::Home, i64::MIN),
+    (Key::End, i64::MAX),
+];
+
+/// Keys of the list of clips.
+fn rows(i: &mut egui::InputState, steps: &[(Key, i64)], out: &mut Vec<Command>) {
+    for &(key, by) in steps {
         if i.consume_key(Modifiers::NONE, key) {
             out.push(Command::Library(LibraryCommand::Step(by)));
         }

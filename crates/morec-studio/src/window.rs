@@ -134,7 +134,7 @@ fn window(args: &Args) -> Result<(), String> {
             .with_title("morec studio")
             .with_app_id(APP)
             .with_inner_size([1400.0, 860.0])
-            .with_min_inner_size([960.0, 540.0])
+            .with_min_inner_size([640.0, 400.0])
             .with_drag_and_drop(true),
         ..Default::default()
     };

@@ -3,7 +3,7 @@
 mod curve;
 
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use morec::crossval::{CrossvalData, FoldReport, Tests};
@@ -12,7 +12,10 @@ use morec::explain::Miss;
 use morec::perturb::Perturbation;
 use morec::report::{Report, TrainedClass};
 use morec::templates::ALARM_RATES;
-use morec_ops::{CrossvalSettings, LeftOut};
+use morec_ops::{
+    CrossvalMeasures, CrossvalSettings, KeptCrossval, LeftOut, Method, MissedLabel, Unlearned,
+    tested_together,
+};
 
 use crate::database;
 use crate::figures;
@@ -117,6 +120,11 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     }
     let measures = settings.crossval(&of, &args.material.settings, &StageBar::new())?;
     let (tested, evaluation) = (&measures.tested, &measures.evaluation);
+    if let Some(db) = &args.material.db
+        && let Err(error) = keep(db, args, &of, &measures)
+    {
+        eprintln!("note: the report is not kept in {}: {error}", db.display());
+    }
     // Before anything is printed: a closed pipe does not lose the report.
     if let Some(path) = &args.report {
         let timelines = timelines(&tested.streams, &tested.truths, &tested.founds)?;
@@ -171,6 +179,29 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     }
     out.flush()?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// Keeps the report in the database.
+fn keep(
+    path: &Path,
+    args: &Args,
+    of: &CrossvalData<'_>,
+    measures: &CrossvalMeasures,
+) -> anyhow::Result<()> {
+    let tested = &measures.tested;
+    let unlearned = Unlearned::of_folds(args.settings.fold_by(), of.clips, of.samples);
+    let kept = KeptCrossval {
+        by: args.settings.by,
+        thesis: args.material.settings.method == Method::Svrdm,
+        untested: Vec::new(),
+        streams: tested.streams.clone(),
+        truths: tested.truths.clone(),
+        founds: tested.founds.clone(),
+        missed: tested.misses.iter().map(MissedLabel::from).collect(),
+        folds: tested_together(unlearned),
+    };
+    kept.keep(&mut database::open(path)?, &measures.evaluation)?;
+    Ok(())
 }
 
 /// Everything measured, for JSON.

@@ -2,12 +2,14 @@
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::time::Instant;
 
 use anyhow::{Context, Result};
 use morec::index::MotionIndex;
 use morec::labels::{ClassLengths, Sample, class_lengths};
 use morec::train::TrainingReport;
 use morec::train::thesis::SvrdmReport;
+use morec_ops::KeptTraining;
 
 use crate::database;
 use crate::json::write_json;
@@ -50,6 +52,7 @@ pub fn trained(
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
+    let begun = Instant::now();
     let (index, report, material) = trained(&args.material, &args.output)?;
     let bytes = index.to_bytes()?;
     output::write_whole(&args.output, |out| out.write_all(&bytes))
@@ -60,7 +63,11 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             .file_stem()
             .unwrap_or_default()
             .to_string_lossy();
-        database::open(db)?.store_index(&name, &bytes)?;
+        let mut db = database::open(db)?;
+        db.store_index(&name, &bytes)?;
+        let secs = begun.elapsed().as_secs_f64();
+        KeptTraining::of(&report, secs, bytes.len())
+            .keep(&mut db, &KeptTraining::title(&report))?;
     }
     if args.json {
         let mut out = crate::console::stdout();

@@ -261,6 +261,49 @@ fn a_database_trains_an_index_and_keeps_it() {
 }
 
 #[test]
+fn kept_reports_are_listed_and_written() {
+    let (folder, _) = studio(1);
+    json(&folder, &["db", "import", "m.mdb", "clips"]);
+    let path = folder.path().join("m.mdb");
+    let mut db = morec_db::MotionDb::open(&path).unwrap();
+    let kinds = [
+        morec_db::ReportKind::Training,
+        morec_db::ReportKind::Crossval,
+    ];
+    for (number, kind) in kinds.into_iter().enumerate() {
+        let contents = serde_json::json!({ "number": number });
+        db.keep_report(kind, "2 of 3 found", &contents).unwrap();
+    }
+    drop(db);
+    let listed = json(&folder, &["db", "reports", "m.mdb"]);
+    assert_eq!(listed.as_array().unwrap().len(), 2);
+    assert_eq!(
+        (&listed[0]["id"], &listed[0]["kind"]),
+        (&2.into(), &"crossval".into())
+    );
+    let printed = folder.morec(&["db", "reports", "m.mdb"]).ok();
+    assert!(printed.contains("cross-validation") && printed.contains("2 of 3 found"));
+    let read = |name: &str| -> Value {
+        let text = std::fs::read_to_string(folder.path().join(name)).unwrap();
+        serde_json::from_str(&text).unwrap()
+    };
+    let write = ["db", "reports", "m.mdb", "--write", "all.json"];
+    folder.morec(&write).ok();
+    assert_eq!(read("all.json")[1]["report"]["number"], 0);
+    let one = [
+        "db", "reports", "m.mdb", "--only", "2", "--write", "one.json",
+    ];
+    folder.morec(&one).ok();
+    assert_eq!(read("one.json")["report"]["number"], 1);
+    assert_eq!(read("one.json")["about"]["title"], "2 of 3 found");
+    let unknown = folder.morec(&["db", "reports", "m.mdb", "--only", "7"]);
+    assert!(
+        unknown.code == Some(1) && unknown.err.contains("report"),
+        "{unknown:?}"
+    );
+}
+
+#[test]
 fn clips_with_the_tag_background_are_what_a_database_has_of_it() {
     let (folder, takes) = studio(4);
     let names: Vec<&str> = takes.iter().map(|take| take.clip.name.as_str()).collect();

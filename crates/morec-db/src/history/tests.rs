@@ -303,4 +303,9 @@ fn databases_of_the_first_schema_open_with_their_history() {
     db.redo(None).unwrap();
     assert_eq!(name(&db).as_deref(), Some("greet"));
     assert!(crate::digest::faults(&db.conn).unwrap().is_empty());
+    // What later schemas added is there.
+    assert!(db.reports().unwrap().is_empty());
+    let report = serde_json::json!({"classes": 1});
+    let kept = db.keep_report(crate::ReportKind::Training, "1 class", &report);
+    assert_eq!(db.report(kept.unwrap()).unwrap(), report);
 }

@@ -8,6 +8,9 @@ const NEAR: f64 = 0.15;
 /// From the middle of the picture to its upper edge: 24°.
 const HALF_ANGLE: f64 = 24.0 * std::f64::consts::PI / 180.0;
 
+/// Width of the narrowest picture, of its height.
+const NARROWEST: f64 = 0.8;
+
 /// A camera that looks at a point from some way off. Right-handed, Y up, metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Camera {
@@ -54,6 +57,20 @@ impl Camera {
     /// The distance at which what reaches so far from the target is seen whole, metres.
     pub fn distance_of(half: f64) -> f64 {
         (1.5 * half / HALF_ANGLE.tan()).clamp(Self::NEAREST, Self::FARTHEST)
+    }
+
+    /// The distance at which places at these offsets from the target are in the picture, seen from where it is seen now, metres.
+    pub fn distance_to_see(&self, offsets: impl Iterator<Item = Vec3>) -> f64 {
+        // Room at the edges, and pictures that are higher than wide.
+        let slope = 0.85 * HALF_ANGLE.tan();
+        let (right, up, forward) = self.axes();
+        let needed = offsets.map(|at| {
+            let aside = at.dot(&up).abs().max(at.dot(&right).abs() / NARROWEST);
+            aside / slope - at.dot(&forward)
+        });
+        // A place that is not a number is nowhere.
+        let least = needed.filter(|d| d.is_finite()).fold(0.0, f64::max);
+        least.clamp(Self::NEAREST, Self::FARTHEST)
     }
 
     /// Turns by a drag over this many points.

@@ -6,30 +6,25 @@ use std::path::Path;
 use morec::TimeSpan;
 use morec::crossval::{CrossvalData, Tested};
 use morec::eval::{
-    ClipDetection, DetectionVerdict, Evaluation, GroundTruth, GroundTruthVerdict, Timeline,
-    timelines,
+    ClipDetection, DetectionVerdict, EvalError, Evaluation, GroundTruth, GroundTruthVerdict,
+    Timeline, timelines,
 };
-use morec::explain::Miss;
 use morec::labels::Sample;
 use morec::train::TrainClip;
-use morec_ops::{CrossvalSettings, LeftOut, Method, OperationError, TrainSettings};
+use morec_ops::{
+    CrossvalSettings, KeptCrossval, LeftOut, Method, MissedLabel, OperationError, TrainSettings,
+    Unlearned, tested_together,
+};
 
 use super::progress::{JobError, JobProgress};
 use super::train::material;
-use super::unlearned::Unlearned;
 
 /// Result of a cross-validation.
 pub struct CrossvalResult {
+    /// What the measures follow from.
+    pub kept: KeptCrossval,
     pub evaluation: Evaluation,
     pub timelines: Vec<Timeline>,
-    /// Reasons of labels that were missed.
-    pub misses: Vec<Miss>,
-    /// The part that is left out in turn.
-    pub by: LeftOut,
-    /// True if the method of 2009 was judged.
-    pub thesis: bool,
-    /// Classes of which nothing is left to learn from when their part is left out: they are not tested.
-    pub untested: Vec<String>,
     /// For each tested clip, by name, the labels that did not teach what tested it.
     pub unlearned: BTreeMap<String, Unlearned>,
 }
@@ -85,6 +80,21 @@ impl Moment {
 }
 
 impl CrossvalResult {
+    /// Measures what was tested.
+    pub fn of(kept: KeptCrossval) -> Result<Self, EvalError> {
+        let (streams, truths, founds) = (&kept.streams, &kept.truths, &kept.founds);
+        let of_fold = |(clips, without): &(Vec<String>, Unlearned)| {
+            let clips = clips.iter().map(|clip| (clip.clone(), without.clone()));
+            clips.collect::<Vec<_>>()
+        };
+        Ok(Self {
+            evaluation: Evaluation::of(streams, truths, founds)?,
+            timelines: timelines(streams, truths, founds)?,
+            unlearned: kept.folds.iter().flat_map(of_fold).collect(),
+            kept,
+        })
+    }
+
     /// Every label once, and every false detection once, by stream and time.
     pub fn moments(&self) -> Vec<Moment> {
         let mut moments = Vec::new();
@@ -117,17 +127,11 @@ impl CrossvalResult {
     }
 
     fn why(&self, stream: &str, class: &str, start_secs: f64) -> Option<String> {
-        let same = |m: &&Miss| {
+        let same = |m: &&MissedLabel| {
             m.clip == stream && m.class == class && (m.span.start_secs - start_secs).abs() < 1e-6
         };
-        let miss = self.misses.iter().find(same)?;
-        Some(match miss.sensitivity {
-            Some(alarms) => format!(
-                "{}; at {alarms:.2} false alarms a minute it is found",
-                miss.reason
-            ),
-            None => miss.reason.to_string(),
-        })
+        let miss = self.kept.missed.iter().find(same)?;
+        Some(miss.reason.clone())
     }
 }
 
@@ -177,16 +181,17 @@ pub fn judge(
         let untested = untested(by, &data.clips, &data.samples);
         let unlearned = Unlearned::of_folds(how.fold_by(), &data.clips, &data.samples);
         let tested = without(tested, &untested);
-        let (streams, truths, founds) = (&tested.streams, &tested.truths, &tested.founds);
-        Ok(CrossvalResult {
+        let kept = KeptCrossval {
+            by,
             thesis: train.method == Method::Svrdm,
             untested,
-            evaluation: Evaluation::of(streams, truths, founds)?,
-            timelines: timelines(streams, truths, founds)?,
-            misses: tested.misses,
-            by,
-            unlearned,
-        })
+            missed: tested.misses.iter().map(MissedLabel::from).collect(),
+            streams: tested.streams,
+            truths: tested.truths,
+            founds: tested.founds,
+            folds: tested_together(unlearned),
+        };
+        Ok(CrossvalResult::of(kept)?)
     };
     let judged = judged().map_err(|error| JobError::of("Not judged", error))?;
     Ok(Box::new(judged))
@@ -263,16 +268,17 @@ mod tests {
             duration_secs: 60.0,
             unknown: false,
         }];
-        let result = CrossvalResult {
-            evaluation: Evaluation::of(&streams, truths, founds).unwrap(),
-            timelines: timelines(&streams, truths, founds).unwrap(),
-            misses: Vec::new(),
+        let kept = KeptCrossval {
             by: LeftOut::Half,
             thesis: false,
             untested: Vec::new(),
-            unlearned: BTreeMap::new(),
+            streams: streams.to_vec(),
+            truths: truths.to_vec(),
+            founds: founds.to_vec(),
+            missed: Vec::new(),
+            folds: Vec::new(),
         };
-        result.moments()
+        CrossvalResult::of(kept).unwrap().moments()
     }
 
     fn pairs(moments: &[Moment]) -> Vec<(Option<&str>, Option<&str>)> {

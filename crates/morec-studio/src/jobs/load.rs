@@ -109,6 +109,23 @@ impl ClipMotion {
             _ => WorldPose::of(&self.clip, self.frame_at(secs)),
         }
     }
+
+    /// Where a camera looks that follows: the middle of what is seen; of a person at the height of a waist, so that the picture does
+    /// not bob.
+    pub fn centre(&self, pose: &WorldPose) -> Option<Vec3> {
+        if !self.is_person {
+            return Some(extent(&pose.positions)?.0);
+        }
+        let at = self.body.centre(pose)?;
+        Some(Vec3::new(at.x, self.floor + 0.52 * self.body.height, at.z))
+    }
+
+    /// So many poses at most, evenly spread over the clip.
+    pub fn poses(&self, most: usize) -> impl Iterator<Item = WorldPose> {
+        let step = self.clip.frames.div_ceil(most).max(1);
+        let frames = (0..self.clip.frames).step_by(step);
+        frames.map(|frame| self.pose((frame as f64 + 0.5) / self.clip.rate_hz))
+    }
 }
 
 /// Root mean square of the bones' speeds: rows hold them saturated, which is well for a picture.
@@ -146,12 +163,8 @@ fn doubts(clip: &Clip, roles: &RoleMap, rest: &std::ops::Range<usize>) -> Vec<St
 }
 
 /// Where joints are that are seen: the middle, and half of the greatest extent, metres.
-pub fn extent(pose: &WorldPose) -> Option<(Vec3, f64)> {
-    let seen = || {
-        pose.positions
-            .iter()
-            .filter(|p| p.iter().all(|v| v.is_finite()))
-    };
+pub fn extent(positions: &[Vec3]) -> Option<(Vec3, f64)> {
+    let seen = || positions.iter().filter(|p| p.iter().all(|v| v.is_finite()));
     let first = seen().next()?;
     let (low, high) = seen().fold((*first, *first), |(low, high), p| (low.inf(p), high.sup(p)));
     Some(((low + high) / 2.0, (high - low).max() / 2.0))

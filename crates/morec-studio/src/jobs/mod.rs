@@ -19,7 +19,6 @@ pub mod similar;
 pub mod teach;
 pub mod thesis;
 pub mod train;
-pub mod unlearned;
 
 use std::collections::BTreeSet;
 use std::sync::Arc;

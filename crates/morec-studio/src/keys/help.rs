@@ -24,6 +24,21 @@ pub const HELP: &[(&str, &str, &str)] = &[
     ),
     ("Train", "Up, Down", "the moment above, below in the list"),
     (
+        "Classes, Live",
+        "Up, Down",
+        "the sample, hit, set, group or recognised motion above, below",
+    ),
+    (
+        "Library, Train",
+        "Home, End",
+        "the first, the last of the list",
+    ),
+    (
+        "Lists",
+        "Up, Down, Home, End, Enter",
+        "in the list that has the keyboard, which Tab gives it",
+    ),
+    (
         "Library",
         "1 … 9",
         "label the selected clips as a whole with this class",
@@ -41,7 +56,11 @@ pub const HELP: &[(&str, &str, &str)] = &[
     ),
     ("Playing", "Left Right  , .", "a frame back, a frame on"),
     ("Playing", "Shift Left Right", "a second back, a second on"),
-    ("Playing", "Home, End", "to the beginning, to the end"),
+    (
+        "Labels, classes",
+        "Home, End",
+        "to the beginning, to the end",
+    ),
     ("Playing", "O", "loop the selected stretch or label"),
     ("Playing", "I", "stay inside the segment between the cuts"),
     (

@@ -6,6 +6,7 @@ use egui::{
 };
 use morec_db::{ClipId, ClipInfo};
 
+use super::lists::List;
 use super::{Out, widgets};
 use crate::format;
 use crate::state::{Command, State};
@@ -88,13 +89,15 @@ pub fn list(ui: &mut Ui, state: &State, out: Out) {
         .max_height(ROWS * (row + ui.spacing().item_spacing.y))
         .auto_shrink([false, true])
         .show_rows(ui, row, clips.len(), |ui, rows| {
-            for clip in &clips[rows] {
-                tick(ui, clip, out);
+            let list = List::new(ui, "background", clips.len());
+            list.scroll(ui, list.wanted, rows.start, row);
+            for at in rows {
+                tick(ui, clips[at], (&list, at), out);
             }
         });
 }
 
-fn tick(ui: &mut Ui, clip: &ClipInfo, out: Out) {
+fn tick(ui: &mut Ui, clip: &ClipInfo, (list, at): (&List, usize), out: Out) {
     let c = Colours::now(ui);
     let (text, colour) = match clip.samples {
         0 => (format::duration(clip.duration_secs()), c.muted),
@@ -113,6 +116,7 @@ fn tick(ui: &mut Ui, clip: &ClipInfo, out: Out) {
             let response = ui.add(Checkbox::new(&mut on, &clip.name));
             let name = format!("Background {}", clip.name);
             named(&response, &name, clip.is_background());
+            list.row(ui, at, &response, false);
             if response.changed() {
                 let clips: Vec<ClipId> = vec![clip.id];
                 out.push(Command::Edit(Edit::Background { clips, on }));

@@ -1,6 +1,8 @@
 //! The bar at the top, with the panels; the bar at the bottom, with what was done and what is being done.
 
-use egui::{Align, Button, Context, Frame, Layout, Margin, RichText, TopBottomPanel, Ui, Vec2};
+use egui::{
+    Align, Button, Context, Frame, Layout, Margin, RichText, ScrollArea, TopBottomPanel, Ui, Vec2,
+};
 
 use morec_db::HistoryStep;
 use morec_db::exchange::LabelFormat;
@@ -41,7 +43,9 @@ pub fn top(ctx: &Context, state: &State, out: Out) {
 
 fn file_menu(ui: &mut Ui, state: &State, out: Out) {
     use FileCommand::*;
-    ui.menu_button("File", |ui| {
+    let height = ui.ctx().content_rect().height() - 70.0;
+    let area = ScrollArea::vertical().max_height(height);
+    let contents = |ui: &mut Ui| {
         let open = state.store.is_some();
         let shown = open && state.player.motion.is_some();
         item(ui, ("Open …", "Ctrl O"), true, AskOpen, out);
@@ -77,7 +81,8 @@ fn file_menu(ui: &mut Ui, state: &State, out: Out) {
         });
         let trained = !state.train.bytes.is_empty();
         item(ui, ("Export the index …", ""), trained, AskExportIndex, out);
-    });
+    };
+    ui.menu_button("File", |ui| area.show(ui, contents));
 }
 
 /// An entry of the menu, with its keys if it has any.
@@ -237,7 +242,8 @@ pub fn bottom(ctx: &Context, state: &State, out: Out) {
         .show(ctx, |ui| {
             ui.horizontal_centered(|ui| {
                 jobs(ui, state, out);
-                ui.label(RichText::new(&state.said).size(12.0));
+                let said = RichText::new(&state.said).size(12.0);
+                ui.add(egui::Label::new(said).truncate());
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                     command_line(ui, state, &c);
                 });

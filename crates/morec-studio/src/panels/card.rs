@@ -4,6 +4,7 @@ use egui::{Button, Rect, RichText, Sense, Ui, Vec2, WidgetType};
 use morec_db::labels::{DbSample, SampleId, SampleState as Judged};
 
 use super::carried::Carried;
+use super::lists::List;
 use super::strips::{STRIP, go};
 use super::{Out, strips, widgets};
 use crate::format;
@@ -16,8 +17,8 @@ pub const HEIGHT: f32 = STRIP + 18.0;
 /// Room for the answers to a proposal.
 const ANSWERS: f32 = 46.0;
 
-/// A sample: its strip, where it is, and for proposals yes and no.
-pub fn show(ui: &mut Ui, state: &State, sample: &DbSample, out: Out) {
+/// A sample, row `at` of its column: its strip, where it is, and for proposals yes and no.
+pub fn show(ui: &mut Ui, state: &State, sample: &DbSample, (list, at): (&List, usize), out: Out) {
     let c = Colours::now(ui);
     let (rect, response) =
         ui.allocate_exact_size(Vec2::new(COLUMN - 8.0, HEIGHT), Sense::click_and_drag());
@@ -54,7 +55,7 @@ pub fn show(ui: &mut Ui, state: &State, sample: &DbSample, out: Out) {
     if response.drag_started() {
         response.dnd_set_drag_payload(Carried::Sample(sample.id));
     }
-    if response.clicked() || response.double_clicked() {
+    if list.row(ui, at, &response, selected) || response.double_clicked() {
         go(sample.into(), Some(sample.id), out);
     }
     if response.double_clicked() {

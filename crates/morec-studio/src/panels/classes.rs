@@ -7,6 +7,7 @@ use egui::{
 use morec_db::labels::{DbSample, SampleState as Judged};
 use morec_ops::GroupMethod;
 
+use super::lists::List;
 use super::{Out, card, carried, groups, label, padded, proposals, shelf, similar, view, widgets};
 use crate::format;
 use crate::state::{ClassCommand, Command, State};
@@ -120,6 +121,7 @@ fn columns(ui: &mut Ui, state: &State, out: Out) {
         return;
     }
     let height = ui.available_height();
+    let entered = entered(state);
     ScrollArea::horizontal().auto_shrink(false).show(ui, |ui| {
         ui.horizontal_top(|ui| {
             for (place, class) in state.classes.placed() {
@@ -127,12 +129,40 @@ fn columns(ui: &mut Ui, state: &State, out: Out) {
                 let places = state.classes.columns.column(class).iter();
                 let samples: Vec<&DbSample> =
                     places.filter_map(|&at| Some(&**all.get(at)?)).collect();
-                column(ui, state, place, class, samples, height - 14.0, out);
+                let entry = entered.filter(|(of, _)| *of == class).map(|(_, at)| at);
+                column(
+                    ui,
+                    state,
+                    (place, class),
+                    (samples, entry),
+                    height - 14.0,
+                    out,
+                );
             }
         });
         // After the columns: each scroll area takes what has been asked for inside it.
         scroll_at_edge(ui, Vec2::X);
     });
+}
+
+/// The column that Up and Down enter, and where: at what is selected, else at the first sample of all.
+fn entered(state: &State) -> Option<(&str, usize)> {
+    let samples = &state.store.as_ref()?.snapshot.samples;
+    let columns = state.classes.placed().map(|(_, class)| {
+        let column = state.classes.columns.column(class);
+        (class, column)
+    });
+    let columns: Vec<_> = columns.filter(|(_, column)| !column.is_empty()).collect();
+    let is_selected = |at: &usize| {
+        let sample = samples.get(*at);
+        sample.is_some_and(|s| state.timeline.selected.contains(&s.id))
+    };
+    let mut chosen = columns.iter().filter_map(|(class, column)| {
+        let at = column.iter().position(is_selected)?;
+        Some((*class, at))
+    });
+    let first = columns.first().map(|(class, _)| (*class, 0));
+    chosen.next().or(first)
 }
 
 /// Scrolls the area around `ui` along `axis` while a sample is dragged near one of its edges.
@@ -165,9 +195,8 @@ fn push(range: Rangef, at: f32) -> f32 {
 fn column(
     ui: &mut Ui,
     state: &State,
-    place: usize,
-    class: &str,
-    samples: Vec<&DbSample>,
+    (place, class): (usize, &str),
+    (samples, entry): (Vec<&DbSample>, Option<usize>),
     height: f32,
     out: Out,
 ) {
@@ -201,8 +230,13 @@ fn column(
                 .id_salt(class)
                 .auto_shrink(false)
                 .show_rows(ui, card::HEIGHT, samples.len(), |ui, rows| {
-                    for sample in &samples[rows] {
-                        card::show(ui, state, sample, out);
+                    let list = match entry {
+                        Some(at) => List::main(ui, class, samples.len(), 1, at),
+                        None => List::following(ui, class, samples.len()),
+                    };
+                    list.scroll(ui, list.wanted, rows.start, card::HEIGHT);
+                    for at in rows {
+                        card::show(ui, state, samples[at], (&list, at), out);
                     }
                     scroll_at_edge(ui, Vec2::Y);
                 });

@@ -6,6 +6,7 @@ use egui::{Button, Rect, RichText, ScrollArea, Sense, Ui, Vec2, WidgetType};
 use morec::cluster::KwasParams;
 use morec_ops::{GroupMethod, Grouping};
 
+use super::lists::List;
 use super::strips::{STRIP, go};
 use morec_db::labels::SampleState;
 
@@ -24,6 +25,7 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
     let c = Colours::now(ui);
     let all = made(ui, state, groups);
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        let list = List::main(ui, "groups", all.len(), 1, 0);
         for (number, group) in all.iter().enumerate() {
             ui.horizontal(|ui| {
                 ui.label(RichText::new(format!("Group {}", number + 1)).strong());
@@ -59,7 +61,7 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
                 .id_salt(("group", number))
                 .show(ui, |ui| {
                     ui.horizontal(|ui| {
-                        for &member in group.members.iter().take(24) {
+                        for (place, &member) in group.members.iter().take(24).enumerate() {
                             let item = &groups.items[member];
                             let size = Vec2::new(150.0, STRIP);
                             let (rect, response) =
@@ -80,7 +82,17 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
                             if response.drag_started() {
                                 response.dnd_set_drag_payload(carried(item));
                             }
-                            if response.clicked() {
+                            // The list goes from group to group.
+                            let chosen = match place {
+                                0 => list.row(
+                                    ui,
+                                    number,
+                                    &response,
+                                    state.is_selected_stretch(item.of),
+                                ),
+                                _ => response.clicked(),
+                            };
+                            if chosen {
                                 go(item.of, item.sample, out);
                             }
                         }

@@ -2,6 +2,7 @@
 
 use egui::{Align, Context, Frame, Layout, Margin, RichText, ScrollArea, SidePanel, WidgetType};
 
+use super::lists::List;
 use super::{Out, widgets};
 use crate::state::{Command, State};
 use crate::store::Edit;
@@ -34,12 +35,17 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
                 widgets::nothing(ui, "No changes yet", "");
                 return;
             }
+            // Steps that can be undone.
+            let done: Vec<usize> = (0..steps.len()).filter(|&at| !steps[at].undone).collect();
             ScrollArea::vertical().auto_shrink(false).show_rows(
                 ui,
                 24.0,
                 steps.len(),
                 |ui, rows| {
-                    for step in &steps[rows] {
+                    let list = List::new(ui, "history", done.len());
+                    list.scroll(ui, list.wanted.map(|at| done[at]), rows.start, 24.0);
+                    for at in rows {
+                        let step = &steps[at];
                         ui.horizontal(|ui| {
                             ui.set_height(24.0);
                             let by = match store.snapshot.is_foreign(step) {
@@ -57,7 +63,8 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
                                     let response = ui.small_button("Undo");
                                     let name = format!("Undo step {}: {}", step.id, step.what);
                                     widgets::named(&response, WidgetType::Button, name, false);
-                                    if response.clicked() {
+                                    let row = done.partition_point(|done| *done < at);
+                                    if list.row(ui, row, &response, false) {
                                         out.push(Command::Edit(Edit::Undo(Some(step.id))));
                                     }
                                 }

@@ -3,6 +3,7 @@
 use egui::{RichText, ScrollArea, Ui};
 
 use super::Out;
+use super::lists::List;
 use crate::format;
 use crate::jobs::import::ImportSummary;
 use crate::state::{Command, CompareCommand, FileCommand, LibraryCommand, State};
@@ -97,10 +98,12 @@ fn as_background(ui: &mut Ui, state: &State, report: &ImportSummary, out: Out) {
 
 /// Clips that are nearly others: compared, or left out again.
 fn copies(ui: &mut Ui, report: &ImportSummary, out: Out) {
-    for copy in report.copies.iter().take(50) {
+    let list = List::new(ui, "copies", report.copies.len().min(50));
+    for (at, copy) in report.copies.iter().take(50).enumerate() {
         ui.horizontal(|ui| {
             ui.label(RichText::new(&copy.text).size(12.0));
-            if ui.small_button("Compare").clicked() {
+            let compare = ui.small_button("Compare");
+            if list.row(ui, at, &compare, false) {
                 out.push(Command::Compare(CompareCommand::With {
                     of: copy.of,
                     with: copy.copy,

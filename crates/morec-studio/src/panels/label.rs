@@ -6,6 +6,7 @@ use egui::{
 };
 use morec_db::labels::SampleState as Judged;
 
+use super::lists::List;
 use super::{Out, carried, deviation, library, padded, player, proposals, timeline, view, widgets};
 use crate::format;
 use crate::state::classes::is_free_name;
@@ -65,8 +66,10 @@ fn clips(ui: &mut Ui, state: &State, out: Out) {
             let is_now = |place: &usize| store.snapshot.clips.get(*place).map(|c| c.id) == now;
             let at = shown.iter().position(is_now);
             widgets::keep_in_view(ui, "clips to label", at, rows.start, ROW);
-            for &place in &shown[rows] {
-                let Some(clip) = store.snapshot.clips.get(place) else {
+            let list = List::following(ui, "clips to label", shown.len());
+            list.scroll(ui, list.wanted, rows.start, ROW);
+            for at in rows {
+                let Some(clip) = store.snapshot.clips.get(shown[at]) else {
                     continue;
                 };
                 let size = Vec2::new(ui.available_width(), ROW);
@@ -96,7 +99,7 @@ fn clips(ui: &mut Ui, state: &State, out: Out) {
                 if clip.samples > 0 {
                     widgets::text_in(ui, inner, &clip.samples.to_string(), 12.0, c.muted, true);
                 }
-                if response.clicked() {
+                if list.row(ui, at, &response, on) {
                     out.push(Command::Library(LibraryCommand::Open(clip.id)));
                 }
             }
@@ -106,8 +109,9 @@ fn clips(ui: &mut Ui, state: &State, out: Out) {
 fn classes(ui: &mut Ui, state: &State, out: Out) {
     widgets::section(ui, "CLASSES");
     unnamed(ui, state, out);
-    for (place, name) in state.classes.placed() {
-        class(ui, state, place, name, out);
+    let list = List::new(ui, "classes", state.classes.placed().count());
+    for (at, (place, name)) in state.classes.placed().enumerate() {
+        class(ui, state, (place, name), (&list, at), out);
     }
     add_class(ui, state, out);
     ui.add_space(8.0);
@@ -118,7 +122,13 @@ fn classes(ui: &mut Ui, state: &State, out: Out) {
     help(ui, state, out);
 }
 
-fn class(ui: &mut Ui, state: &State, place: usize, name: &str, out: Out) {
+fn class(
+    ui: &mut Ui,
+    state: &State,
+    (place, name): (usize, &str),
+    (list, at): (&List, usize),
+    out: Out,
+) {
     let c = Colours::now(ui);
     let held = state.classes.held.as_ref().is_some_and(|h| h.slot == place);
     if let Some((from, now)) = state
@@ -193,7 +203,7 @@ fn class(ui: &mut Ui, state: &State, place: usize, name: &str, out: Out) {
     widgets::text_in(ui, text, name, 13.5, c.text, false);
     widgets::text_in(ui, inner, &count, 12.0, c.muted, true);
     let response = response.on_hover_text("Click labels the selected stretch, or changes the selected label. Right click renames, removes.");
-    if response.clicked() {
+    if list.row(ui, at, &response, false) {
         let command = match state.timeline.range {
             Some(_) => Command::Timeline(TimelineCommand::LabelRange(name.to_owned())),
             None => Command::Classes(ClassCommand::Key {

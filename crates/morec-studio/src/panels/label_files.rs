@@ -34,7 +34,8 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
 
 fn contents(ui: &mut Ui, state: &State, import: &LabelImport, out: Out) {
     let c = Colours::now(ui);
-    ui.set_width(760.0);
+    let room = ui.ctx().content_rect().size();
+    ui.set_width((room.x - 40.0).min(760.0));
     let changes = import.changes();
     ui.label(RichText::new(format::changed_labels(&changes.counts)).strong());
     for note in import.files.notes.iter().take(6) {
@@ -58,7 +59,7 @@ fn contents(ui: &mut Ui, state: &State, import: &LabelImport, out: Out) {
     }
     ui.add_space(4.0);
     ScrollArea::vertical()
-        .max_height(320.0)
+        .max_height((room.y - 250.0).clamp(60.0, 320.0))
         .auto_shrink([false, true])
         .show_rows(ui, ROW, changes.changes.len(), |ui, rows| {
             for change in &changes.changes[rows] {

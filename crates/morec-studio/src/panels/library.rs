@@ -6,6 +6,7 @@ use egui::{
 };
 use morec_db::{BACKGROUND, ClipInfo};
 
+use super::lists::List;
 use super::{Out, background, details, import_report, padded, strips, view, whole, widgets};
 use crate::format;
 use crate::state::{Column, Command, FileCommand, LibraryCommand, State};
@@ -161,11 +162,19 @@ fn table(ui: &mut Ui, state: &State, out: Out) {
             let is_selected = |place: &usize| clips.get(*place).map(|c| &c.id) == selected;
             let at = shown.iter().position(is_selected);
             widgets::keep_in_view(ui, "clips", at, rows.start, height);
-            for &place in &shown[rows] {
-                match clips.get(place) {
-                    Some(clip) if as_strips => strip(ui, state, clip, out),
-                    Some(clip) => row(ui, state, clip, out),
-                    None => {}
+            let list = List::following(ui, "clips", shown.len());
+            list.scroll(ui, list.wanted, rows.start, height);
+            for at in rows {
+                let Some(clip) = clips.get(shown[at]) else {
+                    continue;
+                };
+                let response = match as_strips {
+                    true => strip(ui, state, clip, out),
+                    false => row(ui, state, clip, out),
+                };
+                let on = state.library.chosen().contains(&clip.id);
+                if list.row(ui, at, &response, on) {
+                    out.push(Command::Library(chosen(ui, clip)));
                 }
             }
         });
@@ -217,7 +226,7 @@ fn clip_menu(ui: &mut Ui, state: &State, clip: &ClipInfo, out: Out) {
 }
 
 /// A clip as a strip of poses over its whole length, with its name at the left.
-fn strip(ui: &mut Ui, state: &State, clip: &ClipInfo, out: Out) {
+fn strip(ui: &mut Ui, state: &State, clip: &ClipInfo, out: Out) -> Response {
     let c = Colours::now(ui);
     let size = Vec2::new(ui.available_width(), STRIP);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
@@ -249,9 +258,7 @@ fn strip(ui: &mut Ui, state: &State, clip: &ClipInfo, out: Out) {
     let picture = rect.with_min_x(rect.left() + names).shrink(3.0);
     let whole = Stretch::new(clip.id, 0.0..clip.duration_secs());
     strips::draw(ui, state, whole, picture);
-    if response.clicked() {
-        out.push(Command::Library(chosen(ui, clip)));
-    }
+    response
 }
 
 fn header(ui: &mut Ui, state: &State, out: Out) {
@@ -288,7 +295,7 @@ fn header(ui: &mut Ui, state: &State, out: Out) {
     );
 }
 
-fn row(ui: &mut Ui, state: &State, clip: &ClipInfo, out: Out) {
+fn row(ui: &mut Ui, state: &State, clip: &ClipInfo, out: Out) -> Response {
     let c = Colours::now(ui);
     let (rect, response) =
         ui.allocate_exact_size(Vec2::new(ui.available_width(), ROW), Sense::click());
@@ -312,7 +319,5 @@ fn row(ui: &mut Ui, state: &State, clip: &ClipInfo, out: Out) {
         let colour = if at == 0 || at == 3 { c.text } else { c.muted };
         widgets::text_in(ui, cell, text, 13.0, colour, COLUMNS[at].3);
     }
-    if response.clicked() {
-        out.push(Command::Library(chosen(ui, clip)));
-    }
+    response
 }

@@ -9,6 +9,7 @@ use morec::templates::PerformerKind;
 use morec_ops::RecognizeSettings;
 
 use super::compare::Other;
+use super::lists::List;
 use super::{Out, live_line, padded, teach, view, widgets};
 use crate::body::Body;
 use crate::format;
@@ -207,7 +208,8 @@ fn performers(ui: &mut Ui, state: &State, out: Out) {
     widgets::section(ui, "PERFORMERS");
     let watched = run.watched().map(|w| w.actor);
     ui.horizontal_wrapped(|ui| {
-        for performer in &run.performers {
+        let list = List::new(ui, "performers", run.performers.len());
+        for (at, performer) in run.performers.iter().enumerate() {
             let number = performer.actor.0 + 1;
             let text = match performer.gone {
                 true => format!("{number} (gone)"),
@@ -221,7 +223,7 @@ fn performers(ui: &mut Ui, state: &State, out: Out) {
                 format!("Watch performer {number}"),
                 on,
             );
-            if response.clicked() {
+            if list.row(ui, at, &response, false) {
                 out.push(Command::Live(LiveCommand::Watch(performer.actor)));
             }
         }

@@ -2,6 +2,7 @@
 
 use egui::{Align2, FontId, Rect, ScrollArea, Sense, Ui, Vec2, WidgetType, pos2};
 
+use super::lists::List;
 use super::{Out, widgets};
 use crate::format;
 use crate::jobs::judge::only_part;
@@ -80,6 +81,8 @@ fn matrix(ui: &mut Ui, state: &State, out: Out) {
             let x = area.left() + names + cell * (column as f32 + 0.5);
             slanted(ui, pos2(x - 10.0, area.top() + head - 16.0), name, &c);
         }
+        // Neither labelled nor recognised is nothing that could be counted.
+        let list = List::grid(ui, "matrix", rows * columns - 1, columns);
         for row in 0..rows {
             let name = judged.rows.get(row).map_or(NO_LABEL, String::as_str);
             let top = area.top() + head + tall * row as f32;
@@ -92,11 +95,17 @@ fn matrix(ui: &mut Ui, state: &State, out: Out) {
                 if row + 1 == rows { c.muted } else { c.text },
                 true,
             );
-            // Neither labelled nor recognised is nothing that could be counted.
             for column in 0..columns - usize::from(row + 1 == rows) {
                 let corner = pos2(area.left() + names + cell * column as f32, top);
                 let rect = Rect::from_min_size(corner, Vec2::new(cell, tall)).shrink(1.0);
-                one(ui, state, rect, row, column, out);
+                one(
+                    ui,
+                    state,
+                    rect,
+                    (row, column),
+                    (&list, row * columns + column),
+                    out,
+                );
             }
         }
     });
@@ -115,7 +124,14 @@ fn slanted(ui: &Ui, at: egui::Pos2, text: &str, c: &Colours) {
     ui.painter().add(shape);
 }
 
-fn one(ui: &Ui, state: &State, rect: Rect, row: usize, column: usize, out: Out) {
+fn one(
+    ui: &Ui,
+    state: &State,
+    rect: Rect,
+    (row, column): (usize, usize),
+    (list, at): (&List, usize),
+    out: Out,
+) {
     let Some(judged) = &state.train.judged else {
         return;
     };
@@ -156,7 +172,8 @@ fn one(ui: &Ui, state: &State, rect: Rect, row: usize, column: usize, out: Out) 
     if on {
         widgets::selected_frame(ui, rect);
     }
-    if response.on_hover_text(said).clicked() {
+    let response = response.on_hover_text(said);
+    if list.row(ui, at, &response, on) {
         out.push(Command::Train(TrainCommand::Cell(Some((row, column)))));
     }
 }

@@ -14,6 +14,7 @@ mod details;
 mod deviation;
 mod discard;
 mod drop;
+pub mod focus;
 mod groups;
 mod help;
 mod history;
@@ -23,6 +24,7 @@ mod label;
 mod label_files;
 mod leave;
 mod library;
+pub mod lists;
 mod live;
 mod live_deviation;
 mod live_line;
@@ -32,6 +34,7 @@ mod notices;
 mod path_field;
 mod player;
 mod proposals;
+mod reports;
 mod roles;
 mod scale;
 mod shelf;
@@ -63,6 +66,11 @@ const LEAST: Vec2 = Vec2::new(900.0, 450.0);
 
 /// Draws the whole window.
 pub fn show(ctx: &Context, state: &State, out: Out) {
+    contents(ctx, state, out);
+    focus::outline(ctx, state.dark);
+}
+
+fn contents(ctx: &Context, state: &State, out: Out) {
     strips::want_nothing(ctx);
     bars::top(ctx, state, out);
     bars::bottom(ctx, state, out);
@@ -100,6 +108,7 @@ fn scrolled(ui: &mut Ui, state: &State, out: Out) {
             let (rect, _) = ui.allocate_exact_size(room.max(LEAST), Sense::hover());
             let builder = UiBuilder::new().max_rect(rect);
             ui.scope_builder(builder, |ui| panel(ui, state, out));
+            focus::follow_around(ui);
         });
 }
 

@@ -1,8 +1,9 @@
 //! The list of mistakes, or of the moments of a cell of the confusion matrix: a line plays its moment, which can then be
 //! compared with the nearest label.
 
-use egui::{Rect, RichText, ScrollArea, Sense, Ui, Vec2, WidgetType, pos2};
+use egui::{Rect, Response, RichText, ScrollArea, Sense, Ui, Vec2, WidgetType, pos2};
 
+use super::lists::List;
 use super::{Out, widgets};
 use crate::format;
 use crate::jobs::judge::Moment;
@@ -45,9 +46,13 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
             let chosen = state.train.moment;
             let at = places.iter().position(|place| Some(*place) == chosen);
             widgets::keep_in_view(ui, "moments", at, rows.start, height);
-            for (at, moment) in moments().skip(rows.start).take(rows.len()) {
+            let list = List::following(ui, "moments", places.len());
+            list.scroll(ui, list.wanted, rows.start, height);
+            let first = rows.start;
+            for (row, (at, moment)) in moments().enumerate().skip(first).take(rows.len()) {
                 let on = state.train.moment == Some(at);
-                if line(ui, moment, height, on) {
+                let response = line(ui, moment, height, on);
+                if list.row(ui, row, &response, on) {
                     out.push(Command::Train(TrainCommand::Moment(at)));
                 }
             }
@@ -75,8 +80,8 @@ fn compare(ui: &mut Ui, state: &State, out: Out) {
     });
 }
 
-/// A moment of the list; true if it was clicked.
-fn line(ui: &mut Ui, moment: &Moment, height: f32, on: bool) -> bool {
+/// A moment of the list.
+fn line(ui: &mut Ui, moment: &Moment, height: f32, on: bool) -> Response {
     let c = Colours::now(ui);
     let said = moment.said();
     let start = format::secs(moment.span.start_secs);
@@ -112,5 +117,5 @@ fn line(ui: &mut Ui, moment: &Moment, height: f32, on: bool) -> bool {
     widgets::text_in(ui, left, &said, 12.5, strong, false);
     let place = format!("{}  {start}", moment.clip);
     widgets::text_in(ui, right, &place, 11.5, weak, true);
-    response.clicked()
+    response
 }

@@ -4,7 +4,7 @@ use egui::{Align, Button, ComboBox, Layout, RichText, Ui, Vec2};
 
 use super::Out;
 use crate::format;
-use crate::state::{Command, PlayCommand, SPEEDS, State};
+use crate::state::{Command, Panel, PlayCommand, SPEEDS, State};
 use crate::theme::Colours;
 
 pub const HEIGHT: f32 = 34.0;
@@ -47,7 +47,11 @@ pub fn transport(ui: &mut Ui, state: &State, out: Out) {
                 ui,
                 "⏮",
                 "To the beginning",
-                "To the beginning (Home)",
+                match state.panel {
+                    // There Home is the list's.
+                    Panel::Library | Panel::Train => "To the beginning",
+                    _ => "To the beginning (Home)",
+                },
                 false,
                 PlayCommand::Seek(0.0),
             );

@@ -4,6 +4,7 @@ use egui::{
     Button, CursorIcon, Rect, RichText, ScrollArea, Sense, TextEdit, Ui, Vec2, WidgetType, pos2,
 };
 
+use super::lists::List;
 use super::strips::{STRIP, go};
 use super::{Out, strips, widgets};
 use crate::format;
@@ -72,20 +73,22 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
     ScrollArea::vertical()
         .auto_shrink(false)
         .show_rows(ui, ROW, rows, |ui, rows| {
+            let list = List::main(ui, "sets", state.shelf.sets.len(), 1, 0);
+            list.scroll(ui, list.wanted, rows.start, ROW);
             for row in rows {
                 let size = Vec2::new(ui.available_width(), ROW);
                 let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
                 let place = egui::UiBuilder::new().id_salt(("set", row)).max_rect(rect);
                 let mut ui = ui.new_child(place);
                 match state.shelf.sets.get(row) {
-                    Some(set) => one(&mut ui, state, row, set, out),
+                    Some(set) => one(&mut ui, state, (&list, row), set, out),
                     None => alone(&mut ui, state, out),
                 }
             }
         });
 }
 
-fn one(ui: &mut Ui, state: &State, place: usize, set: &ShelfSet, out: Out) {
+fn one(ui: &mut Ui, state: &State, (list, place): (&List, usize), set: &ShelfSet, out: Out) {
     let c = Colours::now(ui);
     let instances = state.set_instances(place);
     ui.horizontal(|ui| {
@@ -105,7 +108,7 @@ fn one(ui: &mut Ui, state: &State, place: usize, set: &ShelfSet, out: Out) {
     if set.named.is_none() {
         ruler(ui, state, place, set, &instances, out);
     }
-    strips_of(ui, state, place, set, &instances, out);
+    strips_of(ui, state, (list, place), set, &instances, out);
 }
 
 fn named(ui: &mut Ui, place: usize, name: &str, out: Out) {
@@ -255,7 +258,7 @@ fn ruler(ui: &mut Ui, state: &State, place: usize, set: &ShelfSet, shown: &[Stre
 fn strips_of(
     ui: &mut Ui,
     state: &State,
-    place: usize,
+    (list, place): (&List, usize),
     set: &ShelfSet,
     shown: &[Stretch],
     out: Out,
@@ -278,7 +281,12 @@ fn strips_of(
                 if is_marked {
                     widgets::selected_frame(ui, rect);
                 }
-                if response.clicked() {
+                // The list goes from set to set, to the outermost instance of each.
+                let chosen = match number {
+                    0 => list.row(ui, place, &response, state.is_selected_stretch(*of)),
+                    _ => response.clicked(),
+                };
+                if chosen {
                     match ui.input(|i| i.modifiers.command) {
                         true if set.named.is_none() => {
                             out.push(Command::Shelf(ShelfCommand::Mark {

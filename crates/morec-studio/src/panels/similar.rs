@@ -3,6 +3,7 @@
 use egui::{Rect, RichText, ScrollArea, Sense, Ui, Vec2, WidgetType};
 use morec_db::search::Hit;
 
+use super::lists::List;
 use super::strips::{STRIP, go};
 use super::{Out, strips, widgets};
 use crate::format;
@@ -104,19 +105,22 @@ pub fn show(ui: &mut Ui, state: &State, similar: &Similar, out: Out) {
     ScrollArea::vertical()
         .auto_shrink(false)
         .show_rows(ui, CARD, rows, |ui, rows| {
+            let list = List::main(ui, "hits", similar.hits.len(), columns, 0);
+            let line = list.wanted.map(|at| at / columns);
+            list.scroll(ui, line, rows.start, CARD);
             for row in rows {
                 ui.horizontal(|ui| {
                     let first = row * columns;
                     let last = (first + columns).min(similar.hits.len());
                     for at in first..last {
-                        card(ui, state, similar, at, out);
+                        card(ui, state, similar, (&list, at), out);
                     }
                 });
             }
         });
 }
 
-fn card(ui: &mut Ui, state: &State, similar: &Similar, at: usize, out: Out) {
+fn card(ui: &mut Ui, state: &State, similar: &Similar, (list, at): (&List, usize), out: Out) {
     let c = Colours::now(ui);
     let hit: &Hit = &similar.hits[at];
     let (rect, _) = ui.allocate_exact_size(Vec2::new(WIDTH, CARD), Sense::hover());
@@ -137,7 +141,11 @@ fn card(ui: &mut Ui, state: &State, similar: &Similar, at: usize, out: Out) {
     widgets::text_in(ui, caption, &text, 11.5, c.muted, false);
     let score = format!("{:.0} %", 100.0 * hit.score);
     widgets::text_in(ui, caption, &score, 11.5, c.text, true);
-    if response.clicked() {
+    let on = state.is_selected_stretch(hit.into());
+    if on {
+        widgets::selected_frame(ui, picture);
+    }
+    if list.row(ui, at, &response, on) {
         go(hit.into(), None, out);
     }
     let area = Rect::from_min_max(caption.left_bottom(), rect.max);

@@ -2,6 +2,7 @@
 
 use egui::{ProgressBar, RichText, ScrollArea, Ui, WidgetType};
 
+use super::lists::List;
 use super::{Out, label, live_deviation, widgets};
 use crate::format;
 use crate::state::{Command, LiveCommand, State, TrainCommand};
@@ -128,19 +129,21 @@ pub fn recognised(ui: &mut Ui, state: &State, out: Out) {
         .id_salt("seen")
         .auto_shrink(false)
         .show_rows(ui, 24.0, run.seen.len(), |ui, rows| {
-            for seen in run.seen.iter().rev().skip(rows.start).take(rows.len()) {
+            let list = List::main(ui, "recognised", run.seen.len(), 1, 0);
+            list.scroll(ui, list.wanted, rows.start, 24.0);
+            let first = rows.start;
+            let shown = run.seen.iter().rev().enumerate();
+            for (at, seen) in shown.skip(first).take(rows.len()) {
                 ui.horizontal(|ui| {
                     ui.set_height(24.0);
                     widgets::chip(ui, state.classes.place(&seen.class), &seen.class);
                     let name = ui.add(egui::Button::new(&seen.class).frame(false));
                     let called = format!("Recognised {}", seen.class);
                     widgets::named(&name, WidgetType::Button, called, false);
-                    if name
-                        .on_hover_text("Select it in the last minutes")
-                        .clicked()
-                    {
+                    let name = name.on_hover_text("Select it in the last minutes");
+                    let extent = (seen.span.start_secs, seen.span.stop_secs);
+                    if list.row(ui, at, &name, state.live.range == Some(extent)) {
                         out.push(Command::Live(LiveCommand::Watch(seen.actor)));
-                        let extent = (seen.span.start_secs, seen.span.stop_secs);
                         out.push(Command::Live(LiveCommand::GoTo(extent.0, extent.1)));
                     }
                     let who = match run.performers.len() > 1 {

@@ -4,9 +4,10 @@ use egui::{
     CentralPanel, ComboBox, Frame, Margin, RichText, ScrollArea, SidePanel, Ui, WidgetType,
 };
 
-use super::{Out, background, kinds, matrix, moments, padded, thesis, view, widgets};
+use super::lists::List;
+use super::{Out, background, kinds, matrix, moments, padded, reports, thesis, view, widgets};
 use morec::features::BoneSet;
-use morec::train::TrainingReport;
+use morec_ops::training_in_words;
 
 use crate::format;
 use crate::jobs::judge::only_part;
@@ -24,6 +25,7 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                 choose(ui, state, out);
                 indexes(ui, state, out);
+                reports::list(ui, state, out);
             });
         });
     SidePanel::right("the moment")
@@ -47,8 +49,9 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
                     thesis::show(ui, state, out);
                     ui.add_space(14.0);
                 }
+                reports::opened(ui, state, out);
                 let nothing = state.train.index.is_none() && state.train.judged.is_none();
-                if nothing && state.train.thesis.is_none() {
+                if nothing && state.train.thesis.is_none() && state.train.opened.is_none() {
                     widgets::nothing(ui, "No index yet", "Choose classes at the left and train.");
                 } else {
                     trained(ui, state, out);
@@ -99,10 +102,13 @@ fn choose(ui: &mut Ui, state: &State, out: Out) {
     if store.snapshot.classes.is_empty() {
         ui.colored_label(c.muted, "No class has a label yet.");
     }
-    for class in &store.snapshot.classes {
+    let list = List::new(ui, "learn", store.snapshot.classes.len());
+    for (at, class) in store.snapshot.classes.iter().enumerate() {
         let mut on = !state.train.without.contains(&class.name);
         ui.horizontal(|ui| {
-            if ui.checkbox(&mut on, &class.name).changed() {
+            let tick = ui.checkbox(&mut on, &class.name);
+            list.row(ui, at, &tick, false);
+            if tick.changed() {
                 let class = class.name.clone();
                 out.push(Command::Train(TrainCommand::Choose { class, on }));
             }
@@ -202,12 +208,13 @@ fn indexes(ui: &mut Ui, state: &State, out: Out) {
     if store.snapshot.indexes.is_empty() {
         ui.colored_label(c.muted, "No index is stored yet.");
     }
-    for index in store.snapshot.indexes.iter() {
+    let list = List::new(ui, "indexes", store.snapshot.indexes.len());
+    for (at, index) in store.snapshot.indexes.iter().enumerate() {
         ui.horizontal(|ui| {
             let response = ui.small_button("Use");
             let name = format!("Use {}", index.name);
             widgets::named(&response, egui::WidgetType::Button, name, false);
-            if response.clicked() {
+            if list.row(ui, at, &response, false) {
                 out.push(Command::Train(TrainCommand::UseIndex(index.name.clone())));
             }
             ui.label(&index.name);
@@ -264,7 +271,7 @@ fn trained(ui: &mut Ui, state: &State, out: Out) {
         }
         if let Some(report) = &state.train.report {
             ui.add_space(4.0);
-            for line in said(report) {
+            for line in training_in_words(report) {
                 ui.label(RichText::new(line).size(12.0).color(c.muted));
             }
             for note in &report.notes {
@@ -273,28 +280,4 @@ fn trained(ui: &mut Ui, state: &State, out: Out) {
         }
     });
     ui.add_space(10.0);
-}
-
-/// The threshold, the background and the verifier in sentences.
-fn said(report: &TrainingReport) -> Vec<String> {
-    let mut lines = Vec::new();
-    if let Some(threshold) = report.threshold {
-        let what = match report.judges_whole {
-            true => "Least score",
-            false => "Threshold",
-        };
-        let from = &report.threshold_from;
-        lines.push(format!("{what} {threshold:.2}, set by {from}"));
-    }
-    let secs = report.background_secs.iter();
-    let secs: Vec<String> = secs.map(|(of, secs)| format!("{of} {secs:.0} s")).collect();
-    if !secs.is_empty() {
-        lines.push(format!("Background: {}", secs.join(", ")));
-    }
-    lines.push(match report.verified {
-        true => "Candidates are verified.".to_owned(),
-        false => "Candidates are not verified: that takes five labels of a class by three people, and background."
-            .to_owned(),
-    });
-    lines
 }

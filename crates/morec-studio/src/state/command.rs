@@ -93,6 +93,7 @@ pub enum FileCommand {
     AskImportFolder,
     AskSave,
     AskExportIndex,
+    AskExportReport(i64),
     AskNew,
     Open(PathBuf),
     New(PathBuf),
@@ -105,6 +106,8 @@ pub enum FileCommand {
     DismissLabels,
     Save(PathBuf),
     ExportIndex(PathBuf),
+    /// A report of the database, as JSON.
+    ExportReport(i64, PathBuf),
     /// Labels of all clips in a form.
     AskExportLabels(LabelFormat),
     /// The clip that is shown, as BVH.
@@ -355,6 +358,9 @@ pub enum TrainCommand {
     StepMoment(i64),
     Keep(String),
     UseIndex(String),
+    /// Shows a report of the database again.
+    OpenReport(i64),
+    CloseReport,
     /// The figures with which the method of 2009 is trained from now on.
     ThesisParams(Box<SvrdmTrainParams>),
     /// Trains the method of 2009 on the same labels.
@@ -377,6 +383,7 @@ pub enum Ask {
     ImportLabels,
     Save,
     ExportIndex,
+    ExportReport(i64),
     ExportLabels(LabelFormat),
     ExportClip(String),
     ExportStretch(String),

@@ -3,10 +3,9 @@
 use std::collections::BTreeMap;
 
 use morec::eval::Evaluation;
-use morec_ops::LeftOut;
+use morec_ops::{LeftOut, Unlearned};
 
 use crate::jobs::judge::{CrossvalResult, Moment};
-use crate::jobs::unlearned::Unlearned;
 
 /// A cross-validation, ready to be shown.
 ///
@@ -15,9 +14,9 @@ pub struct CrossvalView {
     pub evaluation: Evaluation,
     pub moments: Vec<Moment>,
     pub by: LeftOut,
-    /// See [`CrossvalResult::thesis`].
+    /// See [`KeptCrossval::thesis`](morec_ops::KeptCrossval::thesis).
     pub thesis: bool,
-    /// See [`CrossvalResult::untested`].
+    /// See [`KeptCrossval::untested`](morec_ops::KeptCrossval::untested).
     pub untested: Vec<String>,
     /// See [`CrossvalResult::unlearned`].
     pub unlearned: BTreeMap<String, Unlearned>,
@@ -38,9 +37,9 @@ impl From<CrossvalResult> for CrossvalView {
             columns: confusion.columns.clone(),
             counts: Vec::new(),
             moments,
-            by: judged.by,
-            thesis: judged.thesis,
-            untested: judged.untested,
+            by: judged.kept.by,
+            thesis: judged.kept.thesis,
+            untested: judged.kept.untested,
             unlearned: judged.unlearned,
             evaluation: judged.evaluation,
         };

@@ -171,6 +171,7 @@ impl State {
         let clips = store.snapshot.clips.iter();
         let same = clips.filter(|c| Some(&c.name) == layout.clip.as_ref());
         if let Some(id) = same.map(|c| c.id).next() {
+            self.framed = layout.camera.map(|_| id);
             self.open_clip(id, None);
         }
     }

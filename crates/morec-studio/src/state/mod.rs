@@ -29,13 +29,7 @@ use morec::smooth::ChannelKind;
 use morec_db::{ClipId, ClipInfo};
 
 use crate::body::Camera;
-use crate::jobs::{
-    JobOutcome, Jobs,
-    channel::ChannelCurve,
-    cut::Curves,
-    import,
-    load::{ClipMotion, extent},
-};
+use crate::jobs::{JobOutcome, Jobs, channel::ChannelCurve, cut::Curves, import, load::ClipMotion};
 use crate::store::{Edit, Store, Wake};
 use crate::stretch::Stretch;
 use crate::unsaved::{Leftover, OwnFolder};
@@ -118,8 +112,10 @@ pub struct State {
     pub label_import: Option<LabelImport>,
     /// A file dialog that should be shown.
     pub ask: Option<Ask>,
-    /// True while the camera stands so far off as what is shown, which is no person, needs.
+    /// True while the camera stands so far off as what was shown needs.
     fitted: bool,
+    /// The clip that the camera stands before already, as it did in the session before.
+    framed: Option<ClipId>,
     pub(crate) wake: Wake,
     pub(crate) motions: Motions,
     /// A stretch to show once its clip is decoded.
@@ -242,6 +238,7 @@ impl State {
             label_import: None,
             ask: None,
             fitted: false,
+            framed: None,
             wake,
             motions: Motions::default(),
             pending: None,
@@ -276,19 +273,17 @@ impl State {
         self.poll();
     }
 
-    /// Position of the shown performer, at the height of a waist so that the picture does not bob.
+    /// The middle of what is shown, which the camera follows.
     fn performer_centre(&self) -> Option<morec::math::Vec3> {
         if self.panel == Panel::Live {
             return self.live.centre();
         }
         let motion = self.player.motion.as_ref()?;
-        let pose = motion.pose(self.player.at_secs);
-        if !motion.is_person {
-            return Some(extent(&pose)?.0);
-        }
-        let at = motion.body.centre(&pose)?;
-        let waist = motion.floor + 0.52 * motion.body.height;
-        Some(self.middle(morec::math::Vec3::new(at.x, waist, at.z)))
+        let centre = motion.centre(&motion.pose(self.player.at_secs))?;
+        Some(match motion.is_person {
+            true => self.middle(centre),
+            false => centre,
+        })
     }
 
     /// Carries out what was asked for.
@@ -373,6 +368,14 @@ impl State {
     /// True while threads are at work.
     pub fn is_busy(&self) -> bool {
         !self.jobs.running.is_empty()
+            || self.store.as_ref().is_some_and(Store::is_busy)
+            || !self.motions.loading.is_empty()
+    }
+
+    /// True while the database or what the status bar shows is at work, or a clip is read.
+    #[cfg(test)]
+    pub fn is_writing(&self) -> bool {
+        self.jobs.running.iter().any(|job| job.shown)
             || self.store.as_ref().is_some_and(Store::is_busy)
             || !self.motions.loading.is_empty()
     }

@@ -6,7 +6,8 @@ use std::sync::Arc;
 use morec::index::MotionIndex;
 use morec::train::thesis::SvrdmTrainParams;
 use morec::train::{ClassKind, TrainingReport};
-use morec_ops::TrainSettings;
+use morec_db::ReportInfo;
+use morec_ops::{KeptTraining, TrainSettings};
 
 use super::crossval::CrossvalView;
 use crate::jobs::thesis::{Map, Thesis};
@@ -28,6 +29,8 @@ pub struct Train {
     pub(super) taught: u64,
     pub(super) now: u64,
     pub judged: Option<CrossvalView>,
+    /// A report that the database kept, which was opened: the one that is judged by, or a training.
+    pub opened: Option<OpenedReport>,
     /// The cell of the confusion matrix whose moments are listed; `None` lists the mistakes.
     pub cell: Option<(usize, usize)>,
     /// The moment of the list that was chosen, by its place in `CrossvalView::moments`.
@@ -40,6 +43,13 @@ pub struct Train {
     /// The sample that was chosen by its point.
     pub sample: Option<usize>,
     pub map: Option<Map>,
+}
+
+/// A report of the database.
+pub struct OpenedReport {
+    pub info: ReportInfo,
+    /// What is said of a training; nothing of a cross-validation, which is `Train::judged`.
+    pub training: Option<KeptTraining>,
 }
 
 impl Train {

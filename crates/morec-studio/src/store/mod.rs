@@ -22,7 +22,7 @@ pub use edit::{BY, Edit, background};
 pub use message::{StoreMessage, Wake};
 pub use place::DbPlace;
 pub use snapshot::{Snapshot, UNLIKELY};
-pub use worker::sentence;
+pub use worker::{NewReport, sentence};
 use worker::{Reply, Request};
 
 /// An open database.
@@ -101,6 +101,11 @@ impl Store {
     /// Keeps the index that was trained last, which is no step of the history either.
     pub fn keep_last_index(&mut self, bytes: Vec<u8>) {
         self.pending += usize::from(self.requests.send(Request::LastIndex(bytes)).is_ok());
+    }
+
+    /// Keeps a report, which is no step of the history.
+    pub fn keep_report(&mut self, new: NewReport) {
+        self.pending += usize::from(self.requests.send(Request::Report(Box::new(new))).is_ok());
     }
 
     /// From now on the disk is full.

@@ -9,7 +9,8 @@ use morec::roles::RoleMap;
 use morec::train::ClassLabels;
 use morec_db::labels::{ClassCount, DbSample, SampleFilter, SampleId, SampleState};
 use morec_db::{
-    ClipFilter, ClipId, ClipInfo, DbError, HistoryStep, IndexInfo, MotionDb, Segment, training_data,
+    ClipFilter, ClipId, ClipInfo, DbError, HistoryStep, IndexInfo, MotionDb, ReportInfo, Segment,
+    training_data,
 };
 
 /// The database at one moment, without motion. Snapshots that follow each other share what is the same.
@@ -23,6 +24,8 @@ pub struct Snapshot {
     pub samples: Vec<Arc<DbSample>>,
     /// By name. Whether one is stale by now says [`is_stale`](Self::is_stale).
     pub indexes: Arc<Vec<IndexInfo>>,
+    /// Reports that are kept, the last first.
+    pub reports: Arc<Vec<ReportInfo>>,
     /// The last first.
     pub history: Arc<Vec<HistoryStep>>,
     /// By clip and time.
@@ -67,6 +70,8 @@ impl Snapshot {
             let mut next = Self {
                 others,
                 places: db.class_places()?,
+                // No step of the history says when there is a new one.
+                reports: Arc::new(db.reports()?),
                 program: db.program().to_owned(),
                 labels: OnceLock::new(),
                 taught: OnceLock::new(),

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::Duration;
 
-use morec_db::{DbError, MotionDb};
+use morec_db::{DbError, MotionDb, ReportKind};
 
 use super::{DbPlace, Edit, Snapshot, StoreMessage, Wake};
 
@@ -20,9 +20,17 @@ pub enum Request {
     Reload,
     Places(BTreeMap<String, usize>),
     LastIndex(Vec<u8>),
+    Report(Box<NewReport>),
     /// The file grows no further: what a full disk looks like.
     #[cfg(test)]
     Fill,
+}
+
+/// A report to keep.
+pub struct NewReport {
+    pub kind: ReportKind,
+    pub title: String,
+    pub report: serde_json::Value,
 }
 
 pub struct Reply {
@@ -97,6 +105,10 @@ impl StoreWorker {
                     // No step of the history says what to read.
                     self.last = Arc::default();
                     (failure(kept), true)
+                }
+                Ok(Request::Report(new)) => {
+                    let kept = self.db.keep_report(new.kind, &new.title, &new.report);
+                    (failure(kept.map(|_| ())), true)
                 }
                 #[cfg(test)]
                 Ok(Request::Fill) => (failure(self.db.limit_bytes(0)), true),

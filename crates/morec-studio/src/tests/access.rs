@@ -2,11 +2,12 @@
 
 use std::collections::BTreeSet;
 
-use egui::{Key, Modifiers, accesskit};
+use egui::{Color32, Key, Modifiers, Pos2, Rect, Shape, accesskit, vec2};
 use egui_kittest::kittest::NodeT;
 
 use super::{Person, made};
-use crate::state::Panel;
+use crate::state::{Command, Panel, TrainCommand};
+use crate::theme::Colours;
 
 /// Names of what can be clicked, and how many things without a name there are.
 fn clickable(person: &Person) -> (BTreeSet<String>, Vec<String>) {
@@ -75,5 +76,71 @@ fn everything_that_can_be_clicked_has_a_name_and_is_reached_by_tab() {
             missing.is_empty(),
             "{panel:?}: Tab does not reach {missing:?}"
         );
+    }
+}
+
+/// The widget that has the keyboard: its name, its place, and its part that is outlined, which is what is seen of it.
+fn outlined(person: &Person) -> Option<(String, Rect, Option<Rect>)> {
+    let mut nodes = person.window.root().children_recursive();
+    let node = nodes.find(|node| node.accesskit_node().is_focused())?;
+    let name = node.accesskit_node();
+    let name = name.label().or_else(|| name.value()).unwrap_or_default();
+    let c = Colours::of(person.state().dark);
+    // Two lines around each other, of which one is seen on any ground.
+    let drawn = |colour: Color32| {
+        let shapes = person.window.output().shapes.iter();
+        let rects = shapes.filter_map(|s| match &s.shape {
+            Shape::Rect(rect) if rect.stroke.color == colour && rect.stroke.width == 1.5 => {
+                Some(rect.rect.intersect(s.clip_rect))
+            }
+            _ => None,
+        });
+        rects.last()
+    };
+    let outline = drawn(c.playhead).zip(drawn(c.ground));
+    Some((name, node.rect(), outline.map(|(_, inner)| inner)))
+}
+
+#[test]
+fn in_a_small_window_tab_shows_and_outlines_each_control() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = made(folder.path(), 2);
+    super::lists::keep_reports(&path);
+    let mut person = Person::before(&[path]);
+    let window = Rect::from_min_size(Pos2::ZERO, vec2(640.0, 400.0));
+    person.window.set_size(window.size());
+    for panel in Panel::ALL {
+        person.goes_to(panel);
+        if panel == Panel::Train {
+            let first = person.state().store.as_ref().unwrap().snapshot.reports[0].id;
+            person.command(Command::Train(TrainCommand::OpenReport(first)));
+        }
+        person.command(Command::Dark(panel != Panel::Train));
+        person.frames(3);
+        let (names, _) = clickable(&person);
+        let mut reached = BTreeSet::new();
+        for _ in 0..names.len() + 40 {
+            person.key_with(Key::Tab, Modifiers::NONE);
+            person.frames(4);
+            let Some((name, place, outline)) = outlined(&person) else {
+                continue;
+            };
+            let outline = outline.unwrap_or_else(|| panic!("{panel:?}: {name} is not outlined"));
+            // What is larger than what shows it is seen as far as there is room.
+            let seen = outline.size().min(window.size());
+            let room = vec2(place.width().min(150.0), place.height().min(60.0));
+            let enough = seen.x + 2.0 >= room.x && seen.y + 2.0 >= room.y;
+            assert!(
+                enough && window.expand(4.0).contains_rect(outline),
+                "{panel:?}: {name} at {place}, seen {outline}"
+            );
+            reached.insert(name);
+        }
+        let is_number = |name: &&String| name.parse::<f64>().is_ok();
+        let missing: Vec<_> = names
+            .difference(&reached)
+            .filter(|n| !is_number(n))
+            .collect();
+        assert!(missing.is_empty(), "{panel:?}: Tab misses {missing:?}");
     }
 }

@@ -128,6 +128,15 @@ fn chicken() -> Vec<Made> {
 
 /// Markers of nobody knows what, two metres apart at most, about a place far from the origin.
 fn markers() -> String {
+    trc(|frame, marker| {
+        let away = 0.5 * marker;
+        let sway = 0.1 * (frame * 0.1 + away).sin();
+        [7.0 + away + sway, 1.0 + away, 5.0]
+    })
+}
+
+/// Two seconds of five markers, each in every frame at a place in metres.
+pub fn trc(place: impl Fn(f64, f64) -> [f64; 3]) -> String {
     let names = ["aa", "bb", "cc", "dd", "ee"];
     let mut text = "PathFileType\t4\t(X/Y/Z)\tmarkers.trc\nDataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\n\
         60\t60\t120\t5\tm\n"
@@ -138,16 +147,8 @@ fn markers() -> String {
     for frame in 0..120 {
         write!(text, "{}\t{:.5}", frame + 1, f64::from(frame) / 60.0).unwrap();
         for marker in 0..5 {
-            let away = 0.5 * f64::from(marker);
-            let sway = 0.1 * (f64::from(frame) * 0.1 + away).sin();
-            write!(
-                text,
-                "\t{:.4}\t{:.4}\t{:.4}",
-                7.0 + away + sway,
-                1.0 + away,
-                5.0
-            )
-            .unwrap();
+            let [x, y, z] = place(f64::from(frame), f64::from(marker));
+            write!(text, "\t{x:.4}\t{y:.4}\t{z:.4}").unwrap();
         }
         text.push('\n');
     }
@@ -155,7 +156,7 @@ fn markers() -> String {
 }
 
 /// Before the library with one clip of these contents, and the clip's path.
-fn with(name: &str, contents: &[u8]) -> (tempfile::TempDir, PathBuf, Person) {
+pub fn with(name: &str, contents: &[u8]) -> (tempfile::TempDir, PathBuf, Person) {
     let folder = tempfile::tempdir().unwrap();
     let path: PathBuf = folder.path().join(name);
     std::fs::write(&path, contents).unwrap();
@@ -202,7 +203,7 @@ fn a_person_is_not_doubted_and_is_drawn_as_one() {
 }
 
 /// Places in the picture of the performer at which something small and round is drawn.
-fn dots(person: &Person) -> Vec<egui::Pos2> {
+pub fn dots(person: &Person) -> Vec<egui::Pos2> {
     let view = person.place("Performer");
     let shapes = person.window.output().shapes.iter();
     let round = shapes.filter_map(|s| match &s.shape {

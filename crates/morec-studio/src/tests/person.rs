@@ -57,13 +57,23 @@ impl Person {
 
     /// Before a window that finds what earlier ones left in a folder.
     pub fn again(paths: &[PathBuf], unsaved: Arc<tempfile::TempDir>) -> Self {
+        Self::seated(paths, unsaved, [1400.0, 860.0], DT)
+    }
+
+    /// Before a window of this size in points, in which so many seconds pass with every frame.
+    pub fn seated(
+        paths: &[PathBuf],
+        unsaved: Arc<tempfile::TempDir>,
+        size: [f32; 2],
+        dt: f32,
+    ) -> Self {
         let (ctx, paths) = (egui::Context::default(), paths.to_vec());
         let mut studio = Studio::new(&ctx, &paths, unsaved.path().to_owned());
         let answers = Arc::new(Answers::default());
         studio.dialogs = Dialogs::of(answers.clone());
         let window = Harness::builder()
-            .with_size([1400.0, 860.0])
-            .with_step_dt(DT)
+            .with_size(size)
+            .with_step_dt(dt)
             .build_state(
                 |ctx, studio: &mut Studio| {
                     crate::theme::install(ctx);
@@ -159,6 +169,26 @@ impl Person {
             quiet = if busy { 0 } else { quiet + 1 };
             std::thread::sleep(Duration::from_millis(2));
         }
+    }
+
+    /// Until the database has answered, clips are read, and what the status bar shows is done.
+    pub fn calm(&mut self) {
+        let begun = Instant::now();
+        loop {
+            assert!(begun.elapsed() < PATIENCE, "threads are at work for ever");
+            self.step();
+            if !self.state().is_writing() && !self.window.state().dialogs.is_open() {
+                return;
+            }
+            std::thread::sleep(Duration::from_millis(1));
+        }
+    }
+
+    /// Types into whatever has the keyboard.
+    pub fn inserts(&mut self, text: &str) {
+        self.actions += 1;
+        self.window.event(Event::Text(text.to_owned()));
+        self.frames(1);
     }
 
     pub fn sees(&self, name: &str) -> bool {
@@ -275,6 +305,14 @@ impl Person {
             self.pointer(at, false);
         }
         self.frames(2);
+    }
+
+    /// Clicks at a place with the right button.
+    pub fn right_click_at(&mut self, at: Pos2) {
+        self.actions += 1;
+        self.button(PointerButton::Secondary, Modifiers::NONE, at, true);
+        self.button(PointerButton::Secondary, Modifiers::NONE, at, false);
+        self.frames(1);
     }
 
     /// Presses, moves in steps, lets go.

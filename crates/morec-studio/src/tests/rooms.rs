@@ -43,6 +43,77 @@ fn half_of_a_full_screen_shows_each_panel_whole() {
     }
 }
 
+/// Where buttons, fields and rows of the panel are seen: each is wholly in the window, or a scroll area leads to it.
+fn controls(person: &Person) -> Vec<(String, Rect)> {
+    use egui::accesskit::Role;
+    use egui_kittest::kittest::NodeT;
+    let mut found = Vec::new();
+    for node in person.window.root().children_recursive() {
+        let place = node.rect();
+        let node = node.accesskit_node();
+        let kinds = [
+            Role::Button,
+            Role::TextInput,
+            Role::CheckBox,
+            Role::ComboBox,
+        ];
+        if kinds.contains(&node.role()) && !node.is_hidden() {
+            found.push((node.label().unwrap_or_default(), place));
+        }
+    }
+    found
+}
+
+#[test]
+fn in_the_smallest_window_no_control_lies_on_another_and_the_bar_is_whole() {
+    let (_folder, mut person, window) = sized(640.0, 400.0);
+    for panel in Panel::ALL {
+        person.goes_to(panel);
+        person.frames(2);
+        for name in TOP {
+            let at = person.place(name);
+            assert!(window.contains_rect(at), "{panel:?}: {name} at {at:?}");
+        }
+        let bars = person.place("File").bottom();
+        // Where a panel has no room, bars scroll what lies outside.
+        let all = controls(&person);
+        let inside = all.iter().filter(|(_, at)| at.top() > bars);
+        for (at, (name, place)) in inside.clone().enumerate() {
+            for (other, there) in inside.clone().skip(at + 1) {
+                let common = place.intersect(*there);
+                let within = place.contains_rect(*there) || there.contains_rect(*place);
+                let touching = common.width() > 1.0 && common.height() > 1.0;
+                assert!(
+                    within || !touching,
+                    "{panel:?}: {name} at {place} lies on {other} at {there}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn windows_and_menus_fit_into_the_smallest_window() {
+    let (_folder, mut person, window) = sized(640.0, 400.0);
+    person.click("File");
+    person.frames(3);
+    let area = person.window.ctx.memory(|memory| {
+        let layers = memory.areas().visible_layer_ids();
+        let menus = layers
+            .into_iter()
+            .filter(|l| l.order == egui::Order::Foreground);
+        let mut rects = menus.filter_map(|layer| memory.area_rect(layer.id));
+        rects.next()
+    });
+    let area = area.expect("the menu is open");
+    assert!(window.contains_rect(area), "{area}");
+    person.key(Key::Escape);
+    person.click("Keys");
+    person.frames(3);
+    let close = person.place("Close window");
+    assert!(window.contains_rect(close), "{close}");
+}
+
 /// Renames a class, with these files as fonts of the system.
 fn renamed(name: &str, files: Vec<PathBuf>) -> (tempfile::TempDir, Person) {
     let folder = tempfile::tempdir().unwrap();

@@ -14,6 +14,7 @@ mod label;
 pub mod page;
 mod propose;
 mod report;
+mod reports;
 mod samples;
 mod search;
 mod strip;
@@ -66,6 +67,7 @@ enum DbCommand {
     Redo(history::TurnArgs),
     Export(export::Args),
     Report(report::Args),
+    Reports(reports::Args),
     Check(check::Args),
     Vacuum(vacuum::Args),
 }
@@ -96,6 +98,7 @@ fn of(args: Args) -> Result<ExitCode> {
         DbCommand::Search(args) => search::run(&args),
         DbCommand::Propose(args) => propose::run(&args),
         DbCommand::Report(args) => report::run(&args),
+        DbCommand::Reports(args) => reports::run(&args),
         DbCommand::Indexes(args) => indexes::run(&args),
         DbCommand::History(args) => history::run(&args),
         DbCommand::Undo(args) => history::undo(&args),

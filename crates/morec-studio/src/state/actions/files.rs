@@ -272,6 +272,7 @@ impl State {
             FileCommand::AskImport => self.ask = Some(Ask::Import),
             FileCommand::AskImportFolder => self.ask = Some(Ask::ImportFolder),
             FileCommand::AskSave => self.ask = Some(Ask::Save),
+            FileCommand::AskExportReport(id) => self.ask = Some(Ask::ExportReport(id)),
             FileCommand::AskExportIndex => self.ask = Some(Ask::ExportIndex),
             FileCommand::Open(path) => self.open(&path),
             FileCommand::New(path) => match path.exists() {
@@ -280,6 +281,7 @@ impl State {
             },
             FileCommand::Import(paths) => self.import(paths),
             FileCommand::Save(path) => self.save(&path),
+            FileCommand::ExportReport(id, path) => self.export_report(id, &path),
             FileCommand::ExportIndex(path) => self.export_index(&path),
             FileCommand::AskExportLabels(form) => self.ask = Some(Ask::ExportLabels(form)),
             FileCommand::AskExportClip => self.ask = self.shown_name().map(Ask::ExportClip),

@@ -16,6 +16,7 @@ mod live;
 mod marks;
 mod outcomes;
 mod proposals;
+mod reports;
 mod roles;
 mod shelf;
 mod shown;

@@ -154,9 +154,8 @@ impl State {
             JobOutcome::Trained(trained) => self.trained(*trained),
             JobOutcome::Judged(judged) => {
                 self.say("cross-validation done");
-                self.train.judged = Some((*judged).into());
-                self.train.cell = None;
-                self.train.moment = None;
+                self.keep_judged(&judged);
+                self.show_judged(*judged);
             }
             JobOutcome::Recognised((clip, found)) => self.detections = Some((clip, found)),
             JobOutcome::Resensed(found) => self.take_resensed(found),

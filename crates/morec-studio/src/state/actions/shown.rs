@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use morec::kinematics::WorldPose;
+use morec::math::Vec3;
 use morec::smooth::ChannelKind;
 use morec_db::ClipId;
 
@@ -54,7 +56,7 @@ impl State {
             self.timeline.held_cut = None;
             self.companions.all.retain(|a| a.of.clip == motion.id);
             self.library.role = None;
-            self.fit_camera(&motion);
+            self.frame(&motion);
             self.look_anew(&motion);
         }
         if let Some((start, stop)) = stretch {
@@ -69,13 +71,34 @@ impl State {
         }
     }
 
-    /// Brings what is no person into the picture whole, whatever its size; people are seen from where they were seen.
-    fn fit_camera(&mut self, motion: &ClipMotion) {
-        let half = match motion.is_person {
-            true => None,
-            false => extent(&motion.pose(0.0)).map(|(_, half)| half),
+    /// Brings the whole motion into the picture: around the performer where the camera follows, else around where it takes place.
+    fn frame(&mut self, motion: &ClipMotion) {
+        if self.framed.take() == Some(motion.id) {
+            return;
+        }
+        let poses: Vec<WorldPose> = motion.poses(FRAMED_POSES).collect();
+        let places = |pose: &WorldPose, centre: Vec3| {
+            let places = pose.positions.iter().map(move |at| at - centre);
+            places.collect::<Vec<Vec3>>()
         };
-        self.stand_off(half);
+        let offsets: Vec<Vec3> = if self.camera.follow {
+            let seen = poses.iter().filter_map(|p| Some((p, motion.centre(p)?)));
+            seen.flat_map(|(p, centre)| places(p, centre)).collect()
+        } else {
+            let all: Vec<Vec3> = poses.into_iter().flat_map(|p| p.positions).collect();
+            let Some((middle, _)) = extent(&all) else {
+                return;
+            };
+            self.camera.target = middle;
+            all.iter().map(|at| at - middle).collect()
+        };
+        let least = match motion.is_person {
+            true => Camera::default().distance,
+            false => Camera::NEAREST,
+        };
+        let needed = self.camera.distance_to_see(offsets.into_iter());
+        self.camera.distance = needed.max(least);
+        self.fitted = true;
     }
 
     /// Puts the camera so far off that what reaches `half` metres from its middle is seen whole; `None`: a person.
@@ -181,6 +204,9 @@ impl State {
         heading.unwrap_or(0.0)
     }
 }
+
+/// Poses by which the extent of a motion is known, at most.
+const FRAMED_POSES: usize = 200;
 
 /// Name of the job that computes cuts and misfit of the clip that is shown.
 pub(in crate::state) const CURVES: &str = "Analysing the clip";

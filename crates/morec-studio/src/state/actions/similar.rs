@@ -49,6 +49,10 @@ impl State {
         Some((stretch, Some(sample.class.clone())))
     }
 
+    pub fn is_selected_stretch(&self, of: Stretch) -> bool {
+        self.selected_stretch().is_some_and(|(now, _)| now == of)
+    }
+
     fn search(&mut self, of: Stretch, class: Option<String>) {
         let Some(store) = &self.store else { return };
         let (db, mirror) = (store.path().to_owned(), self.classes.mirror);

@@ -46,6 +46,8 @@ impl State {
                 }
             }
             TrainCommand::UseIndex(name) => self.use_index(&name),
+            TrainCommand::OpenReport(id) => self.open_report(id),
+            TrainCommand::CloseReport => self.close_report(),
             TrainCommand::ThesisParams(params) => self.train.thesis_params = *params,
             TrainCommand::Thesis => self.train_thesis(),
             TrainCommand::JudgeThesis => self.start_judging(self.thesis_settings()),
@@ -165,6 +167,7 @@ impl State {
     pub(in crate::state) fn trained(&mut self, trained: train::TrainedIndex) {
         let classes = crate::format::count(trained.report.classes.len(), "class");
         self.say(format!("trained on {classes} in {:.1} s", trained.secs));
+        self.keep_trained(&trained);
         self.train.secs = trained.secs;
         self.train.index = Some(trained.index);
         self.train.bytes = trained.bytes;

@@ -114,7 +114,7 @@ impl LivePerformer {
 
     pub fn centre(&self) -> Option<Vec3> {
         if self.body.is_hand {
-            return Some(extent(&self.pose)?.0);
+            return Some(extent(&self.pose.positions)?.0);
         }
         let at = self.body.centre(&self.pose)?;
         Some(Vec3::new(

@@ -8,7 +8,7 @@ use morec::labels::Sample;
 use morec::train::TrainClip;
 
 /// Labels that did not teach.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Unlearned {
     /// All of these clips, by name.
     pub clips: BTreeSet<String>,
