@@ -108,6 +108,11 @@ impl TextTable {
         self
     }
 
+    /// The rows, names of the columns first.
+    pub fn rows(&self) -> &[Vec<String>] {
+        &self.rows
+    }
+
     /// The whole table with its columns separated by tabs: for other programs.
     pub fn tabbed(&self) -> String {
         let clean = |cell: &String| cell.replace(['\t', '\n', '\r'], " ");

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use morec::crossval::CrossvalData;
 use morec::eval::{MEASURED_OVERLAP, timelines};
 use morec::report::{Report, TrainedClass};
+use morec::train::TrainingData;
 use morec_ops::{CrossvalMeasures, CrossvalSettings, LeftOut, TrainSettings};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -31,28 +32,53 @@ pub fn crossval(
     how: &str,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<PyCrossval> {
-    let (train, how): (TrainSettings, CrossvalSettings) = (settings(train)?, settings(how)?);
-    if how.by == LeftOut::Own {
-        return Err(value_error(
-            "by: expected \"person\", \"clip\" or \"half\", found \"own\"",
-        ));
-    }
+    let (train, how) = both_settings(train, how)?;
     let data = training_data(material, &train.classes)?;
     let measures = job::run(py, progress, |progress| {
-        let of = CrossvalData {
-            clips: &data.clips,
-            samples: &data.samples,
-            classes: &data.classes,
-            unknown: &data.unknown,
-            tests: None,
-        };
-        how.crossval(&of, &train, progress)
+        how.crossval(&crossval_data(&data), &train, progress)
     })?;
     Ok(PyCrossval {
         measures: measures.map_err(operation_error)?,
         training: TrainedClass::count(&data.samples, &data.classes),
         by: how.by,
     })
+}
+
+/// What more samples and more people are worth, as `morec crossval --curve --json` prints it.
+#[pyfunction]
+pub fn learning_curve<'py>(
+    py: Python<'py>,
+    material: &Bound<'py, PyDict>,
+    train: &str,
+    how: &str,
+    progress: Option<&Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let (train, how) = both_settings(train, how)?;
+    let data = training_data(material, &train.classes)?;
+    let curve = job::run(py, progress, |progress| {
+        how.learning_curve(&crossval_data(&data), &train, progress)
+    })?;
+    plain(py, &curve.map_err(operation_error)?)
+}
+
+fn both_settings(train: &str, how: &str) -> PyResult<(TrainSettings, CrossvalSettings)> {
+    let (train, how): (TrainSettings, CrossvalSettings) = (settings(train)?, settings(how)?);
+    if how.by == LeftOut::Own {
+        return Err(value_error(
+            "by: expected \"person\", \"clip\" or \"half\", found \"own\"",
+        ));
+    }
+    Ok((train, how))
+}
+
+fn crossval_data(data: &TrainingData) -> CrossvalData<'_> {
+    CrossvalData {
+        clips: &data.clips,
+        samples: &data.samples,
+        classes: &data.classes,
+        unknown: &data.unknown,
+        tests: None,
+    }
 }
 
 #[pymethods]

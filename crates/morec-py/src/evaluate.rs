@@ -90,7 +90,7 @@ fn detections(given: &Bound<'_, PyAny>) -> PyResult<FoundTable> {
 }
 
 /// Lengths by name, of clips or of seconds by name.
-fn lengths(given: &Bound<'_, PyAny>) -> PyResult<BTreeMap<String, ClipLength>> {
+pub fn lengths(given: &Bound<'_, PyAny>) -> PyResult<BTreeMap<String, ClipLength>> {
     if let Ok(secs) = given.extract::<BTreeMap<String, f64>>() {
         let length = |(name, secs): (String, f64)| {
             let length = ClipLength {

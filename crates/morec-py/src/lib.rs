@@ -14,6 +14,7 @@ mod evaluate;
 mod features;
 mod index;
 mod job;
+mod labels;
 mod live;
 mod material;
 mod open;
@@ -56,7 +57,10 @@ fn _morec(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(divided::match_kept, module)?)?;
     module.add_function(wrap_pyfunction!(divided::recognize_matched_kept, module)?)?;
     module.add_function(wrap_pyfunction!(crossval::crossval, module)?)?;
+    module.add_function(wrap_pyfunction!(crossval::learning_curve, module)?)?;
     module.add_function(wrap_pyfunction!(evaluate::evaluate, module)?)?;
+    module.add_function(wrap_pyfunction!(labels::agree, module)?)?;
+    module.add_function(wrap_pyfunction!(labels::budget, module)?)?;
     module.add_function(wrap_pyfunction!(segment::cut, module)?)?;
     module.add_function(wrap_pyfunction!(discover::discover, module)?)?;
     module.add_function(wrap_pyfunction!(discover::discover_stored, module)?)?;

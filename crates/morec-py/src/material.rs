@@ -51,7 +51,7 @@ pub fn labels(given: &Bound<'_, PyAny>) -> PyResult<Labels> {
 }
 
 /// The person of each clip.
-fn people(given: &Bound<'_, PyAny>) -> PyResult<People> {
+pub fn people(given: &Bound<'_, PyAny>) -> PyResult<People> {
     if let Ok(bytes) = given.cast::<PyBytes>() {
         let table = read_people(bytes.as_bytes());
         return table.map_err(|error| morec_error(format!("people: {error}")));

@@ -304,3 +304,31 @@ def test_tables_are_lists_and_frames(index: morec.Index, newcomer: morec.Clip) -
     assert "<table>" in found._repr_html_() and "class" in repr(found)
     with pytest.raises(KeyError, match="no column is called"):
         found.column("nothing")
+
+
+def test_annotators_are_compared_and_time_is_divided() -> None:
+    ann = [("one", "walk", 0.0, 4.0), ("one", "jump", 6.0, 10.0), ("hers", "walk", 0.0, 1.0)]
+    ben = [("one", "walk", 0.0, 3.0), ("one", "jump", 6.0, 10.0)]
+    secs = {"one": 10.0, "hers": 1.0}
+    with pytest.warns(morec.MorecWarning, match="a alone labels hers"):
+        agreement = morec.agree(ann, ben, secs, time_unit=1.0)
+    assert agreement["time"]["observed"] == 0.9
+    assert agreement["time"]["kappa"] == pytest.approx(0.56 / 0.66)
+    assert agreement["events"]["matched"] == 2
+    with pytest.raises(ValueError, match="no clip is labelled by both"), pytest.warns(morec.MorecWarning):
+        morec.agree(ann[2:], ben, secs)
+    with pytest.raises(ValueError, match="time_unit"):
+        morec.agree(ann, ben, secs, time_unit=0.0)
+
+    budget = morec.budget(ann, secs, people={"one": "ann"})
+    assert (budget["clips"], budget["secs"], budget["unlabelled_secs"]) == (2, 11.0, 2.0)
+    assert [(c["class"], c["count"], c["total_secs"]) for c in budget["classes"]] == [("jump", 1, 4.0), ("walk", 2, 5.0)]
+    assert budget["people"][0]["classes"][0]["share"] == 0.4
+    assert budget["transitions"]["counts"] == [[0, 0], [1, 0]]
+
+
+def test_more_samples_are_worth_something(clips: list[morec.Clip], labels: morec.Table) -> None:
+    curve = morec.learning_curve(clips, labels, by="clip")
+    assert curve["points"][0]["samples"] == 1 and curve["points"][-1]["samples"] is None
+    assert all(0.0 <= draw["f1"] <= 1.0 for point in curve["points"] for draw in point["draws"])
+    assert curve["advice"]

@@ -1,6 +1,6 @@
 //! `morec agree`: how far two annotators agree.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -10,14 +10,14 @@ use morec::eval::{
     ClassAgreement, ClipDetection, Evaluation, GroundTruth, Kappa, LabelAgreement, StreamInfo,
     timelines,
 };
-use morec::labels::{ClipLength, Extent, Labels, names_of_clip, some_of};
+use morec::labels::{ClipLength, Labels, SharedClips, some_of};
 use morec::report::Report;
 
 use crate::figures::{self, figure};
 use crate::files::ReadArgs;
 use crate::json::write_json;
 use crate::labels::{self, LabelArgs};
-use crate::lengths::lengths;
+use crate::lengths::{lengths, lengths_of_labels};
 use crate::output;
 use crate::table::TextTable;
 
@@ -122,97 +122,24 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Clips that end with their last label.
-fn lengths_of_labels(files: &[(&PathBuf, &Labels)]) -> Result<BTreeMap<String, ClipLength>> {
-    /// Places to a second: finer than any labels.
-    const RATE_HZ: f64 = 1000.0;
-    let endings_count = names_with_endings(files);
-    let mut lengths = BTreeMap::new();
-    for (path, labels) in files {
-        for row in &labels.rows {
-            let Extent::Secs(span) = &row.extent else {
-                bail!(
-                    "{}: line {}: the label is in frames; give the clips with --clips, or the frame rate with --label-rate",
-                    path.display(),
-                    row.line
-                );
-            };
-            // The annotators may have written folders and endings differently.
-            let (base, stem) = base_and_stem(&row.clip);
-            let name = if endings_count.contains(stem) {
-                base
-            } else {
-                stem
-            };
-            let length = lengths.entry(name.to_owned()).or_insert(ClipLength {
-                frames: 0,
-                rate_hz: RATE_HZ,
-            });
-            length.frames = length
-                .frames
-                .max((span.stop_secs * RATE_HZ).ceil() as usize);
-        }
-    }
-    Ok(lengths)
-}
-
-/// Stems of clips whose ending belongs to the name, because one file names two clips that differ in it alone: `rec` of `rec.1` and `rec.2`.
-fn names_with_endings<'l>(files: &[(&PathBuf, &'l Labels)]) -> BTreeSet<&'l str> {
-    let mut found = BTreeSet::new();
-    for (_, labels) in files {
-        let mut names: BTreeMap<&str, &str> = BTreeMap::new();
-        for row in &labels.rows {
-            let (base, stem) = base_and_stem(&row.clip);
-            if base != stem && *names.entry(stem).or_insert(base) != base {
-                found.insert(stem);
-            }
-        }
-    }
-    found
-}
-
-/// A clip's name without folders, and without the ending too.
-fn base_and_stem(name: &str) -> (&str, &str) {
-    let [.., base, stem] = names_of_clip(name).collect::<Vec<_>>()[..] else {
-        return (name, name);
-    };
-    (base, stem)
-}
-
 /// The clips that both name; the labels of others are left out, which is printed.
 fn shared_streams(
     a: &mut Vec<GroundTruth>,
     b: &mut Vec<GroundTruth>,
     lengths: &BTreeMap<String, ClipLength>,
 ) -> Result<Vec<StreamInfo>> {
-    let clips = |labels: &[GroundTruth]| -> BTreeSet<String> {
-        labels.iter().map(|label| label.clip.clone()).collect()
-    };
-    let (of_a, of_b) = (clips(a), clips(b));
-    for (who, own, other) in [("A", &of_a, &of_b), ("B", &of_b, &of_a)] {
-        let alone: Vec<&str> = own.difference(other).map(String::as_str).collect();
+    let shared = SharedClips::of(a, b, lengths);
+    for (who, alone) in ["A", "B"].into_iter().zip(&shared.alone) {
         if !alone.is_empty() {
-            let (count, names) = (alone.len(), some_of(&alone));
+            let (count, names) = (alone.len(), some_of(alone));
             eprintln!("morec: {count} clips are labelled by {who} only and left out: {names}");
         }
     }
-    let shared: BTreeSet<String> = of_a.intersection(&of_b).cloned().collect();
-    if shared.is_empty() {
-        bail!(
-            "no clip is labelled in both files: A names {}, B names {} clips",
-            of_a.len(),
-            of_b.len()
-        );
+    if shared.streams.is_empty() {
+        let [a, b] = shared.alone.map(|alone| alone.len());
+        bail!("no clip is labelled in both files: A names {a}, B names {b} clips");
     }
-    for labels in [a, b] {
-        labels.retain(|label| shared.contains(&label.clip));
-    }
-    let stream = |clip: String| StreamInfo {
-        duration_secs: lengths[&clip].duration_secs(),
-        clip,
-        unknown: false,
-    };
-    Ok(shared.into_iter().map(stream).collect())
+    Ok(shared.streams)
 }
 
 fn write(out: &mut impl Write, agreement: &LabelAgreement) -> io::Result<()> {

@@ -5,6 +5,7 @@
 
 pub mod agree;
 pub mod bench;
+pub mod budget;
 pub mod classify;
 pub mod complete;
 pub mod convert;

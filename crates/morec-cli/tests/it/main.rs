@@ -1,6 +1,7 @@
 //! The commands as they are typed: one binary for all of them, a module for each.
 
 mod agree;
+mod budget;
 mod classify;
 mod convert;
 mod db;

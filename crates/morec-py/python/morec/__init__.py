@@ -16,7 +16,7 @@ from . import plot, synth
 from ._discover import discover
 from ._files import read, read_all, read_folder
 from ._drawing import animation
-from ._learn import crossval, evaluate, train
+from ._learn import agree, budget, crossval, evaluate, learning_curve, train
 from ._live import listen
 from ._morec import (
     ROLES,
@@ -52,12 +52,15 @@ __all__ = [
     "WEBCAM_POINTS",
     "Windows",
     "__version__",
+    "agree",
     "animation",
+    "budget",
     "crossval",
     "cut",
     "discover",
     "evaluate",
     "features",
+    "learning_curve",
     "listen",
     "load",
     "normalize",

@@ -222,6 +222,35 @@ def crossval(
     return _morec.crossval(material, settings, json.dumps(how), listener(progress))
 
 
+def learning_curve(
+    clips: Clips,
+    labels: Labels,
+    *,
+    by: str = "person",
+    people: People = None,
+    background: Background = None,
+    unknown: Background = None,
+    classes: Sequence[str] = (),
+    params: Mapping[str, Any] | None = None,
+    progress: Progress = None,
+) -> dict[str, Any]:
+    """Measure what more samples and more people are worth; what ``morec crossval --curve --json`` prints.
+
+    Cross-validates with 1, 2, 4 ... samples of each class and with 1, 2, 4 ... people, three draws each, and with all of them. The
+    parameters are those of `crossval`.
+
+    Returns
+    -------
+    dict
+        ``points`` (``samples``, ``people``, and ``draws`` with ``f1``, ``recall``, ``alarms_per_minute``, ``delay_secs``), and ``advice``:
+        sentences.
+    """
+    material = _material(clips, labels, people, background, ())
+    material["unknown"] = _aside(unknown, material["clips"])
+    settings = _settings(classes, (), (), (), "all", params)
+    return _morec.learning_curve(material, settings, json.dumps({"by": by}), listener(progress))
+
+
 def evaluate(
     truth: Labels,
     found: Found,
@@ -267,6 +296,52 @@ def evaluate(
     return _morec.evaluate(
         label_rows(truth), _found_rows(found), _lengths(clips), _lengths(unknown), index, classes=list(classes)
     )
+
+
+def agree(a: Labels, b: Labels, clips: Lengths, *, time_unit: float = 0.1) -> dict[str, Any]:
+    """Measure how far two annotators agree; what ``morec agree --json`` prints.
+
+    Parameters
+    ----------
+    a, b : DataFrame, path, Table or list of spans
+        The labels of each annotator, as for `train`. Clips that only one of them labels are left out.
+    clips : clips, paths, or dict of name to seconds
+        The labelled clips, or their lengths.
+    time_unit : float
+        Length of the units of time of Cohen's kappa, seconds; kappa depends on it.
+
+    Returns
+    -------
+    dict
+        ``time`` (kappa), ``events`` (F1, corrected for chance, boundaries), ``classes``, ``confusion``.
+
+    Raises
+    ------
+    ValueError
+        No clip is labelled by both.
+    """
+    return _morec.agree(label_rows(a), label_rows(b), _lengths(clips), time_unit)
+
+
+def budget(labels: Labels, clips: Lengths, *, people: People = None) -> dict[str, Any]:
+    """Measure how much time each class takes; what ``morec budget --json`` prints.
+
+    Parameters
+    ----------
+    labels : DataFrame, path, Table or list of spans
+        Labels, as for `train`.
+    clips : clips, paths, or dict of name to seconds
+        The labelled clips, or their lengths. Those without labels do not count.
+    people : optional
+        The person of each clip, as for `train`.
+
+    Returns
+    -------
+    dict
+        ``classes`` and ``people`` (count, total and mean seconds, share of the clips' duration, labels a minute), and ``transitions``:
+        how often a class follows another.
+    """
+    return _morec.budget(label_rows(labels), _lengths(clips), people_rows(people))
 
 
 def _lengths(clips: Lengths) -> dict[str, float] | list[Clip]:

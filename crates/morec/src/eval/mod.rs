@@ -69,7 +69,7 @@ pub use events::{EVENT_TOLERANCE_SECS, EventScore, event_pairs};
 pub use frames::FrameScore;
 pub use pairs::OverlapScore;
 pub use reliability::{Reliability, SCORE_BINS, ScoreBin};
-
+pub(crate) use spans::union;
 pub use timeline::{DetectionVerdict, GroundTruthVerdict, Timeline, timelines};
 pub use timing::{Boundaries, Delay};
 

@@ -8,7 +8,7 @@ pub(super) fn reaches(a: TimeSpan, b: TimeSpan, least: f64) -> bool {
 }
 
 /// The union of stretches, as disjoint stretches in order. `sorted` is ordered by start. O(n).
-pub(super) fn union(sorted: impl IntoIterator<Item = TimeSpan>) -> Vec<TimeSpan> {
+pub(crate) fn union(sorted: impl IntoIterator<Item = TimeSpan>) -> Vec<TimeSpan> {
     let mut merged: Vec<TimeSpan> = Vec::new();
     for next in sorted {
         match merged.last_mut() {

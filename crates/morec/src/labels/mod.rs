@@ -25,6 +25,7 @@
 //! # }
 //! ```
 
+mod budget;
 mod doubt;
 mod found;
 mod lengths;
@@ -33,12 +34,14 @@ mod names;
 mod people;
 mod read;
 mod resolve;
+mod shared;
 mod table;
 
 use crate::TimeSpan;
 use crate::clip::Span;
 use crate::formats::Warning;
 
+pub use budget::{ClassBudget, ClassTransitions, PersonBudget, TimeBudget};
 pub use doubt::{doubtful_unit, misspelled, said_absent};
 pub use found::{FOUND_HEADER, FoundLine, FoundRow, FoundTable, ReportedAt, read_detections};
 pub use lengths::{ClassLengths, class_lengths};
@@ -46,6 +49,7 @@ pub use mark::Mark;
 pub use names::{hint, some_of};
 pub use people::{People, read_people};
 pub use resolve::{ClipLength, Resolved, Sample, names_of_clip};
+pub use shared::SharedClips;
 
 /// Extent of a label in its clip, as the table gives it.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,5 +1,6 @@
 //! A page of HTML with strips of poses that move when they are chosen: one file, nothing loaded from elsewhere.
 
+use std::iter::repeat;
 use std::path::Path;
 
 use anyhow::{Context, Result};
@@ -9,6 +10,7 @@ use morec_db::{ClipId, MotionDb, StoredClip};
 
 use super::strip::strip;
 use crate::output;
+use crate::table::TextTable;
 
 /// Poses in a strip.
 const POSES: usize = 8;
@@ -19,7 +21,7 @@ const MOST_BYTES: usize = 48 << 20;
 
 const STYLE: &str = "body{font:15px/1.4 system-ui,sans-serif;margin:2em auto;max-width:70em;padding:0 1em;\
 color:#222;background:#fff}h2{margin-top:1.6em}figure{display:inline-block;margin:.3em 1em .6em 0}\
-figcaption{font-size:13px}svg{background:#f4f4f4;border-radius:4px}path{fill:none;stroke-width:1.3;stroke-linecap:round}\
+figcaption{font-size:13px}td,th{padding:.1em .8em .1em 0;text-align:right}td:first-child,th:first-child{text-align:left}svg{background:#f4f4f4;border-radius:4px}path{fill:none;stroke-width:1.3;stroke-linecap:round}\
 nav.contents{display:flex;flex-wrap:wrap;gap:.2em 1em}nav.contents a{color:inherit}\
 @media(prefers-color-scheme:dark){:root{color-scheme:dark}body{color:#ddd;background:#181818}svg{background:#262626}}";
 
@@ -65,6 +67,24 @@ impl Page {
             "<details><summary>{}</summary>\n<ul>\n{items}</ul>\n</details>\n",
             escaped(summary)
         ));
+    }
+
+    /// A table as the terminal shows it.
+    pub fn table(&mut self, table: &TextTable) {
+        self.html.push_str("<table>\n");
+        for (tag, row) in ["th"].into_iter().chain(repeat("td")).zip(table.rows()) {
+            let cells = row
+                .iter()
+                .map(|cell| format!("<{tag}>{}</{tag}>", escaped(cell)));
+            self.html
+                .push_str(&format!("<tr>{}</tr>\n", cells.collect::<String>()));
+        }
+        self.html.push_str("</table>\n");
+    }
+
+    /// A drawing: an element `<svg>`.
+    pub fn drawing(&mut self, svg: &str) {
+        self.html.push_str(svg);
     }
 
     pub fn new_line(&mut self) {
