@@ -20,6 +20,7 @@ mod audacity;
 mod babel;
 mod boris;
 mod boris_project;
+mod captions;
 mod csv;
 mod eaf;
 mod events;
@@ -32,6 +33,7 @@ mod tests;
 mod timed_text;
 mod tsv;
 
+pub use captions::{Caption, add_sources, read_captions};
 pub use file_names::{clip_of_file_name, file_name, file_names};
 
 use morec::formats::ParseError;

@@ -17,6 +17,7 @@
 //! | labels in other programs' forms | [`exchange`] |
 //! | cuts where behaviour changes | [`MotionDb::cut`] |
 //! | rows, search by example, near copies | [`rows`], [`search`] |
+//! | search by words | [`WordIndex`] |
 //! | the other samples of classes that a few are labelled of | [`MotionDb::propose`], [`most_informative`] |
 //!
 //! ```no_run
@@ -80,6 +81,7 @@ mod testing;
 mod tests;
 mod time;
 mod tracked;
+mod words;
 
 pub use background::BackgroundClips;
 pub use clips::{BACKGROUND, ClipFilter, ClipId, ClipInfo, ClipUpdate};
@@ -98,3 +100,4 @@ pub use reports::{REPORTS_KEPT, ReportInfo, ReportKind};
 pub use rows::bones_of_bits;
 pub use schema::{APPLICATION_ID, SCHEMA};
 pub use segments::{Segment, SegmentKind};
+pub use words::{WordHit, WordHits, WordIndex, WordPlace};

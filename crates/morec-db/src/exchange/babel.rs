@@ -61,8 +61,21 @@ pub fn read(bytes: &[u8]) -> Result<ReadLabels, ParseError> {
     Ok(read)
 }
 
+/// All labels of a sequence, those of the whole first.
+pub fn labels(sequence: &Value) -> impl Iterator<Item = &Value> {
+    let sets = ["seq_ann", "seq_anns", "frame_ann", "frame_anns"].map(|set| &sequence[set]);
+    fn of_set(set: &Value) -> &[Value] {
+        match set {
+            Value::Array(sets) => sets,
+            one => std::slice::from_ref(one),
+        }
+    }
+    let labels = sets.into_iter().flat_map(of_set);
+    labels.filter_map(|set| set["labels"].as_array()).flatten()
+}
+
 /// The file's stem where `feat_p` is a path to poses; a name of ours may hold a slash, too.
-fn stem(path: &str) -> &str {
+pub fn stem(path: &str) -> &str {
     let Some(path) = path.strip_suffix(".npz") else {
         return path;
     };

@@ -19,6 +19,7 @@ mod samples;
 mod search;
 mod strip;
 mod vacuum;
+mod words;
 
 use std::process::ExitCode;
 

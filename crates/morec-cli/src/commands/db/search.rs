@@ -1,4 +1,4 @@
-//! `morec db search`: finds motions like an example.
+//! `morec db search`: finds motions like an example, or by words.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -14,30 +14,50 @@ use morec_ops::{SearchSettings, example_of_clip, example_of_database};
 use serde::Serialize;
 
 use super::page::{self, Page};
+use super::words;
 use crate::database;
 use crate::files::{self, ReadArgs};
 use crate::print;
 use crate::progress::StageBar;
 use crate::table::TextTable;
 
-/// Find stretches like an example
+/// Find stretches like an example, or by words
 ///
 /// The example is a stretch of a clip in the database or of a file, with any skeleton and frame rate. With --learned, differences
 /// that also occur within labelled classes count less. To find similar whole clips, give a whole clip and --one-a-clip.
+///
+/// With --words, clips and stretches are found by the names of classes, captions, tags, file names, sources and people.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
   morec db search moves.mdb walk_01 --start 1.2 --stop 2.5
   morec db search moves.mdb recorded.bvh --mirror --report hits.html
   morec db search moves.mdb walk_01 --one-a-clip --limit 50 --json
-  morec db search moves.mdb walk_01 --one-a-clip --learned")]
+  morec db search moves.mdb walk_01 --one-a-clip --learned
+  morec db search moves.mdb --words \"wave left hand\" --captions babel.json")]
 pub struct Args {
     /// The database
     #[arg(value_name = "DB")]
     db: PathBuf,
     /// The example: a clip of the database by name, or a file
-    #[arg(value_name = "CLIP|FILE")]
-    example: String,
+    #[arg(value_name = "CLIP|FILE", required_unless_present = "words")]
+    example: Option<String>,
+    /// Find what these words describe, in place of an example
+    ///
+    /// Words are found in their other forms (waving), in synonyms (run, jog), and where they begin another. Hits are
+    /// ranked by the share of the words that they have; rare words count more.
+    #[arg(
+        long,
+        value_name = "WORDS",
+        conflicts_with_all = ["example", "start", "stop", "mirror", "learned", "one_a_clip"]
+    )]
+    words: Option<String>,
+    /// Descriptions of clips that --words searches too
+    ///
+    /// A table with columns clip and caption, BABEL, a folder of HumanML3D, or lines of a name and a description (the
+    /// index of CMU).
+    #[arg(long, value_name = "FILE|DIR", num_args = 1.., requires = "words")]
+    captions: Vec<PathBuf>,
     /// Start of the example, seconds [default: the clip's beginning]
     #[arg(long, value_name = "SECS", default_value_t = 0.0)]
     start: f64,
@@ -88,6 +108,11 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     if let Some(path) = &args.report {
         page::check(path)?;
     }
+    if let Some(words) = &args.words {
+        let out = (args.report.as_deref(), args.json);
+        words::run(&db, words, &args.captions, args.settings.limit, out)?;
+        return Ok(ExitCode::SUCCESS);
+    }
     let index = SearchIndex::of_reader(&db, &StageBar::stoppable()?)?;
     let (example, shown) = example(&db, &index, args)?;
     let metric = args.settings.metric(&db, &index)?;
@@ -135,7 +160,11 @@ enum Shown {
 
 /// The example's rows, and the clip they are of.
 fn example(db: &MotionDb, index: &SearchIndex, args: &Args) -> Result<(Example, Shown)> {
-    let (name, start, stop) = (&args.example, args.start, args.stop);
+    let (name, start, stop) = (
+        args.example.as_deref().unwrap_or_default(),
+        args.start,
+        args.stop,
+    );
     if let Ok(clip) = db.find_clip(name) {
         let example = example_of_database(db, index, name, start, stop)?;
         return Ok((example, Shown::Kept(Box::new(clip))));
@@ -174,19 +203,20 @@ fn report(
         Shown::File(stored) => stored.clip.duration_secs(),
     };
     let span = TimeSpan::new(args.start, args.stop.unwrap_or(end));
-    let caption = format!("{} {span:.2}", args.example);
+    let name = args.example.as_deref().unwrap_or_default();
+    let caption = format!("{name} {span:.2}");
     match example {
         Shown::Kept(clip) => page.figure(db, clip.id, span, &caption)?,
         Shown::File(stored) => page.figure_of(stored, span, &caption),
     }
     page.heading("Found");
-    for NamedHit { name, hit } in &found.hits {
+    for NamedHit { name: clip, hit } in &found.hits {
         let mirrored = if hit.mirrored { ", mirrored" } else { "" };
-        let caption = format!("{name} {:.2}, score {:.3}{mirrored}", hit.span, hit.score);
+        let caption = format!("{clip} {:.2}, score {:.3}{mirrored}", hit.span, hit.score);
         page.figure(db, hit.clip, hit.span, &caption)?;
     }
     let head = format!("{} hits in {}", found.hits.len(), args.db.display());
-    page.write(path, &format!("Like {}", args.example), &head)
+    page.write(path, &format!("Like {name}"), &head)
 }
 
 fn print(found: &SearchResult, tick_hz: f64) -> Result<()> {
