@@ -23,6 +23,9 @@ pub enum MorecPhase {
     /// A repetition of an activity is complete, from the event's start to its stop; `repetitions` is its number. Only with
     /// `MOREC_EACH_REPETITION`. (Not in the first version.)
     Repetition = 4,
+    /// How far one class has come, of every class with each frame that completes a row: `progress` is how far and `score` how like to a sample,
+    /// both 0 to 1, and `motion` is 0. Only with `MOREC_PROGRESS`. (Not in the first version.)
+    Progress = 5,
 }
 
 /// An event of a motion. Times are seconds on the clock of the frames unless stated otherwise.
@@ -58,7 +61,7 @@ pub struct MorecEvent {
     /// With `MOREC_DEVIATION`: mean angle between its bones and those of the nearest sample, degrees; -1 where nothing is compared. (Not in
     /// the first version.)
     pub off_degrees: f64,
-    /// Its duration over the sample's.
+    /// Its duration over the sample's, so far; 0 where nothing is compared.
     pub pace: f64,
     /// Number of the bone that is farthest off: see `morec_bone_name`.
     pub worst_bone: u32,
@@ -79,6 +82,7 @@ impl From<&Event> for MorecEvent {
             Phase::Cancel => MorecPhase::Cancel,
             Phase::End => MorecPhase::End,
             Phase::Repetition => MorecPhase::Repetition,
+            Phase::Progress => MorecPhase::Progress,
         };
         Self {
             phase: phase as i32,
@@ -94,7 +98,7 @@ impl From<&Event> for MorecEvent {
             repetitions: event.repetitions.map_or(0, |r| r.count),
             period_secs: event.repetitions.map_or(0.0, |r| r.period_secs),
             off_degrees: event.deviation.map_or(-1.0, |d| d.off_degrees),
-            pace: event.deviation.map_or(0.0, |d| d.pace),
+            pace: event.pace.unwrap_or(0.0),
             worst_bone: event.deviation.map_or(0, |d| number_of(d.worst_bone)),
             worst_degrees: event.deviation.map_or(0.0, |d| d.worst_degrees),
         }

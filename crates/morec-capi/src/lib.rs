@@ -49,9 +49,9 @@ pub use index::{
 };
 pub use recognizer::{
     MOREC_DEVIATION, MOREC_EACH_REPETITION, MOREC_PERFORMER_ANYONE, MOREC_PERFORMER_TEACHER,
-    MOREC_TENTATIVE, MorecOptions, MorecStats, morec_recognizer_create, morec_recognizer_destroy,
-    morec_recognizer_finish, morec_recognizer_joint_of_role, morec_recognizer_poll,
-    morec_recognizer_push, morec_recognizer_reset, morec_recognizer_stats,
+    MOREC_PROGRESS, MOREC_TENTATIVE, MorecOptions, MorecStats, morec_recognizer_create,
+    morec_recognizer_destroy, morec_recognizer_finish, morec_recognizer_joint_of_role,
+    morec_recognizer_poll, morec_recognizer_push, morec_recognizer_reset, morec_recognizer_stats,
 };
 pub use skeleton::MorecSkeleton;
 pub use status::{MorecStatus, morec_last_error, morec_status_text};

@@ -31,6 +31,9 @@ pub const MOREC_EACH_REPETITION: u32 = 8;
 /// Say how far from the nearest sample each gesture that ends, and each repetition that is an event, was.
 pub const MOREC_DEVIATION: u32 = 16;
 
+/// Say with each frame how far every class has come: as many events, of the phase `Progress`. Of templates only.
+pub const MOREC_PROGRESS: u32 = 32;
+
 /// Options of a recogniser.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
@@ -45,9 +48,10 @@ pub struct MorecOptions {
     pub skeleton: *const MorecSkeleton,
     /// For a stream of roles: bit `r` for each `MorecRole` `r` that it contains; 0 for all.
     pub roles: u32,
-    /// `MOREC_TENTATIVE`, `MOREC_EACH_REPETITION`, `MOREC_DEVIATION`, and one of `MOREC_PERFORMER_ANYONE` and `MOREC_PERFORMER_TEACHER`; or 0.
+    /// `MOREC_TENTATIVE`, `MOREC_EACH_REPETITION`, `MOREC_DEVIATION`, `MOREC_PROGRESS`, and one of `MOREC_PERFORMER_ANYONE` and `MOREC_PERFORMER_TEACHER`; or 0.
     pub flags: u32,
-    /// Events that can wait to be polled, 128 to 1048576; 0 for 256. Memory is taken for as many.
+    /// Events that can wait to be polled, 128 to 1048576; 0 for 256. Memory is taken for as many, and with `MOREC_PROGRESS` for those of
+    /// a frame at least.
     pub event_capacity: usize,
     /// Least time between two reports of the same class, seconds; suppressed motions are counted. 0: every motion is reported
     /// once.
@@ -135,6 +139,7 @@ fn stream_options(c: &MorecOptions) -> Result<StreamOptions, CallError> {
     let known = MOREC_TENTATIVE
         | MOREC_EACH_REPETITION
         | MOREC_DEVIATION
+        | MOREC_PROGRESS
         | MOREC_PERFORMER_ANYONE
         | MOREC_PERFORMER_TEACHER;
     if c.flags & !known != 0 {
@@ -159,6 +164,7 @@ fn stream_options(c: &MorecOptions) -> Result<StreamOptions, CallError> {
         tentative: c.flags & MOREC_TENTATIVE != 0,
         each_repetition: c.flags & MOREC_EACH_REPETITION != 0,
         deviation: c.flags & MOREC_DEVIATION != 0,
+        progress: c.flags & MOREC_PROGRESS != 0,
         refractory_secs: c.refractory_secs,
         ..StreamOptions::default()
     })

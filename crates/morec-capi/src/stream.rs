@@ -13,7 +13,7 @@ use crate::frame::CheckedFrame;
 use crate::skeleton::{self, Declared};
 use crate::status::CallError;
 
-/// Events that one frame can settle at most, with room to spare; no frame is taken with less.
+/// Events that one frame can settle at most beside progress, with room to spare; no frame is taken with less.
 const ROOM: usize = 96;
 /// Events that can wait by default.
 const USUAL_EVENTS: usize = 256;
@@ -28,6 +28,8 @@ pub(crate) struct Stream {
     output: Mutex<rtrb::Consumer<Event>>,
     counts: StreamCounts,
     latency_secs: f64,
+    /// Events that one frame can settle at most.
+    room: usize,
 }
 
 struct StreamInput {
@@ -80,9 +82,11 @@ impl Stream {
                 text.to_owned(),
             ));
         }
+        let followed = index.model.classes().len();
+        let room = ROOM + if options.progress { followed } else { 0 };
         let (rig, bones) = (declared.rig.clone(), Some(declared.bones));
         let stream = PerformerStream::of_rig(index, rig, bones, options).map_err(refusal)?;
-        let (producer, consumer) = rtrb::RingBuffer::new(capacity);
+        let (producer, consumer) = rtrb::RingBuffer::new(capacity.max(room));
         let input = StreamInput {
             stream,
             frame: Frame::default(),
@@ -95,6 +99,7 @@ impl Stream {
             input: Mutex::new(input),
             output: Mutex::new(consumer),
             counts: StreamCounts::default(),
+            room,
         })
     }
 
@@ -197,7 +202,7 @@ impl Stream {
     }
 
     fn make_room(&self, input: &StreamInput) -> Result<(), CallError> {
-        if input.events.slots() >= ROOM {
+        if input.events.slots() >= self.room {
             return Ok(());
         }
         self.counts.refused.fetch_add(1, Relaxed);

@@ -63,6 +63,9 @@ pub struct RecognizerNode {
     /// Say in `motion_event` how far from the nearest sample a motion was: off_degrees, pace, worst_bone, worst_degrees.
     #[export]
     deviation: bool,
+    /// Also signal with each frame how far every class has come: `motion_progress`.
+    #[export]
+    progress: bool,
     /// A motion of the same class that ends less than this after the one before it is not signalled, seconds.
     #[export]
     refractory_secs: f64,
@@ -79,7 +82,7 @@ pub struct RecognizerNode {
 
 #[godot_api]
 impl RecognizerNode {
-    /// Any event: a dictionary of phase (`start`, `update`, `repetition`, `cancel`, `end`), class, score, progress, start_secs, stop_secs,
+    /// Any event: a dictionary of phase (`start`, `update`, `repetition`, `progress`, `cancel`, `end`), class, score, progress, start_secs, stop_secs,
     /// reported_secs, wall_secs, actor, motion, sequence, repetitions and period_secs (0 where nothing is counted), off_degrees (-1 where nothing is
     /// compared), pace, worst_bone and worst_degrees.
     #[signal]
@@ -101,6 +104,10 @@ impl RecognizerNode {
     /// A repetition of an activity is complete; the activity continues.
     #[signal]
     fn motion_repeated(name: GString, number: i64);
+
+    /// How far a class has come and how like it is to a sample, both 0 to 1, and its duration so far over that of the sample.
+    #[signal]
+    fn motion_progress(name: GString, progress: f64, score: f64, pace: f64);
 
     /// Problems of the skeleton's or the trackers' poses in the last seconds, one sentence each, the most severe first.
     #[func]
@@ -155,6 +162,7 @@ impl RecognizerNode {
             tentative: self.tentative,
             each_repetition: self.each_repetition,
             deviation: self.deviation,
+            progress: self.progress,
             refractory_secs: self.refractory_secs,
             roles: roles.map_err(|error| format!("roles: {error}"))?,
             // The engine's.
@@ -187,6 +195,10 @@ impl RecognizerNode {
             }
             Phase::Cancel => signals.motion_cancelled().emit(&name),
             Phase::Repetition => signals.motion_repeated().emit(&name, repetitions),
+            Phase::Progress => {
+                let (far, pace) = (event.progress, event.pace.unwrap_or_default());
+                signals.motion_progress().emit(&name, far, event.score, pace);
+            }
             _ => {}
         }
     }
@@ -249,7 +261,7 @@ fn dictionary(name: &GString, event: &Event) -> VarDictionary {
         "repetitions" => repeated.map_or(0, |r| i64::from(r.count)),
         "period_secs" => repeated.map_or(0.0, |r| r.period_secs),
         "off_degrees" => deviation.map_or(-1.0, |d| d.off_degrees),
-        "pace" => deviation.map_or(0.0, |d| d.pace),
+        "pace" => event.pace.unwrap_or(0.0),
         "worst_bone" => deviation.map_or("", |d| d.worst_bone),
         "worst_degrees" => deviation.map_or(0.0, |d| d.worst_degrees),
     }

@@ -43,9 +43,11 @@ impl NamedEvent<'_> {
             line["repetitions"] = repeated.count.into();
             line["period_secs"] = rounded(repeated.period_secs, 3).into();
         }
+        if let Some(pace) = e.pace {
+            line["pace"] = rounded(pace, 3).into();
+        }
         if let Some(deviation) = e.deviation {
             line["off_degrees"] = rounded(deviation.off_degrees, 2).into();
-            line["pace"] = rounded(deviation.pace, 3).into();
             line["worst_bone"] = deviation.worst_bone.into();
             line["worst_degrees"] = rounded(deviation.worst_degrees, 2).into();
         }

@@ -72,6 +72,12 @@ pub struct StreamSettings {
     /// activity. Not available for held signs and the method svrdm.
     #[arg(long)]
     pub deviation: bool,
+    /// Say with each frame how far every class has come
+    ///
+    /// How far (0 to 1), how like to a sample (0 to 1) and at what pace, to be mapped to sound or light: lines of the
+    /// phase progress, and OSC messages /morec/progress/CLASS. Not of the method of 2009.
+    #[arg(long)]
+    pub progress: bool,
     /// Minimum seconds between two events of a class
     #[arg(long = "refractory", value_name = "SECS", default_value = "0")]
     pub refractory_secs: f64,
@@ -85,6 +91,7 @@ impl StreamSettings {
             tentative: self.tentative,
             each_repetition: self.each_repetition,
             deviation: self.deviation,
+            progress: self.progress,
             refractory_secs: self.refractory_secs,
             ..self.recognition.options()
         }

@@ -353,7 +353,7 @@ fn event_fields() -> Vec<String> {
         .flat_map(|(name, _)| match name {
             "span" => vec!["start_secs", "stop_secs"],
             "repetitions" => vec!["repetitions", "period_secs"],
-            "deviation" => vec!["off_degrees", "pace", "worst_bone", "worst_degrees"],
+            "deviation" => vec!["off_degrees", "worst_bone", "worst_degrees"],
             name => vec![name],
         })
         .map(str::to_owned)
@@ -437,8 +437,8 @@ fn the_command_line_and_json_give_the_same_options() {
             .options()
     };
     assert_eq!(parsed(&[]), StreamOptions::default());
-    let all = "--sensitivity 0.5 --performer anyone --tentative --each-repetition --deviation --refractory 2";
-    let json = r#"{"sensitivity": 0.5, "performer": "anyone", "tentative": true, "each_repetition": true, "deviation": true, "refractory_secs": 2}"#;
+    let all = "--sensitivity 0.5 --performer anyone --tentative --each-repetition --deviation --progress --refractory 2";
+    let json = r#"{"sensitivity": 0.5, "performer": "anyone", "tentative": true, "each_repetition": true, "deviation": true, "progress": true, "refractory_secs": 2}"#;
     let words: Vec<&str> = all.split(' ').collect();
     assert_eq!(parsed(&words), StreamOptions::from_json(json).unwrap());
 }

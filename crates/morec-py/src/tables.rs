@@ -83,7 +83,7 @@ pub fn event<'py>(py: Python<'py>, model: &Model, event: &Event) -> PyResult<Bou
     set_repetitions(&row, event.repetitions)?;
     let deviation = event.deviation;
     row.set_item("off_degrees", deviation.map(|d| d.off_degrees))?;
-    row.set_item("pace", deviation.map(|d| d.pace))?;
+    row.set_item("pace", event.pace)?;
     row.set_item("worst_bone", deviation.map(|d| d.worst_bone))?;
     row.set_item("worst_degrees", deviation.map(|d| d.worst_degrees))?;
     Ok(row)

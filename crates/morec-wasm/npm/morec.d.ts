@@ -54,6 +54,11 @@ export interface RecognizerOptions {
   each_repetition?: boolean;
   /** Say how far from the nearest sample each gesture that ends, and each such repetition, was. False by default. */
   deviation?: boolean;
+  /**
+   * Report with each frame how far every class has come: events of the phase `progress`, whose `progress` and `score` are how far and how
+   * like to a sample, both 0 to 1, and whose `motion` is 0. False by default.
+   */
+  progress?: boolean;
   /** A motion of the same class that ends less than this after the one before it is not reported, seconds. 0 by default. */
   refractory_secs?: number;
   /** Points of body parts that the names do not identify: `{ left_hand: "LWrist", hips: "LHip+RHip", neck: null }`. */
@@ -93,10 +98,11 @@ export interface Classification {
 
 export interface MotionEvent extends Detection {
   /** `end` is final; the others say what seems to be under way. */
-  phase: "start" | "update" | "repetition" | "cancel" | "end";
-  /** With `deviation`: the mean angle off the nearest sample, the duration over its, and the bone that is farthest off with its largest angle. */
-  off_degrees?: number;
+  phase: "start" | "update" | "repetition" | "progress" | "cancel" | "end";
+  /** With `deviation`, or of the phase `progress`: the duration over that of the nearest sample, so far. */
   pace?: number;
+  /** With `deviation`: the mean angle off the nearest sample, and the bone that is farthest off with its largest angle. */
+  off_degrees?: number;
   worst_bone?: string;
   worst_degrees?: number;
   /** Number of the motion, shared by its start, updates and end. */

@@ -46,6 +46,8 @@ pub struct EventRow<'a> {
     wall_secs: f64,
     #[serde(flatten)]
     repetitions: Option<Repetitions>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pace: Option<f64>,
     #[serde(flatten)]
     deviation: Option<Deviation>,
 }
@@ -65,6 +67,7 @@ impl<'a> EventRow<'a> {
             reported_secs: event.reported_secs,
             wall_secs: event.wall_secs,
             repetitions: event.repetitions,
+            pace: event.pace,
             deviation: event.deviation,
         }
     }

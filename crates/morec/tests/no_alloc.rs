@@ -105,6 +105,7 @@ fn events_take_no_memory(model: &Arc<morec::templates::TemplateModel>, poses: &[
         tentative: true,
         each_repetition: true,
         deviation: true,
+        progress: true,
         ..EventOptions::default()
     };
     let mut performer = Performer::new(model, PerformerId(0), &options);

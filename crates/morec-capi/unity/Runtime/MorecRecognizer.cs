@@ -27,7 +27,7 @@ namespace Morec
         public double periodSecs;
         /// <summary>With Deviation: mean angle off the nearest sample, degrees; -1 where nothing is compared.</summary>
         public double offDegrees;
-        /// <summary>Duration over the sample's, and the largest angle of the bone that is farthest off.</summary>
+        /// <summary>Duration over the sample's, so far, and the largest angle of the bone that is farthest off.</summary>
         public double pace, worstDegrees;
         /// <summary>Number of that bone: see morec_bone_name.</summary>
         public uint worstBone;
@@ -55,6 +55,8 @@ namespace Morec
         public bool eachRepetition;
         [Tooltip("Say how far from the nearest sample each gesture that ends, and each repetition, was.")]
         public bool deviation;
+        [Tooltip("Say with each frame how far every class has come: onProgress, whose progress and score are how far and how like, 0 to 1.")]
+        public bool progress;
         [Tooltip("A motion of the same class that ends less than this after the one before it is not reported, seconds.")]
         [Min(0)] public float refractorySecs;
         [Tooltip("Final: every motion ends once, and nothing is taken back.")]
@@ -65,6 +67,8 @@ namespace Morec
         public MotionUnityEvent onCancel = new MotionUnityEvent();
         [Tooltip("One more repetition of an activity is over. Only with Each Repetition.")]
         public MotionUnityEvent onRepetition = new MotionUnityEvent();
+        [Tooltip("How far one class has come. Only with Progress.")]
+        public MotionUnityEvent onProgress = new MotionUnityEvent();
 
         /// <summary>Bones of a humanoid in the order of MorecRole.</summary>
         static readonly HumanBodyBones[] Bones =
@@ -96,7 +100,7 @@ namespace Morec
             var options = new StreamOptions
             {
                 leftHanded = true, sensitivity = sensitivity, performer = performer, tentative = tentative,
-                eachRepetition = eachRepetition, deviation = deviation, refractorySecs = refractorySecs,
+                eachRepetition = eachRepetition, deviation = deviation, progress = progress, refractorySecs = refractorySecs,
             };
             try
             {
@@ -162,6 +166,7 @@ namespace Morec
                 case MorecPhase.Update: onUpdate.Invoke(motion); break;
                 case MorecPhase.Cancel: onCancel.Invoke(motion); break;
                 case MorecPhase.Repetition: onRepetition.Invoke(motion); break;
+                case MorecPhase.Progress: onProgress.Invoke(motion); break;
                 case MorecPhase.End: onEnd.Invoke(motion); break;
             }
         }

@@ -21,6 +21,8 @@ namespace Morec
         public bool eachRepetition;
         /// <summary>Say how far from the nearest sample each gesture that ends, and each such repetition, was.</summary>
         public bool deviation;
+        /// <summary>Say with each frame how far every class has come.</summary>
+        public bool progress;
         /// <summary>A motion of the same class that ends less than this after the one before it is not reported, seconds.</summary>
         public double refractorySecs;
 
@@ -29,7 +31,7 @@ namespace Morec
             get
             {
                 var flags = (tentative ? Native.MOREC_TENTATIVE : 0) | (eachRepetition ? Native.MOREC_EACH_REPETITION : 0)
-                    | (deviation ? Native.MOREC_DEVIATION : 0);
+                    | (deviation ? Native.MOREC_DEVIATION : 0) | (progress ? Native.MOREC_PROGRESS : 0);
                 if (performer == Performer.Anyone) flags |= Native.MOREC_PERFORMER_ANYONE;
                 if (performer == Performer.Teacher) flags |= Native.MOREC_PERFORMER_TEACHER;
                 return (uint)flags;

@@ -196,6 +196,7 @@ namespace Morec
         public const int MOREC_PERFORMER_TEACHER = 4;
         public const int MOREC_EACH_REPETITION = 8;
         public const int MOREC_DEVIATION = 16;
+        public const int MOREC_PROGRESS = 32;
         public const int MOREC_ROLE_COUNT = 18;
         public const int MOREC_POINT_COUNT = 85;
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]

@@ -264,6 +264,33 @@ fn a_motion_runs_the_command_of_its_class_and_no_shell() {
     );
 }
 
+#[test]
+fn progress_is_lines_of_every_class_and_no_lines_in_the_terminal() {
+    let (folder, takes) = crate::db::studio(3);
+    let train = ["train", "--clips", "clips", "--labels", "labels.tsv", "-o"];
+    folder.morec(&[&train[..], &["i.index"]].concat()).ok();
+    let listen = format!("clip://clips/{}.bvh?speed=0", takes[0].clip.name);
+    let live = ["live", "i.index", "--listen", &listen];
+    let plain = folder.morec(&live).ok();
+    let follow = [&live[..], &["--progress"]].concat();
+    let lines = folder.morec(&[&follow[..], &["--emit", "json:-"]].concat());
+    let of_wave: Vec<serde_json::Value> = (lines.ok().lines())
+        .map(|line| serde_json::from_str(line).unwrap())
+        .filter(|line: &serde_json::Value| line["phase"] == "progress" && line["class"] == "wave")
+        .collect();
+    assert!(of_wave.len() > 60, "{}", of_wave.len());
+    let most = of_wave
+        .iter()
+        .map(|line| line["progress"].as_f64().unwrap());
+    assert!(most.fold(0.0, f64::max) > 0.9);
+    assert!(
+        of_wave
+            .iter()
+            .all(|line| line["pace"].is_number() && line["motion"] == 0)
+    );
+    assert_eq!(folder.morec(&follow).ok(), plain);
+}
+
 /// Whoever reads the record later cannot know what it lacks.
 #[test]
 #[cfg(target_os = "linux")]

@@ -2,18 +2,22 @@
 
 use std::net::UdpSocket;
 
+use morec::live::Phase;
+
 use super::packet::{Arg, write_message};
 
 use crate::error::Context;
 use crate::{Address, LiveError, NamedEvent, Sink};
 
-/// Sends two messages an event, each in a packet of its own:
+/// Sends two messages an event, each in a packet of its own; of the phase progress one:
 ///
 /// - `/morec/event s s f f f i`: class, phase (start, update, cancel, end), score, start and stop (seconds of the
 ///   stream), actor; after these, for who wants more: progress (f), motion number and sequence number (i), of an activity
 ///   its repetitions so far (i) and the seconds of one (f), 0 where nothing is counted.
 /// - `/morec/deviation s i i f f s f`, where the event has one: class, performer, motion, degrees off the nearest sample, pace, worst bone and its
 ///   degrees;
+/// - `/morec/progress/CLASS f f f i`, of the phase progress alone: how far (0 to 1), how like (0 to 1), pace, performer. What OSC does not
+///   allow in an address is `_` in the class;
 /// - `/VMC/Thru/morec/event s f`, for ends only: class and score; it passes through a chain of VMC programs.
 pub struct OscSink {
     socket: UdpSocket,
@@ -39,6 +43,19 @@ impl OscSink {
         })
     }
 
+    fn send_progress(&mut self, event: &NamedEvent<'_>) -> std::io::Result<()> {
+        let e = event.event;
+        let reserved = |c: char| c.is_whitespace() || c.is_control() || " #*,/?[]{}".contains(c);
+        let address = format!("/morec/progress/{}", event.class.replace(reserved, "_"));
+        let args = [
+            Arg::Float(e.progress as f32),
+            Arg::Float(e.score as f32),
+            Arg::Float(e.pace.unwrap_or_default() as f32),
+            Arg::Int(e.actor.0.into()),
+        ];
+        self.send(&address, &args)
+    }
+
     fn send(&mut self, address: &str, args: &[Arg]) -> std::io::Result<()> {
         self.packet.clear();
         write_message(&mut self.packet, address, args);
@@ -55,6 +72,9 @@ impl OscSink {
 impl Sink for OscSink {
     fn emit(&mut self, event: &NamedEvent<'_>) -> std::io::Result<()> {
         let e = event.event;
+        if e.phase == Phase::Progress {
+            return self.send_progress(event);
+        }
         let args = [
             Arg::Text(event.class),
             Arg::Text(e.phase.name()),
@@ -85,5 +105,56 @@ impl Sink for OscSink {
             self.send("/VMC/Thru/morec/event", &[args[0], args[2]])?;
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::osc::packet::read;
+    use morec::TimeSpan;
+    use morec::classes::ClassId;
+    use morec::live::{Event, PerformerId};
+
+    #[test]
+    fn progress_is_one_message_with_the_class_in_its_address() {
+        let here = UdpSocket::bind("127.0.0.1:0").unwrap();
+        let address = format!("osc://{}", here.local_addr().unwrap());
+        let mut sink = OscSink::open(&address.parse().unwrap()).unwrap();
+        let event = Event {
+            phase: Phase::Progress,
+            motion: 0,
+            sequence: 1,
+            actor: PerformerId(2),
+            class: ClassId(0),
+            score: 0.5,
+            progress: 0.25,
+            span: TimeSpan::new(1.0, 2.0),
+            reported_secs: 2.0,
+            wall_secs: 0.0,
+            repetitions: None,
+            pace: Some(1.5),
+            deviation: None,
+        };
+        let said = NamedEvent {
+            event: &event,
+            class: "wave left/high",
+            source: "clip",
+        };
+        sink.emit(&said).unwrap();
+        let mut bytes = [0; 512];
+        let count = here.recv(&mut bytes).unwrap();
+        let mut messages = Vec::new();
+        read(&bytes[..count], &mut |message| {
+            let args: Vec<Option<f64>> = message.args().map(|arg| arg.number()).collect();
+            messages.push((message.address.to_owned(), args));
+        });
+        let expected = [0.25, 0.5, 1.5, 2.0].map(Some).to_vec();
+        assert_eq!(
+            messages,
+            [("/morec/progress/wave_left_high".to_owned(), expected)]
+        );
+        here.set_nonblocking(true).unwrap();
+        assert!(here.recv(&mut bytes).is_err(), "only one message");
     }
 }

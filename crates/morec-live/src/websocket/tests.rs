@@ -19,6 +19,7 @@ fn event(sequence: u64) -> Event {
         span: TimeSpan::new(1.0, 2.0),
         reported_secs: 2.1,
         repetitions: None,
+        pace: None,
         deviation: None,
         wall_secs: 1.0e9,
     }

@@ -46,6 +46,9 @@ class listen:
         Also an event of the phase repetition, with its start and stop, for each repetition of an activity.
     deviation : bool
         Say how far from the nearest sample each gesture that ends, and each such repetition, was.
+    progress : bool
+        Also how far every class has come, with each frame: events of the phase progress, whose progress and score are how far and how
+        like to a sample, both 0 to 1. Of templates only.
     refractory_secs : float
         Least time between two reports of the same class, seconds.
     timeout : float, optional
@@ -54,10 +57,11 @@ class listen:
     Yields
     ------
     dict
-        phase ("end", or a tentative one), class, start_secs, stop_secs, score, progress, reported_secs, actor, motion,
+        phase ("end", or one that was asked for), class, start_secs, stop_secs, score, progress, reported_secs, actor, motion,
         sequence, wall_secs (seconds since 1970 at the arrival of the frame that settled it), and of an activity that repeats
         repetitions so far and period_secs (None where nothing is counted). With `deviation` also off_degrees (mean angle
-        off the nearest sample), pace (duration over its), worst_bone and worst_degrees; None where nothing is compared.
+        off the nearest sample), worst_bone and worst_degrees; None where nothing is compared. pace, with `deviation` or
+        `progress`: its duration over that of the nearest sample, so far.
 
         score: Probability that the detection is right, 0 to 1. The lowest accepted score is 0.05 to 0.44, depending on the index.
         For held poses and indexes without calibration (svrdm, older files) it is the similarity to a sample instead. Of
@@ -89,6 +93,7 @@ class listen:
         tentative: bool = False,
         each_repetition: bool = False,
         deviation: bool = False,
+        progress: bool = False,
         refractory_secs: float = 0.0,
         timeout: float | None = None,
     ) -> None:
@@ -99,6 +104,7 @@ class listen:
             "tentative": tentative,
             "each_repetition": each_repetition,
             "deviation": deviation,
+            "progress": progress,
             "refractory_secs": refractory_secs,
         }
         self._session = _morec.LiveSession(address, index, actors, mirror, options)

@@ -212,6 +212,7 @@ class Index:
         tentative: bool = False,
         each_repetition: bool = False,
         deviation: bool = False,
+        progress: bool = False,
         refractory_secs: float = 0.0,
     ) -> Recognizer:
         """A recogniser for a live stream of joint positions.
@@ -235,6 +236,9 @@ class Index:
             Also an event of the phase repetition, with its start and stop, for each repetition of an activity.
         deviation : bool
             Say how far from the nearest sample each gesture that ends, and each such repetition, was.
+            progress : bool
+                Also how far every class has come, with each frame: events of the phase progress, whose progress and score are how far and how
+                like to a sample, both 0 to 1. Of templates only.
         refractory_secs : float
             Least time between two reports of the same class, seconds.
 

@@ -8,7 +8,7 @@ use super::status::SessionCounters;
 use super::waker::Waker;
 use super::{Event, EventOptions, OverflowPolicy};
 
-/// Events that one frame can give at most, with room to spare: what is kept while readers are full.
+/// Events that one frame can give at most, with room to spare, beside progress: what is kept while readers are full.
 const PENDING: usize = 256;
 
 #[derive(Debug, Clone)]
@@ -81,14 +81,16 @@ pub(super) struct EventBroadcast {
 }
 
 impl EventBroadcast {
-    /// Outlets and their readers.
+    /// Outlets and their readers, for a model of so many classes.
     pub(super) fn new(
         options: &WorkerOptions,
+        classes: usize,
         cells: &Arc<SessionCounters>,
         stop: &Arc<AtomicBool>,
     ) -> (Self, Vec<EventReader>) {
+        let pending = PENDING + if options.events.progress { classes } else { 0 };
         let pair = || {
-            let (events, taken) = rtrb::RingBuffer::new(options.capacity.max(PENDING));
+            let (events, taken) = rtrb::RingBuffer::new(options.capacity.max(pending));
             let waker = Arc::new(Waker::default());
             (
                 EventSender {
@@ -104,7 +106,7 @@ impl EventBroadcast {
         let (broadcast, readers) = (0..options.readers.max(1)).map(|_| pair()).unzip();
         let broadcast = Self {
             broadcast,
-            pending: Vec::with_capacity(PENDING),
+            pending: Vec::with_capacity(pending),
             cells: cells.clone(),
             stop: stop.clone(),
             overload: options.overload,
@@ -177,7 +179,7 @@ mod tests {
             capacity: PENDING,
         };
         let (cells, stop) = (Arc::new(SessionCounters::default()), Arc::default());
-        let (mut broadcast, mut readers) = EventBroadcast::new(&options, &cells, &stop);
+        let (mut broadcast, mut readers) = EventBroadcast::new(&options, 1, &cells, &stop);
         let event = Event {
             phase: Phase::End,
             motion: 1,
@@ -190,6 +192,7 @@ mod tests {
             reported_secs: 1.0,
             wall_secs: 0.0,
             repetitions: None,
+            pace: None,
             deviation: None,
         };
         (0..PENDING + 3).for_each(|_| broadcast.keep(&[event]));

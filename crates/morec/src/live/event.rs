@@ -17,6 +17,9 @@ pub enum Phase {
     /// One more repetition of an activity is over, from the event's start to its stop; its number is the count of `repetitions`. What ends
     /// has had as many as it counts. Only if [asked for](EventOptions::each_repetition).
     Repetition,
+    /// How far one class has come, of every class with each frame that completes a row. Its motion is 0. Only if
+    /// [asked for](EventOptions::progress).
+    Progress,
     /// It came to nothing. Ends what a start began.
     Cancel,
     /// It has happened. Final: nothing that ended is taken back, and every motion ends once.
@@ -30,6 +33,7 @@ impl Phase {
             Phase::Start => "start",
             Phase::Update => "update",
             Phase::Repetition => "repetition",
+            Phase::Progress => "progress",
             Phase::Cancel => "cancel",
             Phase::End => "end",
         }
@@ -41,7 +45,7 @@ impl Phase {
 pub struct Event {
     /// Phase of the motion.
     pub phase: Phase,
-    /// Number of the motion, from 1, for each performer: its start, updates and end share it.
+    /// Number of the motion, from 1, for each performer: its start, updates and end share it. 0 of the phase progress.
     pub motion: u64,
     /// Number of the event in its session or stream, from 1, without gaps as long as nothing is lost on the way.
     pub sequence: u64,
@@ -63,6 +67,8 @@ pub struct Event {
     pub wall_secs: f64,
     /// Of an activity that repeats, so far.
     pub repetitions: Option<Repetitions>,
+    /// Its duration over that of the nearest sample, with `deviation`; of the phase progress, so far.
+    pub pace: Option<f64>,
     /// How far it was from the nearest sample, of what ends and of repetitions; only if [asked for](EventOptions::deviation), and not of held
     /// poses, activities as a whole, and the method of 2009.
     pub deviation: Option<Deviation>,
@@ -95,6 +101,8 @@ pub struct EventOptions {
     pub each_repetition: bool,
     /// Compare each gesture that ends, and each repetition that is an event, with the nearest sample of its class ([`Event::deviation`]).
     pub deviation: bool,
+    /// Report how far every class has come with each frame ([`Phase::Progress`]).
+    pub progress: bool,
     /// A motion of the same class that ends less than this after the one before it is not reported (but counted), seconds.
     /// At 0 the decoder's own rule holds: motions of one performer follow each other and never share more than two
     /// ticks, so one performance is one event.

@@ -25,9 +25,9 @@ impl EventBuffer {
         }
     }
 
-    /// Takes the memory that pushes need.
-    pub(super) fn reserve(&mut self) {
-        self.events.reserve(ROOM);
+    /// Takes the memory that pushes need, of which `more` events beyond the usual ones.
+    pub(super) fn reserve(&mut self, more: usize) {
+        self.events.reserve(ROOM + more);
     }
 
     /// Begins another push: the events of the last one are gone.
@@ -49,6 +49,7 @@ impl EventBuffer {
         let ended = |event: &&mut Event| matches!(event.phase, Phase::End | Phase::Repetition);
         for event in self.events.iter_mut().filter(ended) {
             event.deviation = measured(event);
+            event.pace = event.deviation.map(|deviation| deviation.pace);
         }
     }
 
@@ -77,7 +78,16 @@ impl EventBuffer {
             reported_secs,
             wall_secs: self.wall_secs,
             repetitions: what.repetitions,
+            pace: None,
             deviation: None,
         });
+    }
+
+    /// Adds how far a class has come, which is no motion yet.
+    pub(super) fn add_progress(&mut self, of: EarlyDetection, pace: f64, reported_secs: f64) {
+        self.add(Phase::Progress, 0, of, reported_secs);
+        if let Some(event) = self.events.last_mut() {
+            event.pace = Some(pace);
+        }
     }
 }

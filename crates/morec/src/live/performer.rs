@@ -31,6 +31,8 @@ pub struct Performer {
     early: EarlyTracker,
     /// See [`EventOptions::deviation`].
     compares: bool,
+    /// See [`EventOptions::progress`].
+    follows: bool,
     tracker: EventTracker,
     out: EventBuffer,
     unusable: u64,
@@ -66,6 +68,7 @@ impl Performer {
             recognizer: None,
             early: EarlyTracker::new(options),
             compares: options.deviation,
+            follows: options.progress,
             out: EventBuffer::new(actor),
             unusable: 0,
             dropped: 0,
@@ -77,7 +80,8 @@ impl Performer {
     /// Begins with a new skeleton; the events of the end of what went on with the old one.
     pub fn set_rig(&mut self, rig: &Arc<Rig>) -> &[Event] {
         self.finish();
-        self.out.reserve();
+        let classes = self.recognizers.model().classes().len();
+        self.out.reserve(if self.follows { classes } else { 0 });
         let rig = match self.recognizers.model().roles_of(&rig.skeleton, &rig.roles) {
             Cow::Borrowed(_) => rig.clone(),
             Cow::Owned(roles) => Arc::new(Rig {
@@ -109,6 +113,9 @@ impl Performer {
         let mut made = Box::new(self.recognizers.recognizer(bones)?);
         if self.compares {
             made.measure_deviations();
+        }
+        if self.follows {
+            made.follow_progress();
         }
         Ok(made)
     }
@@ -167,6 +174,10 @@ impl Performer {
         if self.early.is_wanted() {
             let (early, after_secs) = (recognizer.early_detection(), self.tracker.last_stop_secs());
             self.early.look(early, after_secs, time_secs, &mut self.out);
+        }
+        if self.follows {
+            let out = &mut self.out;
+            recognizer.progress(|of, pace| out.add_progress(of, pace, time_secs));
         }
         self.compare();
         self.out.events()

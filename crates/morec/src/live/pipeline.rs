@@ -49,6 +49,13 @@ pub(super) trait Pipeline: fmt::Debug + Send + Sync {
     /// Sets the limits of [`early_detection`](Self::early_detection).
     fn set_early(&mut self, _params: EarlyDetectionParams) {}
 
+    /// Follows progress from now on, for [`progress`](Self::progress). Allocates.
+    fn follow_progress(&mut self) {}
+
+    /// Gives what is nearest of each class at the newest tick, with its pace, if that is another than when it was last asked; of methods that
+    /// can tell.
+    fn progress(&mut self, _each: &mut dyn FnMut(EarlyDetection, f64)) {}
+
     /// Remembers rows from now on, for [`deviation`](Self::deviation). Allocates.
     fn measure_deviations(&mut self) {}
 

@@ -131,6 +131,18 @@ impl Recognizer {
         self.pipeline.early_detection()
     }
 
+    /// Follows the progress of all classes from now on, so that [`progress`](Self::progress) can be asked for. Allocates.
+    pub fn follow_progress(&mut self) {
+        self.pipeline.follow_progress();
+    }
+
+    /// Gives `each` how far every class has come after the last push, in the order of classes, with its pace (its duration so far over that of
+    /// the sample so far): nothing if no tick was completed since it was last asked. Score, progress and pace are 0 for classes that nothing is
+    /// like. Templates only. No allocation.
+    pub fn progress(&mut self, mut each: impl FnMut(EarlyDetection, f64)) {
+        self.pipeline.progress(&mut each);
+    }
+
     /// Remembers motion from now on, so that [`deviation`](Self::deviation) can be asked for. Allocates.
     pub fn measure_deviations(&mut self) {
         self.pipeline.measure_deviations();

@@ -180,7 +180,7 @@ impl SessionCounters {
             Phase::Start | Phase::Update => cells
                 .early
                 .store(pack(event.class, event.progress), Relaxed),
-            Phase::Repetition => {}
+            Phase::Repetition | Phase::Progress => {}
             Phase::Cancel => cells.early.store(0, Relaxed),
             Phase::End => {
                 cells.early.store(0, Relaxed);

@@ -28,6 +28,9 @@ pub struct StreamOptions {
     pub each_repetition: bool,
     /// Say how far each gesture that ends, and each repetition that is an event, was from the nearest sample: angle, pace, worst bone.
     pub deviation: bool,
+    /// Report with each frame how far every class has come, how like it is to a sample and at what pace: events of the phase progress. Of
+    /// templates only.
+    pub progress: bool,
     /// A motion of the same class that ends less than this after the one before it is not reported, seconds.
     pub refractory_secs: f64,
     /// Roles of joints or points whose names do not tell them.
@@ -44,6 +47,7 @@ impl Default for StreamOptions {
             tentative: false,
             each_repetition: false,
             deviation: false,
+            progress: false,
             refractory_secs: 0.0,
             roles: Mapping::default(),
             up: SignedAxis::Y,
@@ -115,6 +119,7 @@ impl StreamOptions {
             tentative: self.tentative,
             each_repetition: self.each_repetition,
             deviation: self.deviation,
+            progress: self.progress,
             refractory_secs: self.refractory_secs,
         })
     }

@@ -27,6 +27,15 @@ pub(super) struct TemplatePipeline {
     seen: PartialMatchTracker,
     /// Only where performances are compared with samples.
     memory: Option<Box<PerformanceMemory>>,
+    /// Only where progress is followed.
+    progress: Option<Box<ClassProgress>>,
+}
+
+/// The nearest beginning of each class at the last tick that was asked about.
+#[derive(Debug, Clone)]
+struct ClassProgress {
+    ticks: usize,
+    nearest: Vec<Option<OngoingMatch>>,
 }
 
 /// Rows that wait until there are as many as are matched at once.
@@ -103,6 +112,7 @@ impl TemplatePipeline {
             early: EarlyDetectionParams::default(),
             seen: PartialMatchTracker::default(),
             memory: None,
+            progress: None,
         }
     }
 
@@ -147,6 +157,42 @@ impl TemplatePipeline {
         }
         *count = 0;
         found.reported_secs = now_secs;
+    }
+
+    /// The source's clock at a tick.
+    fn secs_at(&self, ticks: usize) -> f64 {
+        self.features.origin_secs() + ticks as f64 / self.model.features.tick_hz()
+    }
+
+    /// What is under way at a tick, on the source's clock.
+    fn at_tick(&self, underway: &OngoingMatch, ticks: usize) -> EarlyDetection {
+        let farthest = self.early.reach * self.engine.threshold();
+        let (tick_secs, seen_secs) = (1.0 / self.model.features.tick_hz(), self.secs_at(ticks));
+        EarlyDetection {
+            class: underway.class,
+            score: 1.0 - f64::from(underway.distance / farthest),
+            progress: f64::from(underway.progress),
+            start_secs: seen_secs - (underway.age + 1) as f64 * tick_secs,
+            seen_secs,
+            goes_on: underway.goes_on,
+            repetitions: underway.repetitions,
+            whole: (underway.whole).map(|(count, ticks)| (count, seen_secs - ticks * tick_secs)),
+        }
+    }
+
+    /// Nothing of a class at a tick.
+    fn nothing_of(&self, class: ClassId, ticks: usize) -> EarlyDetection {
+        let seen_secs = self.secs_at(ticks);
+        EarlyDetection {
+            class,
+            score: 0.0,
+            progress: 0.0,
+            start_secs: seen_secs,
+            seen_secs,
+            goes_on: false,
+            repetitions: None,
+            whole: None,
+        }
     }
 
     fn steps(&self) -> Steps {
@@ -209,19 +255,32 @@ impl Pipeline for TemplatePipeline {
             .seen
             .underway
             .filter(|_| self.seen.streak >= self.early.streak)?;
-        let tick_secs = 1.0 / self.model.features.tick_hz();
-        let seen_secs = self.features.origin_secs() + ticks as f64 * tick_secs;
-        Some(EarlyDetection {
-            class: underway.class,
-            score: 1.0
-                - f64::from(underway.distance / (self.early.reach * self.engine.threshold())),
-            progress: f64::from(underway.progress),
-            start_secs: seen_secs - (underway.age + 1) as f64 * tick_secs,
-            seen_secs,
-            goes_on: underway.goes_on,
-            repetitions: underway.repetitions,
-            whole: (underway.whole).map(|(count, ticks)| (count, seen_secs - ticks * tick_secs)),
-        })
+        Some(self.at_tick(&underway, ticks))
+    }
+
+    fn follow_progress(&mut self) {
+        self.progress = Some(Box::new(ClassProgress {
+            ticks: 0,
+            nearest: vec![None; self.model.classes.len()],
+        }));
+    }
+
+    fn progress(&mut self, each: &mut dyn FnMut(EarlyDetection, f64)) {
+        let ticks = self.engine.ticks();
+        let Some(mut progress) = self.progress.take() else {
+            return;
+        };
+        if ticks != progress.ticks {
+            progress.ticks = ticks;
+            self.engine.progress(&self.early, &mut progress.nearest);
+            for (class, nearest) in (0..).map(ClassId).zip(&progress.nearest) {
+                let alike = nearest.map(|n| (self.at_tick(&n, ticks), f64::from(n.pace)));
+                let alike = alike.filter(|(now, _)| now.score > 0.0);
+                let (now, pace) = alike.unwrap_or_else(|| (self.nothing_of(class, ticks), 0.0));
+                each(now, pace);
+            }
+        }
+        self.progress = Some(progress);
     }
 
     fn admits_strangers(&self) -> bool {

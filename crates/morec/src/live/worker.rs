@@ -50,7 +50,8 @@ impl StreamWorker {
         cells: &Arc<SessionCounters>,
         stop: &Arc<AtomicBool>,
     ) -> (Self, Vec<EventReader>) {
-        let (broadcast, readers) = EventBroadcast::new(options, cells, stop);
+        let (broadcast, readers) =
+            EventBroadcast::new(options, cache.model().classes().len(), cells, stop);
         let performer = |i| Performer::sharing(cache, PerformerId(i as u16), &options.events);
         let worker = Self {
             feed,

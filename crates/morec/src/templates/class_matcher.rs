@@ -139,36 +139,52 @@ impl ClassMatcher {
         self.negative
     }
 
+    /// The nearest part of each template from its beginning on, at the last tick, which must be looked at.
+    fn beginnings(&self, params: &EarlyDetectionParams) -> impl Iterator<Item = OngoingMatch> {
+        let templates = self.template_classes.iter().enumerate();
+        templates.filter_map(|(template, class)| {
+            let length = self.matcher.bank().template_len(template);
+            let found = self.matcher.partial(template, params.least_rows(length))?;
+            Some(OngoingMatch {
+                class: *class,
+                distance: found.distance,
+                age: found.age,
+                progress: found.rows as f32 / length as f32,
+                pace: (found.age + 1) as f32 / found.rows as f32,
+                goes_on: false,
+                repetitions: None,
+                whole: None,
+            })
+        })
+    }
+
+    /// Puts the nearest beginning of each class at the last tick, which must be looked at, into the class's place in `nearest`; classes without
+    /// a match keep what is there. O(template rows), no allocation.
+    pub fn progress(&self, params: &EarlyDetectionParams, nearest: &mut [Option<OngoingMatch>]) {
+        for found in self.beginnings(params) {
+            let best = &mut nearest[found.class.index()];
+            if best.is_none_or(|best| found.distance < best.distance) {
+                *best = Some(found);
+            }
+        }
+    }
+
     /// The class whose beginning is nearest at the last tick, which must be looked at, if one is within the bounds of `params` under this threshold.
     /// O(template rows), no allocation; changes nothing.
     pub fn underway(&self, params: &EarlyDetectionParams, threshold: f32) -> Option<OngoingMatch> {
         let (mut best, mut other) = (None::<OngoingMatch>, FAR);
-        for (template, class) in self.template_classes.iter().enumerate() {
-            let length = self.matcher.bank().template_len(template);
-            let Some(found) = self.matcher.partial(template, params.least_rows(length)) else {
-                continue;
-            };
-            let progress = found.rows as f32 / length as f32;
-            let new = OngoingMatch {
-                class: *class,
-                distance: found.distance,
-                age: found.age,
-                progress,
-                goes_on: false,
-                repetitions: None,
-                whole: None,
-            };
+        for found in self.beginnings(params) {
             match best {
                 Some(old) if found.distance >= old.distance => {
-                    if old.class != *class {
+                    if old.class != found.class {
                         other = other.min(found.distance);
                     }
                 }
                 old => {
-                    if let Some(old) = old.filter(|old| old.class != *class) {
+                    if let Some(old) = old.filter(|old| old.class != found.class) {
                         other = other.min(old.distance);
                     }
-                    best = Some(new);
+                    best = Some(found);
                 }
             }
         }

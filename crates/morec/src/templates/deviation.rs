@@ -53,7 +53,8 @@ pub struct BoneDeviation {
 pub struct Deviation {
     /// Mean angle between its bones and the nearest sample's, degrees; 0 if it is the sample.
     pub off_degrees: f64,
-    /// Its duration over the sample's.
+    /// Its duration over the sample's, which an event has of its own.
+    #[serde(skip)]
     pub pace: f64,
     /// Name of the bone that is farthest off.
     pub worst_bone: &'static str,

@@ -57,6 +57,8 @@ pub struct OngoingMatch {
     pub age: usize,
     /// Share of the sample that has been seen, 0 to 1.
     pub progress: f32,
+    /// Its duration so far over that of the sample so far.
+    pub pace: f32,
     /// True of an activity: other motions come and go while it does.
     pub goes_on: bool,
     /// Of an activity that repeats, so far.

@@ -304,6 +304,21 @@ impl TemplateEngine {
         }
     }
 
+    /// Puts what is nearest of each class at the last tick into the class's place in `nearest`: the beginning of a gesture, a pose that is held, an
+    /// activity that goes on. O(template rows), no allocation; changes nothing else. Nothing on matches from elsewhere.
+    pub fn progress(&self, params: &EarlyDetectionParams, nearest: &mut [Option<OngoingMatch>]) {
+        let farthest = params.reach * self.threshold;
+        nearest.fill(None);
+        if let Matches::Computed(matcher) = &self.matches {
+            matcher.progress(params, nearest);
+        }
+        let held = self.held.as_ref().and_then(|held| held.underway(farthest));
+        let activity = (self.activities.as_ref()).and_then(|a| a.underway(farthest));
+        for found in held.into_iter().chain(activity) {
+            nearest[found.class.index()] = Some(found);
+        }
+    }
+
     /// Distances at or above this are never reported.
     pub fn threshold(&self) -> f32 {
         self.threshold

@@ -181,6 +181,7 @@ impl HoldDetector {
             distance: (hold.share() / 2.0) as f32 * farthest,
             // It ends when it is left, whenever that is.
             progress: 0.5,
+            pace: 1.0,
             age,
             goes_on: false,
             repetitions: None,

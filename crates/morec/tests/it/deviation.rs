@@ -143,6 +143,7 @@ fn an_index_without_repetitions_compares_none_and_recognises_the_same() {
     assert!(without.iter().all(|e| e.deviation.is_none()));
     let plain = |e: &Event| Event {
         deviation: None,
+        pace: None,
         ..*e
     };
     assert_eq!(with.iter().map(plain).collect::<Vec<_>>(), without);

@@ -27,6 +27,7 @@ mod parameters;
 mod performer_stream;
 mod pose_golden;
 mod positions;
+mod progress;
 mod rows;
 mod sensitivity;
 mod session;

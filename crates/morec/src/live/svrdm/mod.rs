@@ -60,7 +60,7 @@ pub(super) fn start(
     spawn: &mut Spawn<'_>,
 ) -> Result<Vec<EventReader>, SessionError> {
     let scoring = SegmentScoring::new(model).map_err(|error| SessionError::Start(error.into()))?;
-    let (broadcast, readers) = EventBroadcast::new(options, shared.cells, shared.stop);
+    let (broadcast, readers) = EventBroadcast::new(options, 0, shared.cells, shared.stop);
     let tracking = Tracking::new(model, &scoring, options, broadcast, shared.cells);
     let [segments, features, classes, scores, last] =
         std::array::from_fn(|_| Arc::new(Waker::default()));

@@ -137,6 +137,7 @@ impl ActivityDetector {
             distance: (run.share() / 2.0) as f32 * farthest,
             // It ends when it is left, whenever that is.
             progress: 0.5,
+            pace: 1.0,
             age: self.ticks - 1 - run.first * STEP_TICKS,
             goes_on: true,
             repetitions: self.counter.repetitions(undecided),
