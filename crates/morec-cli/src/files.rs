@@ -121,7 +121,19 @@ pub fn open(path: &Path, args: &ReadArgs) -> Result<ClipFile> {
 
 /// [`open`], for the roles of a mapping file.
 pub fn open_with(path: &Path, args: &ReadArgs, mapping: Option<&Mapping>) -> Result<ClipFile> {
-    let reader = args.reader_with(mapping.cloned());
+    open_by(path, &args.reader_with(mapping.cloned()))
+}
+
+/// [`open`], of points in two dimensions too.
+pub fn open_planar(path: &Path, args: &ReadArgs) -> Result<ClipFile> {
+    let planar = FileReader {
+        planar: true,
+        ..args.reader()
+    };
+    open_by(path, &planar)
+}
+
+fn open_by(path: &Path, reader: &FileReader) -> Result<ClipFile> {
     let (file, _) = split_choice(path);
     if path != Path::new("-") && is_large(&file) {
         // Not held as a whole, if its format allows it.

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use anyhow::{Result, bail};
 use morec::labels::{ClipLength, Extent, Labels, names_of_clip};
 
-use crate::files::{ReadArgs, expand, open};
+use crate::files::{ReadArgs, expand, open_planar};
 use crate::progress::SlowProgress;
 
 /// Rate and length of every clip in `paths`, by name. What was repaired in them is for `morec inspect` to say.
@@ -15,7 +15,7 @@ pub fn lengths(paths: &[PathBuf], read: &ReadArgs) -> Result<BTreeMap<String, Cl
     let mut progress = SlowProgress::new(files.len(), "reading clips");
     let mut lengths = BTreeMap::new();
     for file in files {
-        for clip in open(&file, read)?.clips {
+        for clip in open_planar(&file, read)?.clips {
             let length = ClipLength::from(&clip);
             if lengths.insert(clip.name.clone(), length).is_some() {
                 bail!(

@@ -37,6 +37,8 @@ pub struct FileReader {
     pub limits: Limits,
     /// Unit, up axis and roles, where they are not to be inferred.
     pub import: ImportOptions,
+    /// Read points in two dimensions, all in one plane, in place of refusing them; so are those that custom roles are for.
+    pub planar: bool,
 }
 
 /// Clips of a file as it holds them: in its units and axes.
@@ -186,7 +188,8 @@ impl FileReader {
                     name: &stem,
                     rate_hz: self.rate_hz,
                     positions: self.positions,
-                    planar: self.import.mapping.as_ref().is_some_and(Mapping::is_custom),
+                    planar: self.planar
+                        || self.import.mapping.as_ref().is_some_and(Mapping::is_custom),
                     beside: &|name| around.file(path, name),
                     limits: &self.limits,
                 };

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use super::builder::{self, ClipBuilder};
 use super::descriptor::FormatDescriptor;
 use super::npy::{self, Array};
-use super::points::{BODY_OF_THESE, Point, UNSEEN, WITH_HANDS_AND_FACE, check_size};
+use super::points::{BODY_OF_THESE, IN_A_PICTURE, Point, UNSEEN, WITH_HANDS_AND_FACE, check_size};
 use super::timing::{Clock, Stamps, TimedPoints};
 use super::{Limits, Loaded, ParseError, Place, Warning, container};
 use crate::clip::Joint;
@@ -231,10 +231,7 @@ impl PointArray {
             }
             [frames, points, 2] if planar => shape(frames, 1, points, 2),
             [.., points, 2] if points > 2 => {
-                return Err(refuse(
-                    array,
-                    "x and y alone: two dimensions are not enough",
-                ));
+                return Err(refuse(array, IN_A_PICTURE));
             }
             [frames, numbers] => match known(numbers) {
                 Some(points) => shape(frames, 1, points, 3),

@@ -38,6 +38,16 @@ fn infer_up(clip: &Clip, body: &BodyMeasures, notes: &mut Vec<String>) -> Signed
         if let Some(up) = along(&body.head_over_shoulders) {
             return up;
         }
+        if is_flat(clip) {
+            notes.push(
+                "points in two dimensions: the picture is taken for the floor, seen from above"
+                    .to_owned(),
+            );
+            return SignedAxis {
+                axis: Axis::Z,
+                negative: false,
+            };
+        }
         if let Some(up) = floor(clip) {
             notes.push(format!(
                 "the up axis is unknown, because no head is above feet; {up} is used, because all points are above 0 along it \
@@ -171,6 +181,12 @@ fn floor(clip: &Clip) -> Option<SignedAxis> {
         axis,
         negative: false,
     })
+}
+
+/// True of points in a picture, whose z is 0.
+fn is_flat(clip: &Clip) -> bool {
+    let mut positions = clip.tracks.iter().flat_map(|track| &track.positions);
+    !clip.has_rotations() && positions.all(|p| p.z == 0.0 || p.z.is_nan())
 }
 
 /// Turns the whole clip so that `up` becomes Y: only what is in the world's frame changes, that is, the roots.

@@ -16,7 +16,7 @@ use morec_live::vmc::Bundling;
 use morec_ops::RecognizeSettings;
 
 use super::send::bundling;
-use crate::files::{ReadArgs, expand, mapping, open, rate, read, say_doubts};
+use crate::files::{ReadArgs, expand, mapping, open_planar, open_with, rate, read, say_doubts};
 use crate::live::layout::LayoutArg;
 use crate::live::network::NetworkArgs;
 use crate::live::wire::recognise_over_vmc;
@@ -222,7 +222,11 @@ fn recognize_file(
     stats: &mut Stats,
 ) -> Result<Vec<FoundInClip>> {
     let shown = || path.display().to_string();
-    let opened = stats.reading(|| open(path, &args.read))?;
+    let is_custom = index.roles.keys().any(|role| role.is_custom());
+    let opened = stats.reading(|| match is_custom {
+        true => open_planar(path, &args.read),
+        false => open_with(path, &args.read, options.mapping.as_ref()),
+    })?;
     let mut all = Vec::new();
     let takes = opened.into_takes(options).with_context(shown)?;
     say_doubts(path, &takes);

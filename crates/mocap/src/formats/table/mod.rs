@@ -8,6 +8,7 @@
 
 mod axis_labels;
 mod brackets;
+mod certainty;
 mod columns;
 mod glued;
 mod layout;
@@ -24,7 +25,7 @@ use self::columns::is_value;
 use self::layout::{ColumnLayout, IN_PLANE, TableFrames, TableLine};
 use super::cells::{Decimal, clock, empty_rows, lines, number, split, utf8};
 use super::descriptor::FormatDescriptor;
-use super::points::{Point, UNSEEN, check_size};
+use super::points::{IN_A_PICTURE, Point, UNSEEN, check_size};
 use super::timing::{Clock, Stamps, TimedPoints};
 use super::{Limits, Loaded, ParseError, Place, Warning, opensim};
 use crate::math::Vec3;
@@ -83,7 +84,7 @@ pub(super) fn read_as(
         cells.push((*line, split(row, separator)));
     }
     let cells = brackets::spread(cells);
-    let cells = plain::stacked(&cells).unwrap_or(cells);
+    let mut cells = plain::stacked(&cells).unwrap_or(cells);
     let head = &cells[..cells.len().min(HEAD_ROWS)];
     let mut warnings = Vec::new();
     // Sections of other measurements may stand above that of positions.
@@ -92,6 +93,9 @@ pub(super) fn read_as(
         Some(TableHeader::Long(columns)) => long::frames(&columns, &cells, limits)?,
         Some(TableHeader::Wide(layout)) => {
             check_size(layout.points.len(), cells.len(), bytes.len(), limits)?;
+            if let Some(text) = certainty::without_doubtful(&mut cells, &layout) {
+                warnings.push(Warning::new(Place::File, text));
+            }
             let cells = with_empty_rows(cells, &layout, &text);
             wide(layout, &cells, limits, &mut warnings)?
         }
@@ -272,7 +276,7 @@ fn limits_beside(
 fn measured(rows: &[TableLine]) -> Option<&'static str> {
     let labels = columns::header_labels(rows)?;
     if columns::is_flat(&labels) {
-        return Some("x and y alone: two dimensions are not enough");
+        return Some(IN_A_PICTURE);
     }
     let above = columns::header_above(rows).is_some_and(quantities::says_other_above);
     (above || quantities::is_turned(&labels)).then_some(

@@ -104,6 +104,16 @@ fn two_dimensions_are_not_enough() {
 }
 
 #[test]
+fn places_of_a_low_likelihood_are_gaps() {
+    let text = "scorer,net,net,net,net,net,net,net,net\nbodyparts,hips,hips,hips,hips,head,head,head,head\n\
+        coords,x,y,z,likelihood,x,y,z,likelihood\n0,1,2,3,0.9,4,5,6,0.59\n1,1,2,3,0.6,4,5,6,0.99\n2,1,2,3,1,4,5,7,1\n";
+    let (clip, warnings) = load(text);
+    assert_eq!(names(&clip), ["hips", "head"]);
+    let said = "1 of 6 places of points have a likelihood below 0.6";
+    assert!(warnings.contains(said), "{warnings}");
+}
+
+#[test]
 fn the_long_form() {
     let mut text = "time,joint,x,y,z\n".to_owned();
     for f in 0..3 {
