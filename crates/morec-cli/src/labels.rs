@@ -7,8 +7,9 @@ use anyhow::{Context, Result, bail};
 use morec::TimeSpan;
 use morec::formats::{Place, Warning, c3d};
 use morec::labels::{Extent, Label, Labels, names_of_clip};
+use morec_db::MotionDb;
 use morec_db::exchange::{self, Annotation, LabelContext, LabelFormat};
-use morec_db::labels::SampleState;
+use morec_db::labels::{SampleFilter, SampleState};
 
 use crate::files;
 
@@ -154,6 +155,30 @@ pub fn read(path: &Path, args: &LabelArgs, clips: &[PathBuf]) -> Result<Labels> 
     Ok(all)
 }
 
+/// Accepted labels of a database: those that several annotators say once for each.
+pub fn of_database(db: &MotionDb) -> Result<Labels> {
+    let accepted = SampleFilter {
+        state: Some(SampleState::Accepted),
+        ..SampleFilter::default()
+    };
+    let mut labels = Labels::default();
+    for sample in db.samples(&accepted)? {
+        for a in Annotation::of_sample(sample, LabelFormat::Tsv) {
+            labels.rows.push(Label {
+                clip: a.clip,
+                class: a.class,
+                extent: (a.extent).map_or(Extent::WholeClip, |(start, stop)| {
+                    Extent::Secs(TimeSpan::new(start, stop))
+                }),
+                person: a.person,
+                annotator: a.annotator,
+                line: labels.rows.len() as u64 + 1,
+            });
+        }
+    }
+    Ok(labels)
+}
+
 /// A folder stands for the files of labels in it, by name.
 pub fn files_of_labels(paths: &[PathBuf]) -> Result<Vec<PathBuf>> {
     let mut all = Vec::new();
@@ -240,6 +265,7 @@ fn one(path: &Path, args: &LabelArgs, first_frames: &BTreeMap<String, usize>) ->
             class: annotation.class,
             extent,
             person: annotation.person,
+            annotator: annotation.annotator,
             line,
         })
     });

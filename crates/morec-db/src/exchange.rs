@@ -1,23 +1,25 @@
 //! Labels in other programs' forms, read and written.
 //!
 //! All of them are read as [`Annotation`]s. Times are seconds from the clip's beginning; forms that count in
-//! less (milliseconds in ELAN) come back to whole frames of the clip ([`snap`]). Forms that know one recording a file (ELAN, Audacity) need to be
+//! less (milliseconds in ELAN) come back to whole frames of the clip ([`snap`]). Forms that know one recording a file (ELAN, Audacity, BIDS) need to be
 //! given the clip, unless morec wrote them.
 //!
 //! | form | times | keeps |
 //! |---|---|---|
-//! | TSV ([`morec::labels`]) | frames, or seconds where they lie on no frame | clip, class, person, whole clips, state |
+//! | TSV ([`morec::labels`]) | frames, or seconds where they lie on no frame | clip, class, person, annotator, whole clips, state |
 //! | CSV | seconds and frames | all but who set it |
 //! | JSON | seconds and frames | all but who set it |
 //! | ELAN | milliseconds, so frames of up to 500 Hz | clip, class, person; state by tier |
 //! | Audacity | seconds | class; the clip by the file's name ([`file_name`]); Praat's TextGrids, subtitles and events of C3D are read as it |
 //! | BORIS | seconds | clip, class, person; its tables of events are read as TSV or CSV |
+//! | BIDS events | seconds | class, annotator; the clip by the file's name (`…_events.tsv`) |
 //! | BABEL | seconds | clip, class, whole clips, state (a key of ours) |
 //! | Label Studio | seconds | clip, class, score; accepted ones as annotations, others as predictions |
 
 mod annotation;
 mod audacity;
 mod babel;
+mod bids;
 mod boris;
 mod boris_project;
 mod captions;
@@ -47,6 +49,7 @@ impl LabelFormat {
     /// The form that a file's ending says; text files are Audacity's, Praat's or subtitles, a C3D file stands for its events, JSON is distinguished by its content.
     pub fn of_file(name: &str, bytes: &[u8]) -> Option<Self> {
         match name.rsplit_once('.')?.1.to_ascii_lowercase().as_str() {
+            "tsv" if bids::is_of_bids(bytes) => Some(LabelFormat::Bids),
             "tsv" => Some(LabelFormat::Tsv),
             "csv" => Some(LabelFormat::Csv),
             "eaf" => Some(LabelFormat::Eaf),
@@ -102,6 +105,7 @@ pub fn read_with(
         LabelFormat::Babel => babel::read(bytes),
         LabelFormat::LabelStudio => label_studio::read(bytes, context),
         LabelFormat::Boris => boris_project::read(bytes, context),
+        LabelFormat::Bids => bids::read(bytes, context.clip),
     }
 }
 
@@ -138,5 +142,6 @@ pub fn write(
         LabelFormat::Babel => babel::write(annotations, lengths),
         LabelFormat::LabelStudio => label_studio::write(annotations, lengths),
         LabelFormat::Boris => boris_project::write(annotations, lengths),
+        LabelFormat::Bids => bids::write(annotations, lengths),
     }
 }

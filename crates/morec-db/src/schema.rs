@@ -13,11 +13,12 @@ use crate::digest;
 pub const APPLICATION_ID: i32 = 0x6d72_6563;
 
 /// Step `i` brings schema `i` to schema `i + 1`. Steps are only ever added.
-const MIGRATIONS: [&str; 4] = [
+const MIGRATIONS: [&str; 5] = [
     include_str!("migrations/0001.sql"),
     include_str!("migrations/0002.sql"),
     include_str!("migrations/0003.sql"),
     include_str!("migrations/0004.sql"),
+    include_str!("migrations/0005.sql"),
 ];
 
 /// The newest schema that this version knows.

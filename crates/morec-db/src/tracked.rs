@@ -4,7 +4,7 @@ use rusqlite::{Connection, params};
 
 use crate::DbError;
 
-/// A table of the schema, its columns in the order of its triggers (`migrations/0002.sql`).
+/// A table of the schema, its columns in the order of its triggers (`migrations/`).
 pub struct Tracked {
     pub name: &'static str,
     /// Number of key columns, which stand first.
@@ -15,7 +15,7 @@ pub struct Tracked {
 }
 
 /// All of them.
-pub const TRACKED: [Tracked; 9] = [
+pub const TRACKED: [Tracked; 10] = [
     Tracked {
         name: "files",
         keys: 1,
@@ -100,6 +100,12 @@ pub const TRACKED: [Tracked; 9] = [
             "set_by",
             "set_secs",
         ],
+        large: None,
+    },
+    Tracked {
+        name: "annotators",
+        keys: 2,
+        columns: &["sample", "annotator"],
         large: None,
     },
     Tracked {

@@ -27,6 +27,7 @@ pub fn accepted_labels(db: &MotionDb) -> Result<Labels, DbError> {
         clip: s.clip_name,
         class: s.class,
         person: s.subject,
+        annotator: None,
         line,
     };
     let samples = db.samples(&filter)?.into_iter();

@@ -250,6 +250,7 @@ impl PyDatabase {
                 clip: clip.map(|info| info.id),
                 class: class_name,
                 state,
+                annotator: None,
             })
         })?;
         let columns = [
@@ -261,6 +262,7 @@ impl PyDatabase {
             "whole_clip",
             "state",
             "score",
+            "annotators",
             "set_by",
         ];
         let mut rows = Vec::new();
@@ -274,6 +276,7 @@ impl PyDatabase {
             row.set_item("whole_clip", s.whole_clip)?;
             row.set_item("state", s.state.name())?;
             row.set_item("score", s.score)?;
+            row.set_item("annotators", &s.annotators)?;
             row.set_item("set_by", &s.set_by)?;
             rows.push(row);
         }

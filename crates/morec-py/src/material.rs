@@ -42,6 +42,7 @@ pub fn labels(given: &Bound<'_, PyAny>) -> PyResult<Labels> {
             (None, None) => Extent::WholeClip,
         },
         person,
+        annotator: None,
         line,
     };
     Ok(Labels {

@@ -189,6 +189,7 @@ fn snapshot(load: &Load, motion: &ClipMotion) -> Snapshot {
             Judged::Accepted
         },
         score: Some(0.6),
+        annotators: Vec::new(),
         set_by: "measure".to_owned(),
         set_secs: 0,
         rate_hz: motion.clip.rate_hz,

@@ -1,11 +1,11 @@
 //! `morec agree`: how far two annotators agree.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use anyhow::{Result, bail};
+use anyhow::{Result, anyhow, bail};
 use morec::eval::{
     ClassAgreement, ClipDetection, Evaluation, GroundTruth, Kappa, LabelAgreement, StreamInfo,
     timelines,
@@ -13,6 +13,7 @@ use morec::eval::{
 use morec::labels::{ClipLength, Labels, SharedClips, some_of};
 use morec::report::Report;
 
+use crate::database;
 use crate::figures::{self, figure};
 use crate::files::ReadArgs;
 use crate::json::write_json;
@@ -23,7 +24,7 @@ use crate::table::TextTable;
 
 /// Measure how far two annotators agree
 ///
-/// Compares two label files over the clips that both contain. Prints Cohen's kappa by units of time, the event agreement beyond
+/// Compares the labels of two annotators, in two files, one file or a database, over the clips that both labelled. Prints Cohen's kappa by units of time, the event agreement beyond
 /// chance (events match if they have the same class and overlap by half), and for each class the differences between starts and
 /// stops of matching events.
 ///
@@ -35,15 +36,22 @@ Examples:
   morec agree ann.tsv ben.tsv --clips clips/
   morec agree ann.eaf ben.eaf --tier gestures --time-unit 0.5
   morec agree boris_1.csv boris_2.csv --json
+  morec agree both.tsv --annotators ann,ben          # by the column annotator
+  morec agree moves.mdb
 
 Exit codes: 0 compared; 1 a file cannot be read or no clip is in both files; 2 wrong command line.")]
 pub struct Args {
-    /// Labels of the first annotator, in any supported form
-    #[arg(value_name = "A")]
+    /// Labels of the first annotator, or of both, in any supported form
+    ///
+    /// Without B: a file with a column annotator, or a database whose labels have annotators.
+    #[arg(value_name = "A|DB")]
     a: PathBuf,
     /// Labels of the second annotator
     #[arg(value_name = "B")]
-    b: PathBuf,
+    b: Option<PathBuf>,
+    /// The two annotators in A, if it has labels of more
+    #[arg(long, value_name = "A,B", value_delimiter = ',', conflicts_with = "b")]
+    annotators: Vec<String>,
     /// The labelled clips, for frame rates and lengths
     ///
     /// Without this option, labels must be in seconds, and each clip ends with its last label.
@@ -78,27 +86,29 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     if let Some(path) = &args.report {
         output::check_ending(path, "a page of HTML", &["html", "htm"])?;
     }
-    let [a, b] = [&args.a, &args.b].map(|path| labels::read(path, &args.reading, &args.clips));
-    let (a, b) = (a?, b?);
-    let lengths = match args.clips.is_empty() {
-        true => lengths_of_labels(&[(&args.a, &a), (&args.b, &b)])?,
-        false => lengths(&args.clips, &args.read)?,
+    let Both {
+        labels,
+        names,
+        lengths,
+    } = match &args.b {
+        Some(b) => of_two_files(args, b)?,
+        None => of_one(args)?,
     };
-    let read = |path: &PathBuf, labels: &Labels| {
+    let read = |name: &String, labels: &Labels| {
         let resolved = labels.resolve(&lengths);
         for warning in labels.warnings.iter().chain(&resolved.warnings) {
-            eprintln!("morec: {}: {warning}", path.display());
+            eprintln!("morec: {name}: {warning}");
         }
         let samples = resolved.samples.into_iter().map(GroundTruth::from);
         samples.collect::<Vec<_>>()
     };
-    let (mut a, mut b) = (read(&args.a, &a), read(&args.b, &b));
+    let (mut a, mut b) = (read(&names[0], &labels[0]), read(&names[1], &labels[1]));
     let streams = shared_streams(&mut a, &mut b, &lengths)?;
     let agreement = LabelAgreement::of(&streams, &a, &b, args.time_unit)?;
     if let Some(path) = &args.report {
         let b: Vec<ClipDetection> = b.iter().map(ClipDetection::from).collect();
-        let about = [("A", &args.a), ("B", &args.b)]
-            .map(|(name, path)| (name.to_owned(), path.display().to_string()));
+        let about = [("A", &names[0]), ("B", &names[1])]
+            .map(|(letter, name)| (letter.to_owned(), name.clone()));
         let report = Report {
             title: "Labels of B against labels of A",
             about: &about,
@@ -120,6 +130,83 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     }
     out.flush()?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// Labels of two annotators, what these are called, and the clips.
+struct Both {
+    labels: [Labels; 2],
+    names: [String; 2],
+    lengths: BTreeMap<String, ClipLength>,
+}
+
+fn of_two_files(args: &Args, b: &PathBuf) -> Result<Both> {
+    let read = |path: &PathBuf| labels::read(path, &args.reading, &args.clips);
+    let labels = [read(&args.a)?, read(b)?];
+    let lengths = match args.clips.is_empty() {
+        true => lengths_of_labels(&[(&args.a, &labels[0]), (b, &labels[1])])?,
+        false => lengths(&args.clips, &args.read)?,
+    };
+    Ok(Both {
+        labels,
+        names: [&args.a, b].map(|path| path.display().to_string()),
+        lengths,
+    })
+}
+
+/// Of a file or a database with the labels of both.
+fn of_one(args: &Args) -> Result<Both> {
+    let (all, lengths) = match database::only(std::slice::from_ref(&args.a))? {
+        Some(path) => {
+            let db = database::open_read_only(path)?;
+            (labels::of_database(&db)?, database::lengths(&db)?)
+        }
+        None => {
+            let all = labels::read(&args.a, &args.reading, &args.clips)?;
+            let lengths = match args.clips.is_empty() {
+                true => lengths_of_labels(&[(&args.a, &all)])?,
+                false => lengths(&args.clips, &args.read)?,
+            };
+            (all, lengths)
+        }
+    };
+    let names = two_annotators(args, &all)?;
+    let of = |name: &String| Labels {
+        rows: (all.rows.iter())
+            .filter(|row| row.annotator.as_ref() == Some(name))
+            .cloned()
+            .collect(),
+        warnings: Vec::new(),
+    };
+    for warning in &all.warnings {
+        eprintln!("morec: {}: {warning}", args.a.display());
+    }
+    Ok(Both {
+        labels: [of(&names[0]), of(&names[1])],
+        names,
+        lengths,
+    })
+}
+
+/// Those that were asked for, or the only two.
+fn two_annotators(args: &Args, all: &Labels) -> Result<[String; 2]> {
+    let named = all.rows.iter().filter_map(|row| row.annotator.clone());
+    let known: Vec<String> = named.collect::<BTreeSet<_>>().into_iter().collect();
+    let found = || match known.is_empty() {
+        true => "labels without an annotator".to_owned(),
+        false => known.join(", "),
+    };
+    let path = args.a.display();
+    if let Some(name) = args.annotators.iter().find(|name| !known.contains(name)) {
+        bail!("{path}: expected labels by {name}, found {}", found());
+    }
+    let names = match args.annotators.is_empty() {
+        true => known.clone(),
+        false => args.annotators.clone(),
+    };
+    names.try_into().map_err(|names: Vec<String>| match args.annotators.is_empty() {
+        true => anyhow!("{path}: expected labels by two annotators, found {}; name two with --annotators, or give a second file", found()),
+        false => anyhow!("--annotators: expected two names, found {}", names.len()),
+    })
 }
 
 /// The clips that both name; the labels of others are left out, which is printed.

@@ -23,6 +23,8 @@ pub struct Annotation {
     pub score: Option<f64>,
     /// Accepted, proposed or rejected.
     pub state: SampleState,
+    /// Who labelled it, if the file says.
+    pub annotator: Option<String>,
 }
 
 impl Annotation {
@@ -35,7 +37,25 @@ impl Annotation {
             person: None,
             score: None,
             state: SampleState::Accepted,
+            annotator: None,
         }
+    }
+
+    /// A sample as a form says it: once for each annotator, where the form has annotators.
+    pub fn of_sample(sample: DbSample, form: LabelFormat) -> Vec<Self> {
+        let annotators = match form.has_annotators() {
+            true => sample.annotators.clone(),
+            false => Vec::new(),
+        };
+        let plain = Self::from(sample);
+        if annotators.is_empty() {
+            return vec![plain];
+        }
+        let of = |annotator| Self {
+            annotator: Some(annotator),
+            ..plain.clone()
+        };
+        annotators.into_iter().map(of).collect()
     }
 }
 
@@ -48,6 +68,7 @@ impl From<DbSample> for Annotation {
             person: sample.subject,
             score: sample.score,
             state: sample.state,
+            annotator: None,
         }
     }
 }
@@ -64,11 +85,12 @@ pub enum LabelFormat {
     Babel,
     LabelStudio,
     Boris,
+    Bids,
 }
 
 impl LabelFormat {
     /// All of them.
-    pub const ALL: [LabelFormat; 8] = [
+    pub const ALL: [LabelFormat; 9] = [
         LabelFormat::Tsv,
         LabelFormat::Csv,
         LabelFormat::Json,
@@ -77,6 +99,7 @@ impl LabelFormat {
         LabelFormat::Babel,
         LabelFormat::LabelStudio,
         LabelFormat::Boris,
+        LabelFormat::Bids,
     ];
 
     /// Its name on the command line.
@@ -90,13 +113,14 @@ impl LabelFormat {
             LabelFormat::Babel => "babel",
             LabelFormat::LabelStudio => "label-studio",
             LabelFormat::Boris => "boris",
+            LabelFormat::Bids => "bids",
         }
     }
 
     /// The ending of its files, by which [`of_file`](Self::of_file) knows it.
     pub fn ending(self) -> &'static str {
         match self {
-            LabelFormat::Tsv => "tsv",
+            LabelFormat::Tsv | LabelFormat::Bids => "tsv",
             LabelFormat::Csv => "csv",
             LabelFormat::Json | LabelFormat::Babel | LabelFormat::LabelStudio => "json",
             LabelFormat::Eaf => "eaf",
@@ -105,17 +129,33 @@ impl LabelFormat {
         }
     }
 
+    /// The name of a file of one clip, whose name as a file's is given.
+    pub fn file_of_clip(self, name: &str) -> String {
+        let suffix = match self {
+            LabelFormat::Bids => super::bids::SUFFIX,
+            _ => "",
+        };
+        format!("{name}{suffix}.{}", self.ending())
+    }
+
     /// True if a label of this state is read again in the same state.
     pub fn keeps(self, state: SampleState) -> bool {
         match self {
-            LabelFormat::Audacity | LabelFormat::Boris => state == SampleState::Accepted,
+            LabelFormat::Audacity | LabelFormat::Boris | LabelFormat::Bids => {
+                state == SampleState::Accepted
+            }
             _ => true,
         }
     }
 
+    /// True if a label can have an annotator.
+    pub fn has_annotators(self) -> bool {
+        matches!(self, Self::Tsv | Self::Csv | Self::Json | Self::Bids)
+    }
+
     /// True if a file of this form holds labels of one clip only.
     pub fn is_of_one_clip(self) -> bool {
-        matches!(self, LabelFormat::Eaf | LabelFormat::Audacity)
+        matches!(self, Self::Eaf | Self::Audacity | Self::Bids)
     }
 }
 

@@ -118,6 +118,7 @@ fn read_label(clip: &str, label: &Value, timed: bool, read: &mut ReadLabels) -> 
             person: None,
             score: None,
             state: state.unwrap_or(SampleState::Accepted),
+            annotator: None,
         });
     }
     Ok(())

@@ -91,6 +91,7 @@ pub(super) fn read(records: &[Record], context: &LabelContext) -> Result<ReadLab
                         person: Some(who).filter(|who| !who.is_empty()).map(str::to_owned),
                         score: None,
                         state: SampleState::Accepted,
+                        annotator: None,
                     });
                 }
             }

@@ -62,6 +62,7 @@ struct Columns {
     score: Option<usize>,
     person: Option<usize>,
     state: Option<usize>,
+    annotator: Option<usize>,
 }
 
 impl Columns {
@@ -112,6 +113,7 @@ impl Columns {
             score: find(&["score"]),
             person: find(&["actor", "person", "subject"]),
             state: find(&["state"]),
+            annotator: find(&["annotator"]),
         })
     }
 
@@ -159,13 +161,13 @@ impl Columns {
             return Ok(None);
         }
         let cell = |column: Option<usize>| column.map_or("", |column| row.cell(column));
+        let name = |column| Some(cell(column).to_owned()).filter(|name| !name.is_empty());
         Ok(Some(Annotation {
             clip: clip.to_owned(),
             class: class.to_owned(),
             extent: extent.map(|(start, stop)| (start - before, stop - before)),
-            person: Some(cell(self.person))
-                .filter(|p| !p.is_empty())
-                .map(str::to_owned),
+            person: name(self.person),
+            annotator: name(self.annotator),
             score: cell(self.score)
                 .parse()
                 .ok()
@@ -265,7 +267,9 @@ fn quoted(text: &str) -> String {
 /// # Errors
 /// A label covers a whole clip of unknown length.
 pub fn write(annotations: &[Annotation], lengths: &ClipLengths) -> Result<String, String> {
-    let mut out = format!("{HEADER}\n");
+    let annotators = annotations.iter().any(|a| a.annotator.is_some());
+    let more = if annotators { ",annotator" } else { "" };
+    let mut out = format!("{HEADER}{more}\n");
     for a in annotations {
         let (start, stop) = secs(a, lengths)?;
         let framed = frames(
@@ -277,8 +281,12 @@ pub fn write(annotations: &[Annotation], lengths: &ClipLengths) -> Result<String
         );
         let framed = framed.map_or_else(|| ",".to_owned(), |(from, to)| format!("{from},{to}"));
         let score = a.score.map_or_else(String::new, |score| score.to_string());
+        let annotator = match annotators {
+            true => format!(",{}", quoted(a.annotator.as_deref().unwrap_or(""))),
+            false => String::new(),
+        };
         out.push_str(&format!(
-            "{},{},{start},{stop},{framed},{},{score},{},morec,{}\n",
+            "{},{},{start},{stop},{framed},{},{score},{},morec,{}{annotator}\n",
             quoted(&a.clip),
             quoted(&a.class),
             u8::from(a.extent.is_none()),

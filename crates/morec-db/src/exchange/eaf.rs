@@ -131,6 +131,7 @@ pub fn read(text: &str, context: &LabelContext) -> Result<ReadLabels, ParseError
                 person: person.map(str::to_owned),
                 score: None,
                 state,
+                annotator: None,
             });
         }
     }

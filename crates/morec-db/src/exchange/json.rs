@@ -34,6 +34,8 @@ struct JsonRow {
     score: Option<f64>,
     #[serde(default)]
     state: Option<SampleState>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    annotator: Option<String>,
 }
 
 /// Tells the forms in JSON apart.
@@ -98,6 +100,7 @@ pub fn read(bytes: &[u8], context: &LabelContext) -> Result<ReadLabels, ParseErr
             person: row.person,
             score: row.score,
             state: row.state.unwrap_or(SampleState::Accepted),
+            annotator: row.annotator,
         });
     }
     Ok(read)
@@ -128,6 +131,7 @@ pub fn write(annotations: &[Annotation], lengths: &ClipLengths) -> Result<String
             person: a.person.clone(),
             score: a.score,
             state: Some(a.state),
+            annotator: a.annotator.clone(),
         })
     };
     let file = File {

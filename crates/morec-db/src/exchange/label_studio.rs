@@ -63,6 +63,7 @@ pub fn read(bytes: &[u8], context: &LabelContext) -> Result<ReadLabels, ParseErr
                         person: None,
                         score: result["score"].as_f64(),
                         state,
+                        annotator: None,
                     }));
             }
         }

@@ -8,6 +8,7 @@ use std::path::Path;
 use morec::labels::{ClipLength, doubtful_unit, names_of_clip};
 
 use super::annotation::{Annotation, ClipLengths, snap};
+use super::bids::SUFFIX;
 use super::clip_of_file_name;
 use crate::labels::NewSample;
 use crate::{ClipId, ClipInfo};
@@ -20,6 +21,8 @@ const OVER_SECS: f64 = 0.1;
 pub struct ResolvedLabels {
     /// In the order of the annotations.
     pub samples: Vec<NewSample>,
+    /// Who says each of them.
+    pub annotators: Vec<Option<String>>,
     /// Clips that are not there, with the number of labels of each.
     pub absent: BTreeMap<String, usize>,
     /// Who is in clips of which that was not known.
@@ -78,7 +81,9 @@ pub fn clip_lengths(clips: &[ClipInfo]) -> ClipLengths {
 /// The clip that a file is called after, if there is such a clip.
 pub fn clip_of_file(path: &Path, lengths: &ClipLengths) -> Option<String> {
     let clip = clip_of_file_name(&path.file_stem()?.to_string_lossy());
-    lengths.contains_key(&clip).then_some(clip)
+    let recording = clip.strip_suffix(SUFFIX).map(str::to_owned);
+    let named = [Some(clip), recording].into_iter().flatten();
+    named.into_iter().find(|clip| lengths.contains_key(clip))
 }
 
 /// Finds the clips of annotations by name, with or without a file ending or the folders before it; times come to whole frames, a label that runs over the end
@@ -102,6 +107,7 @@ pub fn resolve(annotations: Vec<Annotation>, clips: &[ClipInfo]) -> ResolvedLabe
             resolved.left_out += 1;
             continue;
         };
+        resolved.annotators.push(a.annotator);
         resolved.samples.push(NewSample {
             clip: clip.id,
             class: a.class,

@@ -46,20 +46,24 @@ fn annotation() -> impl Strategy<Value = Annotation> {
         person,
         prop::option::of(0.0f64..1.0),
         state,
+        prop::option::of(prop::sample::select(vec!["ann", "Ben, the 2nd"])),
     )
         .prop_map(
-            |((clip, length), class, start, frames, whole, person, score, state)| Annotation {
-                clip,
-                class: class.to_owned(),
-                extent: (!whole).then(|| {
-                    (
-                        start as f64 / length.rate_hz,
-                        (start + frames) as f64 / length.rate_hz,
-                    )
-                }),
-                person,
-                score,
-                state,
+            |((clip, length), class, start, frames, whole, person, score, state, annotator)| {
+                Annotation {
+                    clip,
+                    class: class.to_owned(),
+                    extent: (!whole).then(|| {
+                        (
+                            start as f64 / length.rate_hz,
+                            (start + frames) as f64 / length.rate_hz,
+                        )
+                    }),
+                    person,
+                    score,
+                    state,
+                    annotator: annotator.map(str::to_owned),
+                }
             },
         )
 }
@@ -73,6 +77,7 @@ fn names_that_a_table_cannot_hold_are_refused_not_lost() {
         person: None,
         score: None,
         state: SampleState::Accepted,
+        annotator: None,
     };
     let lengths: ClipLengths = ["a\tb", "a\nb", " a", "x.npz", "dir/x_poses.npz"]
         .map(|name| {
@@ -115,6 +120,9 @@ fn sorted(mut annotations: Vec<Annotation>) -> Vec<String> {
 fn sayable(form: LabelFormat, all: &[Annotation]) -> Vec<Annotation> {
     let says = |a: &Annotation| {
         let mut said = a.clone();
+        if !form.has_annotators() {
+            said.annotator = None;
+        }
         let spelled = || a.extent.or_else(|| secs(a, &lengths()).ok());
         match form {
             LabelFormat::Csv | LabelFormat::Json => return said,
@@ -130,7 +138,10 @@ fn sayable(form: LabelFormat, all: &[Annotation]) -> Vec<Annotation> {
         if form != LabelFormat::LabelStudio {
             said.score = None;
         }
-        if matches!(form, LabelFormat::Audacity | LabelFormat::Boris) {
+        if matches!(
+            form,
+            LabelFormat::Audacity | LabelFormat::Boris | LabelFormat::Bids
+        ) {
             said.state = SampleState::Accepted;
         }
         said
@@ -163,7 +174,7 @@ proptest! {
                 false => all.clone(),
             };
             let text = write(form, &all, &lengths()).unwrap();
-            let clip = (form == LabelFormat::Audacity).then(|| all[0].clip.as_str());
+            let clip = matches!(form, LabelFormat::Audacity | LabelFormat::Bids).then(|| all[0].clip.as_str());
             let again = read(form, text.as_bytes(), clip, &lengths()).unwrap();
             prop_assert!(again.warnings.is_empty(), "{form:?} {:?}", again.warnings);
             let snapped = again.annotations.into_iter().map(|mut a| {
@@ -287,6 +298,7 @@ fn mistakes_are_located() {
         person: None,
         score: None,
         state: SampleState::Accepted,
+        annotator: None,
     });
     assert!(
         write(LabelFormat::Eaf, &several, &lengths())

@@ -40,6 +40,7 @@ pub fn read(bytes: &[u8], context: &LabelContext) -> Result<ReadLabels, ParseErr
             class: row.class,
             extent,
             person: row.person,
+            annotator: row.annotator,
             score: None,
             state: states.as_ref().map_or(Ok(SampleState::Accepted), |cells| {
                 super::annotation::state(&cells[at], row.line)
@@ -72,25 +73,37 @@ fn fits_a_cell(name: &str) -> bool {
 /// A name contains a tab or a line end, which the format cannot store.
 pub fn write(annotations: &[Annotation], lengths: &ClipLengths) -> Result<String, String> {
     let people = annotations.iter().any(|a| a.person.is_some());
+    let annotators = annotations.iter().any(|a| a.annotator.is_some());
     let judged = annotations.iter().any(|a| a.state != SampleState::Accepted);
     let more = |a: &Annotation| {
-        let person = people.then(|| format!("\t{}", a.person.as_deref().unwrap_or("")));
-        let state = judged.then(|| format!("\t{}", a.state.name()));
-        person.unwrap_or_default() + &state.unwrap_or_default()
+        let cell = |name: &Option<String>| format!("\t{}", name.as_deref().unwrap_or(""));
+        let cells = [
+            people.then(|| cell(&a.person)),
+            annotators.then(|| cell(&a.annotator)),
+            judged.then(|| format!("\t{}", a.state.name())),
+        ];
+        cells.into_iter().flatten().collect::<String>()
     };
-    let names = annotations
-        .iter()
-        .flat_map(|a| [&a.clip, &a.class].into_iter().chain(&a.person));
+    let names = annotations.iter().flat_map(|a| {
+        [&a.clip, &a.class]
+            .into_iter()
+            .chain(&a.person)
+            .chain(&a.annotator)
+    });
     if let Some(name) = names.into_iter().find(|name| !fits_a_cell(name)) {
         return Err(format!(
             "{name:?}: a table separated by tabs cannot hold this name; rename it, or write JSON or CSV"
         ));
     }
     let mut out = String::new();
-    let last = [people.then_some("\tperson"), judged.then_some("\tstate")]
-        .into_iter()
-        .flatten()
-        .collect::<String>();
+    let last = [
+        people.then_some("\tperson"),
+        annotators.then_some("\tannotator"),
+        judged.then_some("\tstate"),
+    ]
+    .into_iter()
+    .flatten()
+    .collect::<String>();
     if !annotations.is_empty() && annotations.iter().all(|a| a.extent.is_none()) {
         out.push_str(&format!("clip\tclass{last}\n"));
         for a in annotations {

@@ -6,7 +6,7 @@ use rusqlite::{Connection, params};
 
 use super::read::list;
 use super::sample::{Added, DbSample, NewSample, SampleFilter, SampleState};
-use super::write::{Change, add, alter};
+use super::write::{Change, add, alter, annotate};
 use crate::clips::describe;
 use crate::history::counted;
 use crate::{ClipId, ClipUpdate, DbError, MotionDb};
@@ -22,6 +22,8 @@ pub struct LabelOptions {
     pub dry_run: bool,
     /// Who is in clips, as files of labels say.
     pub people: BTreeMap<ClipId, String>,
+    /// Who says each label, in their order; empty if nobody is known.
+    pub annotators: Vec<Option<String>>,
 }
 
 /// Kind of change of a sample.
@@ -115,6 +117,8 @@ impl MotionDb {
     /// With [`LabelOptions::replace`], accepted samples of the clips named that no label says are moved or renamed where a
     /// label stands for them (the same class overlapping, or the same stretch), and removed otherwise.
     ///
+    /// A sample that several annotators say is one sample with all their names.
+    ///
     /// # Errors
     /// A label that stops before it starts or lies outside its clip, a class name that cannot be, no such clip.
     pub fn label(
@@ -133,8 +137,11 @@ impl MotionDb {
             };
             let mut done = Labelled::default();
             let mut left = unsaid(there, labels);
-            for label in labels {
+            for (at, label) in labels.iter().enumerate() {
                 take_in(conn, label, &mut left, options, &mut done)?;
+                if let Some(Some(annotator)) = options.annotators.get(at) {
+                    done.counts.annotated += annotate(conn, label, annotator)?;
+                }
             }
             for (clip, person) in &options.people {
                 let update = ClipUpdate {

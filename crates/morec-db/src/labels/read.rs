@@ -7,6 +7,7 @@ use crate::{ClipId, DbError};
 
 fn sample(row: &Row<'_>) -> rusqlite::Result<DbSample> {
     let state: String = row.get("state")?;
+    let annotators: Option<String> = row.get("annotators")?;
     Ok(DbSample {
         id: SampleId(row.get("id")?),
         clip: ClipId(row.get("clip")?),
@@ -19,6 +20,8 @@ fn sample(row: &Row<'_>) -> rusqlite::Result<DbSample> {
         // The table allows no other.
         state: SampleState::from_name(&state).unwrap_or(SampleState::Proposed),
         score: row.get("score")?,
+        annotators: annotators
+            .map_or_else(Vec::new, |all| all.split('\n').map(str::to_owned).collect()),
         set_by: row.get("set_by")?,
         set_secs: row.get("set_secs")?,
         rate_hz: row.get("rate_hz")?,
@@ -27,7 +30,9 @@ fn sample(row: &Row<'_>) -> rusqlite::Result<DbSample> {
 
 /// Everything of samples; a condition follows.
 const SELECT: &str = "SELECT s.id, s.clip, c.name AS clip_name, c.subject, n.name AS class, s.start_secs, s.stop_secs, s.whole_clip, \
-     s.state, s.score, s.set_by, s.set_secs, c.rate_hz FROM samples s JOIN clips c ON c.id = s.clip JOIN classes n ON n.id = s.class";
+     s.state, s.score, s.set_by, s.set_secs, c.rate_hz, \
+     (SELECT group_concat(a.annotator, char(10) ORDER BY a.annotator) FROM annotators a WHERE a.sample = s.id) AS annotators \
+     FROM samples s JOIN clips c ON c.id = s.clip JOIN classes n ON n.id = s.class";
 
 /// The sample of a number; an error if it does not exist.
 pub(super) fn find(conn: &Connection, id: SampleId) -> Result<DbSample, DbError> {
@@ -58,6 +63,11 @@ pub(crate) fn list(conn: &Connection, filter: &SampleFilter) -> Result<Vec<DbSam
     }
     if let Some(state) = &state {
         need("s.state", state);
+    }
+    if let Some(annotator) = &filter.annotator {
+        given.push(annotator);
+        let of_annotator = "SELECT 1 FROM annotators a WHERE a.sample = s.id AND a.annotator";
+        sql.push_str(&format!(" AND EXISTS ({of_annotator} = ?{})", given.len()));
     }
     sql.push_str(" ORDER BY c.name, s.start_secs, s.stop_secs, n.name");
     let mut statement = conn.prepare_cached(&sql)?;

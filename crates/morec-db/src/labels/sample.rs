@@ -43,6 +43,8 @@ pub struct DbSample {
     pub state: SampleState,
     /// Confidence of the program that proposed it.
     pub score: Option<f64>,
+    /// Who labelled it so, by name; empty if nobody is named.
+    pub annotators: Vec<String>,
     /// Author of the last change.
     pub set_by: String,
     /// Time of the change, seconds since 1970.
@@ -117,6 +119,8 @@ pub struct Added {
     pub withdrawn: usize,
     /// Clips of which it is known now who is in them.
     pub people: usize,
+    /// Labels of an annotator who had not said the same before.
+    pub annotated: usize,
 }
 
 /// Conditions on samples; all must hold.
@@ -128,6 +132,8 @@ pub struct SampleFilter {
     pub class: Option<String>,
     /// Samples in this state only.
     pub state: Option<SampleState>,
+    /// Samples by this annotator only.
+    pub annotator: Option<String>,
 }
 
 /// Author of the proposals of `morec group`, which say that stretches are alike, under a generated name.

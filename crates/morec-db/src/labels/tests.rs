@@ -217,7 +217,7 @@ fn replace(dry_run: bool) -> LabelOptions {
         by: "me".into(),
         replace: true,
         dry_run,
-        people: Default::default(),
+        ..LabelOptions::default()
     }
 }
 
@@ -385,4 +385,50 @@ fn a_move_leaves_another_programs_class() {
             }
         }
     });
+}
+
+#[test]
+fn annotators_who_say_the_same_share_a_sample_and_undo_takes_them_back() {
+    let (_folder, mut db) = database_of_waves(1);
+    let label = |db: &mut MotionDb, samples: &[NewSample], who: &str| {
+        let options = LabelOptions {
+            annotators: vec![Some(who.to_owned()); samples.len()],
+            ..LabelOptions::default()
+        };
+        db.label(samples, &options).unwrap().counts
+    };
+    let [one, two] = [1, 9].map(|start| sample("walk", start, SampleState::Accepted));
+    let ann = label(&mut db, &[one.clone(), two.clone()], "ann");
+    assert_eq!((ann.added, ann.annotated), (2, 2));
+    let ben = label(&mut db, std::slice::from_ref(&one), " ben ");
+    assert_eq!((ben.added, ben.unchanged, ben.annotated), (0, 1, 1));
+    let said = |db: &MotionDb| -> Vec<String> {
+        let samples = db.samples(&SampleFilter::default()).unwrap();
+        samples.iter().map(|s| s.annotators.join(" ")).collect()
+    };
+    let by = |db: &MotionDb, who: &str| {
+        let filter = SampleFilter {
+            annotator: Some(who.to_owned()),
+            ..SampleFilter::default()
+        };
+        db.samples(&filter).unwrap().len()
+    };
+    assert_eq!(said(&db), ["ann ben", "ann"]);
+    assert_eq!((by(&db, "ann"), by(&db, "ben"), by(&db, "cid")), (2, 1, 0));
+    // A sample that goes comes back with its annotators.
+    let first = db.samples(&SampleFilter::default()).unwrap()[0].id;
+    db.remove_samples(&[first]).unwrap();
+    assert_eq!(said(&db), ["ann"]);
+    db.undo(None).unwrap();
+    assert_eq!(said(&db), ["ann ben", "ann"]);
+    db.undo(None).unwrap();
+    assert_eq!(said(&db), ["ann", "ann"]);
+    db.redo(None).unwrap();
+    assert_eq!(said(&db), ["ann ben", "ann"]);
+    let options = LabelOptions {
+        annotators: vec![Some("a\tb".to_owned())],
+        ..LabelOptions::default()
+    };
+    let error = db.label(&[two], &options).unwrap_err().to_string();
+    assert!(error.contains("control characters"), "{error}");
 }

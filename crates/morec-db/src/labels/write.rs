@@ -114,6 +114,31 @@ fn reject_instead(
     })
 }
 
+/// Notes who says a label that is there; the number of samples of which that is news.
+pub(super) fn annotate(
+    conn: &Connection,
+    label: &NewSample,
+    annotator: &str,
+) -> Result<usize, DbError> {
+    let annotator = annotator.trim();
+    if annotator.is_empty() || annotator.chars().any(char::is_control) {
+        let expected = "a name of an annotator without control characters";
+        return Err(DbError::Invalid(format!(
+            "expected {expected}, found {annotator:?}"
+        )));
+    }
+    let sql = "INSERT OR IGNORE INTO annotators (sample, annotator) SELECT s.id, ?5 FROM samples s JOIN classes n ON n.id = s.class \
+         WHERE s.clip = ?1 AND n.name = ?2 AND s.start_secs = ?3 AND s.stop_secs = ?4";
+    let said = params![
+        label.clip.0,
+        label.class.trim(),
+        label.start_secs,
+        label.stop_secs,
+        annotator
+    ];
+    Ok(conn.prepare_cached(sql)?.execute(said)?)
+}
+
 fn check_extent(conn: &Connection, sample: &NewSample) -> Result<(), DbError> {
     let sql = "SELECT name, frames / rate_hz AS secs, rate_hz FROM clips WHERE id = ?1";
     let clip: Option<(String, f64, f64)> = conn

@@ -176,12 +176,12 @@ def read_poses(
     up : {"x", "y", "z", "-x", "-y", "-z"}, optional
         Which way is up; inferred by default.
     roles : dict, path or str, optional
-        Points that play parts of the body, where names do not tell.
+        Points that play parts of the body, where names do not tell. Points in two dimensions need them, of a custom skeleton.
 
     Raises
     ------
     ValueError
-        No poses in the file; points of one performer at different times.
+        No poses in the file; points of one performer at different times; points in two dimensions without `roles`.
     """
     clips = [_clip(poses, least_confidence, up, roles) for poses in _of_kind(nwbfile, PoseEstimation)]
     if not clips:
@@ -192,6 +192,10 @@ def read_poses(
 def _clip(poses: Any, least_confidence: float, up: str | None, roles: Roles) -> Clip:
     series = list(poses.pose_estimation_series.values())
     points = [_points(one, least_confidence) for one in series]
+    if points and points[0].shape[1] == 2:
+        if roles is None:
+            raise ValueError(f"{poses.name}: points in two dimensions: say with roles which points of the animal they are")
+        points = [np.column_stack([point, np.where(np.isnan(point[:, 0]), np.nan, 0.0)]) for point in points]
     lengths = {len(point) for point in points}
     if len(lengths) != 1:
         raise ValueError(f"{poses.name}: expected points with as many frames each, found {sorted(lengths)}")

@@ -88,10 +88,9 @@ fn labels(db: &MotionDb, form: LabelFormat, path: &Path) -> Result<String, Strin
     std::fs::create_dir_all(path).map_err(|e| e.to_string())?;
     let of_clips: Vec<&[Annotation]> = annotations.chunk_by(|a, b| a.clip == b.clip).collect();
     let names = exchange::file_names(of_clips.iter().map(|all| all[0].clip.as_str()));
-    let ending = form.ending();
     for (of_clip, name) in of_clips.iter().zip(&names) {
         let text = exchange::write(form, of_clip, &lengths)?;
-        write_whole(&path.join(format!("{name}.{ending}")), text.as_bytes())?;
+        write_whole(&path.join(form.file_of_clip(name)), text.as_bytes())?;
     }
     Ok(format!("{said} in {}", format::count(names.len(), "file")))
 }

@@ -32,6 +32,8 @@ pub struct LabelFiles {
     pub samples: Vec<NewSample>,
     /// Who is in clips of which that was not known.
     pub people: BTreeMap<ClipId, String>,
+    /// Who says each sample.
+    pub annotators: Vec<Option<String>>,
     /// Doubts and omissions, in sentences.
     pub notes: Vec<String>,
     /// What they would change: added to what is there, or in place of the labels of the clips that they name.
@@ -128,6 +130,7 @@ pub fn read(db: &Path, paths: &[PathBuf]) -> Result<LabelFiles, JobError> {
             replace,
             dry_run: true,
             people: resolved.people.clone(),
+            annotators: resolved.annotators.clone(),
         };
         db.label(&resolved.samples, &options).map_err(failed)
     };
@@ -137,6 +140,7 @@ pub fn read(db: &Path, paths: &[PathBuf]) -> Result<LabelFiles, JobError> {
         replaced: preview(true)?,
         samples: resolved.samples,
         people: resolved.people,
+        annotators: resolved.annotators,
         notes,
     })
 }

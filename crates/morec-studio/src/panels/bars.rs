@@ -109,6 +109,7 @@ fn form_name(form: LabelFormat) -> &'static str {
         LabelFormat::Babel => "BABEL …",
         LabelFormat::LabelStudio => "Label Studio …",
         LabelFormat::Boris => "BORIS project …",
+        LabelFormat::Bids => "BIDS events, a file for each clip …",
     }
 }
 

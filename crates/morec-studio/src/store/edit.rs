@@ -19,6 +19,7 @@ pub enum Edit {
         paths: Vec<PathBuf>,
         samples: Vec<NewSample>,
         people: BTreeMap<ClipId, String>,
+        annotators: Vec<Option<String>>,
         replace: bool,
     },
     /// Classes that whole clips show, and people in them.
@@ -124,6 +125,7 @@ impl Edit {
             Edit::LabelFiles {
                 samples,
                 people,
+                annotators,
                 replace,
                 ..
             } => {
@@ -132,6 +134,7 @@ impl Edit {
                     replace: *replace,
                     dry_run: false,
                     people: people.clone(),
+                    annotators: annotators.clone(),
                 };
                 let counts = db.label(samples, &options)?.counts;
                 Ok(crate::format::changed_labels(&counts))

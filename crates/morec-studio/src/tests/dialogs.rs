@@ -100,6 +100,11 @@ fn labels_of_each_form_a_clip_and_a_page_are_exported() {
         ("BABEL …", LabelFormat::Babel, DialogKind::Save),
         ("Label Studio …", LabelFormat::LabelStudio, DialogKind::Save),
         ("BORIS project …", LabelFormat::Boris, DialogKind::Save),
+        (
+            "BIDS events, a file for each clip …",
+            LabelFormat::Bids,
+            DialogKind::Folder,
+        ),
     ];
     assert_eq!(names.len(), LabelFormat::ALL.len());
     for (entry, form, choice) in names {

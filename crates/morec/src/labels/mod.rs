@@ -5,7 +5,7 @@
 //! tabs, quotes, and semicolons or commas in place of tabs are taken as they come. Readers take bytes; a mistake names its line and column.
 //!
 //! - Labels ([`Labels::read`]): `clip`, `class`, then `start` and `stop` (frames, stop exclusive) or
-//!   `start_secs` and `stop_secs`, or neither: the whole clip is one sample. `person` if it is known.
+//!   `start_secs` and `stop_secs`, or neither: the whole clip is one sample. `person` (who moves) and `annotator` (who labelled) if they are known.
 //! - People ([`read_people`]): `clip`, `person`.
 //! - Detections ([`read_detections`], [`FoundLine`]): what `morec recognize` writes.
 //!
@@ -73,6 +73,8 @@ pub struct Label {
     pub extent: Extent,
     /// The person who moves, if the table names one.
     pub person: Option<String>,
+    /// Who labelled it, if the table names somebody.
+    pub annotator: Option<String>,
     /// The row's line in its file, from 1.
     pub line: u64,
 }
@@ -105,6 +107,7 @@ impl Labels {
             class: class.to_owned(),
             extent: Extent::Secs(span.into()),
             person: None,
+            annotator: None,
             line: self.rows.len() as u64 + 1,
         });
     }

@@ -40,12 +40,13 @@ impl Labels {
     /// Labels and the rows that they are of. Columns in `more` are somebody else's, not unknown.
     fn of_table<'a>(table: &Table<'a>, more: &[&str]) -> Result<(Self, Vec<Row<'a>>), ParseError> {
         let (clip, class) = (table.need("clip")?, table.need("class")?);
-        let person = table.find("person");
+        let (person, annotator) = (table.find("person"), table.find("annotator"));
         let extents = ExtentColumns::find(table)?;
         let known = [
             "clip",
             "class",
             "person",
+            "annotator",
             "start",
             "stop",
             "start_secs",
@@ -69,14 +70,16 @@ impl Labels {
                 warnings.push(Warning::new(Place::Line(row.line), text));
                 continue;
             };
+            let name = |column: Option<usize>| {
+                let named = column.map(|column| row.cell(column));
+                named.filter(|name| !name.is_empty()).map(str::to_owned)
+            };
             labels.push(Label {
                 clip: row.text(clip, "a clip's name")?,
                 class,
                 extent,
-                person: person
-                    .map(|p| row.cell(p))
-                    .filter(|p| !p.is_empty())
-                    .map(str::to_owned),
+                person: name(person),
+                annotator: name(annotator),
                 line: row.line,
             });
             kept.push(row);

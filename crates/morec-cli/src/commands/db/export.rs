@@ -36,16 +36,6 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     if let Some(class) = &args.class {
         db.need_class(class)?;
     }
-    let filter = SampleFilter {
-        clip,
-        class: args.class.clone(),
-        state: Some(args.state),
-    };
-    let annotations: Vec<Annotation> = db
-        .samples(&filter)?
-        .into_iter()
-        .map(Annotation::from)
-        .collect();
     let shown = args.output.to_string_lossy();
     let form = match args.form {
         Some(form) => form.of_labels()?,
@@ -53,6 +43,19 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             format!("{shown}: cannot infer the label format from the extension; pass --form")
         })?,
     };
+    let filter = SampleFilter {
+        clip,
+        class: args.class.clone(),
+        state: Some(args.state),
+        annotator: args.annotator.clone(),
+    };
+    let samples = db.samples(&filter)?.into_iter();
+    let annotations: Vec<Annotation> = samples
+        .flat_map(|sample| Annotation::of_sample(sample, form))
+        .filter(|a| {
+            args.annotator.is_none() || a.annotator.is_none() || a.annotator == args.annotator
+        })
+        .collect();
     if annotations.iter().any(|a| !form.keeps(a.state)) {
         let (form, state) = (form.name(), args.state.name());
         eprintln!(
@@ -100,13 +103,12 @@ fn a_file_a_clip(
         );
     }
     std::fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
-    let ending = form.ending();
     let mut files = 0;
     let of_clips: Vec<&[Annotation]> = annotations.chunk_by(|a, b| a.clip == b.clip).collect();
     let names = exchange::file_names(of_clips.iter().map(|of_clip| of_clip[0].clip.as_str()));
     for (of_clip, name) in of_clips.iter().zip(&names) {
         let text = exchange::write(form, of_clip, lengths).map_err(anyhow::Error::msg)?;
-        let path = folder.join(format!("{name}.{ending}"));
+        let path = folder.join(form.file_of_clip(name));
         output::write_whole(&path, |out| out.write_all(text.as_bytes()))
             .with_context(|| path.display().to_string())?;
         files += 1;

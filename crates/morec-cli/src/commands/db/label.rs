@@ -31,6 +31,7 @@ Examples:
   morec db label moves.mdb take_1.eaf --clip take_1
   morec db label moves.mdb --clip take_1 --class wave --start 1.2 --stop 2.4
   morec db label moves.mdb reviewed.tsv --state rejected
+  morec db label moves.mdb ann.tsv --annotator ann
   morec db label moves.mdb corrected.tsv --replace --dry-run
   morec db label moves.mdb --undo
 
@@ -42,7 +43,8 @@ pub struct Args {
     db: PathBuf,
     /// Label files, or folders of them
     ///
-    /// TSV, CSV, JSON (morec's, BABEL's, Label Studio's), ELAN (.eaf), Audacity (.txt), BORIS (TSV, CSV), Praat
+    /// TSV, CSV, JSON (morec's, BABEL's, Label Studio's), ELAN (.eaf), Audacity (.txt), BORIS (TSV, CSV), BIDS
+    /// (_events.tsv), Praat
     /// (.TextGrid), subtitles (.srt, .vtt), events of C3D.
     #[arg(value_name = "FILE|DIR")]
     labels: Vec<PathBuf>,
@@ -77,6 +79,9 @@ pub struct Args {
         default_value = "user"
     )]
     by: String,
+    /// Annotator of labels whose file names none
+    #[arg(long, value_name = "NAME", conflicts_with = "undo")]
+    annotator: Option<String>,
     /// Replace all accepted labels of the named clips with those in the files
     ///
     /// Samples that the files lack are renamed, moved or removed.
@@ -125,6 +130,11 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     if let Some(doubt) = labels::doubt_of_none(classes) {
         eprintln!("morec: {doubt}");
     }
+    let mut annotations = annotations;
+    if let Some(annotator) = &args.annotator {
+        let unsaid = annotations.iter_mut().filter(|a| a.annotator.is_none());
+        unsaid.for_each(|a| a.annotator = Some(annotator.clone()));
+    }
     let mut resolved = exchange::resolve(annotations, &db.clips(&ClipFilter::default())?);
     for note in &resolved.notes {
         eprintln!("morec: {note}");
@@ -147,6 +157,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         replace: args.replace,
         dry_run: args.dry_run,
         people: resolved.people,
+        annotators: resolved.annotators,
     };
     let done = db.label(&samples, &options)?;
     if args.json {
@@ -217,6 +228,9 @@ fn said(counts: &Added, args: &Args) -> String {
     if counts.people > 0 {
         parts.push(format!("{} clips assigned to persons", counts.people));
     }
+    if counts.annotated > 0 {
+        parts.push(format!("{} given an annotator", counts.annotated));
+    }
     let would = if args.dry_run {
         "nothing was changed; with this command: "
     } else {
@@ -276,7 +290,7 @@ fn changes(db: &MotionDb, done: &Labelled) -> Result<TextTable> {
 fn undo(db: &mut MotionDb, json: bool) -> Result<ExitCode> {
     // The history holds changes of every kind; this command undoes changes of labels only.
     if let Some(last) = db.history()?.into_iter().find(|step| !step.undone) {
-        let kinds = ["samples", "classes"];
+        let kinds = ["samples", "classes", "annotators"];
         if last
             .rows
             .keys()
@@ -323,6 +337,7 @@ fn by_hand(args: &Args, class: &str, lengths: &ClipLengths) -> Result<Annotation
         person: None,
         score: None,
         state: SampleState::Accepted,
+        annotator: None,
     })
 }
 
@@ -346,7 +361,9 @@ fn read(
         // A label track does not name its clip; its file does, if morec wrote it.
         let named = match (&args.clip, form) {
             (Some(clip), _) => Some(clip.clone()),
-            (None, LabelFormat::Audacity) => exchange::clip_of_file(path, lengths),
+            (None, LabelFormat::Audacity | LabelFormat::Bids) => {
+                exchange::clip_of_file(path, lengths)
+            }
             (None, _) => None,
         };
         let context = LabelContext {

@@ -82,7 +82,7 @@ fn classes(page: &mut Page, db: &MotionDb, limit: usize) -> Result<()> {
             let filter = SampleFilter {
                 class: Some(class.name.clone()),
                 state: Some(state),
-                clip: None,
+                ..SampleFilter::default()
             };
             let samples = db.samples(&filter)?;
             let (shown, rest) = samples.split_at(samples.len().min(limit));

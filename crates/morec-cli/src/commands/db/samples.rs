@@ -33,6 +33,9 @@ pub struct Args {
     /// Samples in this state
     #[arg(long, value_parser = by_name(&SampleState::ALL, SampleState::name))]
     state: Option<SampleState>,
+    /// Samples by this annotator
+    #[arg(long, value_name = "NAME")]
+    annotator: Option<String>,
     /// Remove these samples (numbers, separated by commas)
     #[arg(long, value_delimiter = ',', value_name = "NUMBERS")]
     remove: Vec<i64>,
@@ -84,6 +87,7 @@ fn filter(args: &Args, db: &MotionDb) -> Result<SampleFilter> {
         clip: clip.transpose()?.map(|info| info.id),
         class: args.class.clone(),
         state: args.state,
+        annotator: args.annotator.clone(),
     })
 }
 
@@ -118,9 +122,18 @@ fn print_some(samples: &[DbSample], all: usize, json: bool) -> Result<ExitCode> 
         return Ok(ExitCode::SUCCESS);
     }
     let mut table = TextTable::new([
-        "clip", "number", "class", "start", "stop", "frames", "state", "score", "by",
+        "clip",
+        "number",
+        "class",
+        "start",
+        "stop",
+        "frames",
+        "state",
+        "score",
+        "annotators",
+        "by",
     ])
-    .least(["by", "frames", "score"]);
+    .least(["by", "frames", "score", "annotators"]);
     for s in samples {
         let frames = s.frames();
         table.row([
@@ -133,6 +146,7 @@ fn print_some(samples: &[DbSample], all: usize, json: bool) -> Result<ExitCode> 
             s.state.name().to_owned(),
             s.score
                 .map_or_else(String::new, |score| format!("{score:.2}")),
+            s.annotators.join(", "),
             s.set_by.clone(),
         ]);
     }

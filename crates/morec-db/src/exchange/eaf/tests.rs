@@ -33,6 +33,7 @@ fn annotations() -> impl Strategy<Value = Vec<Annotation>> {
         person,
         score: None,
         state,
+        annotator: None,
     });
     prop::collection::vec(one, 1..20)
 }
@@ -143,6 +144,7 @@ fn what_xml_cannot_hold_is_refused() {
         person: None,
         score: None,
         state: SampleState::Accepted,
+        annotator: None,
     };
     let error = write(&[annotation("bell\u{7}")], &lengths()).unwrap_err();
     assert!(

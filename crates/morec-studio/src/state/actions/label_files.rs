@@ -48,6 +48,7 @@ impl State {
             paths: files.paths,
             samples: files.samples,
             people: files.people,
+            annotators: files.annotators,
             replace,
         });
     }

@@ -40,13 +40,16 @@ pub struct Args {
     /// Labels of this class only
     #[arg(long, value_name = "CLASS")]
     pub(super) class: Option<String>,
+    /// Labels of this annotator only
+    #[arg(long, value_name = "NAME")]
+    pub(super) annotator: Option<String>,
     /// State of the samples to write
     #[arg(long, default_value = "accepted", value_parser = by_name(&SampleState::ALL, SampleState::name))]
     pub(super) state: SampleState,
     /// Write the motion of these clips instead of labels
     ///
     /// `*` stands for any text, `?` for one character.
-    #[arg(long, value_name = "CLIP", conflicts_with_all = ["clip", "class", "state"])]
+    #[arg(long, value_name = "CLIP", conflicts_with_all = ["clip", "class", "state", "annotator"])]
     pub(super) motion: Option<String>,
     /// Content of a CSV of motion
     #[arg(long, value_enum, default_value = "positions", requires = "motion")]
