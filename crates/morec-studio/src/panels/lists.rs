@@ -145,7 +145,9 @@ impl List {
             let before: Option<Wanted> = data.get_temp(Id::NULL);
             let before = before.filter(|w| w.list == id && w.pass + 2 > now);
             let at = match (pending, current) {
-                (Some(pending), Some(current)) => Some(pending.step.after(current.at, columns, len)),
+                (Some(pending), Some(current)) => {
+                    Some(pending.step.after(current.at, columns, len))
+                }
                 (Some(_), None) => entry,
                 (None, _) => before.map(|wanted| wanted.at),
             };
