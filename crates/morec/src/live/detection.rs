@@ -11,7 +11,7 @@ use super::Model;
 /// Detections that one push can complete at most; more than a motion a tick is not a motion.
 const MAX_DETECTIONS_PER_PUSH: usize = 64;
 
-/// Meaning of a [score](Detection::score), in the words of every door.
+/// The meaning of a [score](Detection::score), in the words used by every interface.
 pub const SCORE: &str = "Probability that the detection is right, 0 to 1. The lowest accepted score is 0.05 to 0.44, depending \
     on the index. For held poses and indexes without calibration (svrdm, older files) it is the similarity to a sample instead.";
 
@@ -20,20 +20,20 @@ pub const SCORE: &str = "Probability that the detection is right, 0 to 1. The lo
 pub struct Detection<C = ClassId> {
     /// Class of the motion.
     pub class: C,
-    /// When it happened, on the stream's clock.
+    /// Start and stop of the motion, seconds on the stream's clock.
     #[serde(flatten)]
     pub span: TimeSpan,
     /// Probability that the detection is right, 0 to 1. The lowest accepted score is 0.05 to 0.44, depending on the index. For
     /// held poses and indexes without calibration (svrdm, older files) it is the similarity to a sample instead.
     pub score: f64,
-    /// The stream's clock when it was reported: the time of the pose that settled it.
+    /// Time of the report on the stream's clock, seconds: that of the pose that completed the detection.
     pub reported_secs: f64,
-    /// Of an activity that repeats.
+    /// Repetitions, for a repeated activity.
     pub repetitions: Option<Repetitions>,
 }
 
 impl Detection {
-    /// The same with the name of its class in `model`.
+    /// The same detection with the name of its class in `model`.
     pub fn named(self, model: &Model) -> Detection<&str> {
         let class = model.class_name(self.class);
         self.with_class(class)
@@ -41,7 +41,7 @@ impl Detection {
 }
 
 impl<C> Detection<C> {
-    /// The same with its class said otherwise.
+    /// The same detection with another value for its class.
     pub fn with_class<D>(self, class: D) -> Detection<D> {
         Detection {
             class,
@@ -65,12 +65,12 @@ impl<C: fmt::Display> fmt::Display for Detection<C> {
     }
 }
 
-/// A motion that seems to be under way.
+/// A motion that is probably being performed: tentative, before its end.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EarlyDetection {
     /// Class of the motion, tentatively.
     pub class: ClassId,
-    /// Nearness to the beginning of a sample: 0 just worth reporting … 1 identical.
+    /// Similarity to the beginning of a sample: 0 is the least that is reported, 1 is identical.
     pub score: f64,
     /// Share of the motion that was seen, 0 to 1.
     pub progress: f64,

@@ -11,13 +11,13 @@ use crate::roles::{Role, RoleMap};
 pub struct PerformerId(pub u16);
 
 impl PerformerId {
-    /// Its place in a list of performers.
+    /// The number as an index into a list of performers.
     pub fn index(self) -> usize {
         usize::from(self.0)
     }
 }
 
-/// A source's skeleton, and which of its joints plays which part. Frames that follow are poses of it.
+/// The skeleton of a source with its roles. The frames that follow are poses of this skeleton.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Rig {
     /// The joints, parents first.
@@ -27,7 +27,7 @@ pub struct Rig {
 }
 
 impl Rig {
-    /// For sources that know the joints by their roles: joint `i` plays `Role::ALL[i]`, nothing hangs together.
+    /// The rig of a source that names joints by role: joint `i` has the role `Role::ALL[i]`, and all joints are roots.
     pub fn of_roles() -> Self {
         let joint = |role: Role| Joint {
             name: role.name().to_owned(),
@@ -43,23 +43,23 @@ impl Rig {
         Self { skeleton, roles }
     }
 
-    /// The bones that this skeleton shows in `pose`: both ends are known and lie apart.
+    /// The bones of this skeleton in `pose`: those with both ends known and not at the same position.
     pub fn bones(&self, pose: &KeyPose) -> BoneSet {
         BoneSet::of_pose(pose)
     }
 }
 
-/// One performer's pose at one instant, as it travels from a source to recognition; reused from frame to frame.
+/// One performer's pose at one instant, on its way from a source to recognition. The same value is reused from frame to frame.
 ///
-/// Right-handed, Y up, one unit of length throughout. Rotations travel along for methods that look at them; the
-/// template recogniser looks at [`key_pose`](Frame::key_pose) only.
+/// Right-handed, Y up, any unit of length, the same in all frames. The method svrdm uses the rotations; templates use only
+/// [`key_pose`](Frame::key_pose).
 #[derive(Debug, Clone, Default)]
 pub struct Frame {
-    /// When it was, on the source's clock, seconds.
+    /// Time of the pose on the source's clock, seconds.
     pub time_secs: f64,
     /// When its last part arrived: [`wall_now_secs`](super::wall_now_secs) then.
     pub wall_secs: f64,
-    /// The performer it shows.
+    /// The performer of this pose.
     pub actor: PerformerId,
     /// Joints of the rig that was announced last, one position each. A joint that is unknown at this instant has a
     /// position that is not a number. Rotations are empty if the source knows positions only.
@@ -67,7 +67,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// Positions of the role joints, which templates compare.
+    /// Positions of the joints with roles, as templates compare them.
     pub fn key_pose(&self, rig: &Rig) -> KeyPose {
         let mut key = KeyPose::default();
         for (role, joint) in rig.roles.played() {
@@ -78,7 +78,7 @@ impl Frame {
         key
     }
 
-    /// Takes the poses of a source that knows roles: joints as in [`Rig::of_roles`], positions only.
+    /// Sets the frame to a pose by roles: joints as in [`Rig::of_roles`], positions only.
     pub fn set_key_pose(&mut self, pose: &KeyPose) {
         let unknown = Vec3::repeat(f64::NAN);
         self.pose.rotations.clear();
@@ -88,7 +88,7 @@ impl Frame {
             .extend(Role::ALL.map(|role| pose.get(role).unwrap_or(unknown)));
     }
 
-    /// Makes room for `joints` joints, all unknown and unturned.
+    /// Resizes the frame to `joints` joints, all unknown and without rotation.
     pub fn clear(&mut self, joints: usize) {
         self.pose.positions.clear();
         self.pose.positions.resize(joints, Vec3::repeat(f64::NAN));

@@ -40,7 +40,7 @@ use crate::{ParseError, SignedAxis};
 /// # }
 /// ```
 ///
-/// After the first frame, pushing takes no memory, but where parts that were announced do not come, or come late
+/// After the first frame, pushing allocates no memory, except if announced body parts are missing or appear late
 /// ([`ShownBones`](super::ShownBones)).
 #[derive(Debug)]
 pub struct PerformerStream {
@@ -60,23 +60,23 @@ pub struct PerformerStream {
     turned: Frame,
 }
 
-/// Why a stream cannot be recognised with an index.
+/// Reasons why a stream cannot be recognised with an index.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum StreamError {
-    /// An option that cannot be.
+    /// An invalid option.
     #[error(transparent)]
     Option(#[from] OptionError),
     /// Roles that do not fit the points or the skeleton.
     #[error("roles: {0}")]
     Roles(ParseError),
-    /// Points of which no part of a body is known.
+    /// Points that identify no body part.
     #[error(
         "points: neither a known set of points nor names of body parts; assign roles to points with `roles`, as in \
          {{\"left_hand\": \"LWrist\", \"hips\": \"LHip+RHip\"}}"
     )]
     NoParts,
-    /// Points do not turn.
+    /// The index needs joint rotations, which points do not have.
     #[error(
         "an index of the method {method} needs joint rotations, which a stream of positions does not have"
     )]
@@ -84,18 +84,19 @@ pub enum StreamError {
         /// The method of the index.
         method: &'static str,
     },
-    /// Nothing of the stream is the index's.
+    /// The stream has none of the index's bones.
     #[error(transparent)]
     Start(#[from] StartError),
 }
 
 impl PerformerStream {
-    /// A stream of points of these names: a published set (MediaPipe, COCO, Kinect, marker sets), usual joint names, or names of
-    /// roles; the options' roles override what the names tell.
+    /// A stream of points with these names: a published set (MediaPipe, COCO, Kinect, marker sets), usual joint names, or names
+    /// of roles.
+    /// Roles in the options override those inferred from the names.
     ///
     /// # Errors
-    /// No part of a body among the points, no bone of the index among them, an index that needs rotations, or an option that cannot
-    /// be.
+    /// The points identify no body part, none of the index's bones is among them, the index needs rotations, or an option is
+    /// invalid.
     pub fn of_points(
         index: &Arc<MotionIndex>,
         names: &[&str],
@@ -104,7 +105,7 @@ impl PerformerStream {
         Self::of_places(index, names, places_of(names), options)
     }
 
-    /// A stream of points of these names, of which `places` make parts of the body.
+    /// A stream of points with these names, from which `places` computes the positions of body parts.
     ///
     /// # Errors
     /// As [`of_points`](Self::of_points).
@@ -177,10 +178,10 @@ impl PerformerStream {
         Ok(stream)
     }
 
-    /// Makes the stream as it was when it was made: all that was pushed is forgotten.
+    /// Resets the stream to its initial state and discards all frames so far.
     ///
     /// # Errors
-    /// None that making it did not have.
+    /// As when the stream was created.
     pub fn reset(&mut self) -> Result<(), StartError> {
         let mut performer = Performer::sharing(&self.recognizers, PerformerId(0), &self.options);
         performer.set_rig(&self.rig);
@@ -191,13 +192,14 @@ impl PerformerStream {
         Ok(())
     }
 
-    /// Where the positions of the next frame go: x, y, z of each point, NaN where it is not seen. Empty for a stream of a skeleton.
+    /// The buffer for the positions of the next frame: x, y, z of each point, NaN for a missing point. Empty for a stream of a
+    /// skeleton.
     pub fn values(&mut self) -> &mut [f64] {
         &mut self.values
     }
 
-    /// Takes the frame that [`values`](Self::values) hold, seen at `time_secs` on the stream's clock and arrived at `wall_secs`
-    /// ([`wall_now_secs`](super::wall_now_secs)); the events that it settled.
+    /// Processes the frame in [`values`](Self::values), seen at `time_secs` on the stream's clock, which arrived at `wall_secs`
+    /// ([`wall_now_secs`](super::wall_now_secs)). Returns the events that it causes, usually none.
     pub fn push_values(&mut self, time_secs: f64, wall_secs: f64) -> &[Event] {
         let values = &self.values;
         for (role, place) in &self.places {
@@ -208,7 +210,7 @@ impl PerformerStream {
         self.performer.push_pose(time_secs, wall_secs, &self.key)
     }
 
-    /// Takes a pose of the skeleton; the events that it settled.
+    /// Processes a pose of the skeleton and returns the events that it causes, usually none.
     pub fn push(&mut self, frame: &Frame) -> &[Event] {
         let Some(turn) = self.turn else {
             return self.performer.push(frame);
@@ -223,39 +225,40 @@ impl PerformerStream {
         self.performer.push(&self.turned)
     }
 
-    /// Ends the stream: the events that its last moments hold. The next frame begins a new one.
+    /// Ends the stream and returns its last events. The next frame starts a new stream.
     pub fn finish(&mut self) -> &[Event] {
         self.performer.finish()
     }
 
-    /// The index that recognises.
+    /// The index used for recognition.
     pub fn index(&self) -> &Arc<MotionIndex> {
         &self.index
     }
 
-    /// The skeleton, or that of the roles that the points play.
+    /// The skeleton of the stream; for a stream of points, a flat skeleton of its roles.
     pub fn rig(&self) -> &Rig {
         &self.rig
     }
 
-    /// Seconds from the end of a motion to its report at the earliest; `None` of a skeleton before its first frame, if nothing of it was
-    /// announced.
+    /// Shortest time from the end of a motion to its report, seconds. `None` for a stream of a skeleton before its first frame,
+    /// unless
+    /// bones were announced.
     pub fn latency_secs(&self) -> Option<f64> {
         self.performer.latency_secs()
     }
 
-    /// Motions that were not reported because of [`StreamOptions::refractory_secs`].
+    /// Number of motions not reported because of [`StreamOptions::refractory_secs`].
     pub fn suppressed(&self) -> u64 {
         self.performer.suppressed()
     }
 
-    /// Measurements and findings of the last seconds.
+    /// Measures and findings of the stream in the last seconds.
     pub fn diagnosis(&self) -> Diagnosis {
         let known = self.performer.diagnosis();
         known.unwrap_or_else(|| Diagnoser::live().diagnosis())
     }
 
-    /// What is wrong with the stream of the last seconds for the index, a sentence each with its severity, the gravest first:
+    /// Problems of the stream in the last seconds, one sentence each with its severity and remedy, the most severe first:
     /// [`MotionIndex::findings`].
     pub fn findings(&self) -> Vec<String> {
         self.index.findings(&self.diagnosis())

@@ -23,12 +23,10 @@ pub struct Recognizer {
 }
 
 impl Recognizer {
-    /// For a stream that offers `bones`; what a template model uses beyond them is left out of every comparison.
-    ///
-    /// Fails if the model's parts do not fit together, or no bone is left of a template model's.
+    /// A recogniser for a stream with `bones`. Other bones of a template model are left out of all comparisons.
     ///
     /// # Errors
-    /// The model's parts do not fit together, or no bone of a template model is left.
+    /// The parts of the model do not fit together, or a template model has none of `bones`.
     pub fn new<M: Clone + Into<Model>>(model: &M, bones: BoneSet) -> Result<Self, StartError> {
         let (model, pipeline) = pipeline(model.clone().into(), bones)?;
         Ok(Self {
@@ -39,8 +37,8 @@ impl Recognizer {
         })
     }
 
-    /// A recogniser that decides between matches of the stream that will be pushed, found by all parts of an index and
-    /// [merged](ClassMatches::merge); `model` is the first part.
+    /// A recogniser for an index that is divided among machines: decides between the matches found by all parts of the index and
+    /// [merged](ClassMatches::merge), while the same stream is pushed again. `model` is the first part.
     ///
     /// # Errors
     /// The model uses none of `bones`.
@@ -58,20 +56,20 @@ impl Recognizer {
         })
     }
 
-    /// The model in use, already without what the stream does not offer.
+    /// The model in use, without the bones that the stream lacks.
     pub fn model(&self) -> &Model {
         &self.model
     }
 
-    /// Seconds from the end of a motion to its report at the earliest: filters, windows, lag.
+    /// Shortest time from the end of a motion to its report, seconds: the sum of filters, windows and lag.
     pub fn latency_secs(&self) -> f64 {
         self.pipeline.latency_secs()
     }
 
-    /// Takes the pose at `time_secs` on the stream's clock and returns what it settled, in order of time.
+    /// Processes the pose at `time_secs` on the stream's clock and returns the detections that it completes, in order of time.
     ///
-    /// Poses may come at any rate, also unevenly; late and duplicate ones are ignored. After a gap of more than
-    /// [`MAX_GAP_SECS`](crate::features::MAX_GAP_SECS) the stream begins anew. No allocation.
+    /// Poses may have any rate, also an irregular one; late and duplicate poses are ignored. After a gap of more than
+    /// [`MAX_GAP_SECS`](crate::features::MAX_GAP_SECS) seconds the stream starts again. Allocates no memory.
     pub fn push<'p>(
         &mut self,
         time_secs: f64,
@@ -89,8 +87,8 @@ impl Recognizer {
         &self.found.detections
     }
 
-    /// Takes poses with their times, in order, and adds what they settled to `out`: the same detections as of
-    /// pushing one by one. Allocates only if `out` has to grow.
+    /// Processes poses with their times, in order, and appends the detections that they complete to `out`: the same as with
+    /// [`push`](Self::push), one by one. Allocates only if `out` has to grow.
     pub fn push_all(&mut self, poses: &[(f64, KeyPose)], out: &mut Vec<Detection>) {
         self.push_each(out, |each| {
             (poses.iter()).for_each(|(time_secs, pose)| each(*time_secs, pose.into()));
@@ -110,8 +108,9 @@ impl Recognizer {
         out.extend_from_slice(&self.found.detections);
     }
 
-    /// Ends the stream: returns what its last moments still hold. The next push begins a new stream, of any performer: nothing is
-    /// kept of the one before.
+    /// Ends the stream and returns its last detections. The next push starts a new stream, of any performer: nothing of the
+    /// previous
+    /// stream is kept.
     pub fn finish(&mut self) -> &[Detection] {
         self.found.begin(self.now_secs);
         self.pipeline.end_stretch(&mut self.found);
@@ -119,14 +118,15 @@ impl Recognizer {
         &self.found.detections
     }
 
-    /// Detections that were lost because one push settled more than 64. None in practice: a push that follows a gap
-    /// completes a second of ticks at most.
+    /// Number of detections lost because one push completed more than 64. In practice 0: a push after a gap completes at most one
+    /// second
+    /// of ticks.
     pub fn dropped(&self) -> u64 {
         self.found.dropped
     }
 
-    /// The motion that seems to be under way after the last push, if any. Tentative: it says nothing about what
-    /// [`push`](Self::push) will report, and asking changes nothing of that. Templates only. No allocation.
+    /// The motion that is probably being performed at the last push, if any. Tentative: it neither predicts nor changes what
+    /// [`push`](Self::push) will report. Method templates only. Allocates no memory.
     pub fn early_detection(&mut self) -> Option<EarlyDetection> {
         self.pipeline.early_detection()
     }
@@ -143,14 +143,14 @@ impl Recognizer {
         self.pipeline.progress(&mut each);
     }
 
-    /// Remembers motion from now on, so that [`deviation`](Self::deviation) can be asked for. Allocates.
+    /// Keeps the last seconds of motion from now on, as [`deviation`](Self::deviation) requires. Allocates memory.
     pub fn measure_deviations(&mut self) {
         self.pipeline.measure_deviations();
     }
 
-    /// How far a performance of `class` in `span`, of the last 20 s, was from the nearest sample; with `repetition`, one
-    /// repetition of an activity. `None` if it was not [remembered](Self::measure_deviations) or no sample is kept: of held poses and of the
-    /// method of 2009. No allocation. O(samples · rows²).
+    /// Compares a performance of `class` in `span`, within the last 20 s, with the nearest sample; with `repetition`, one
+    /// repetition of an activity. `None` if the motion was not [kept](Self::measure_deviations), and for held poses and the method svrdm.
+    /// Allocates no memory. O(samples · rows²).
     pub fn deviation(
         &mut self,
         class: ClassId,

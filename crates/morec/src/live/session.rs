@@ -15,14 +15,14 @@ use super::{
     Frame, Model, OverflowPolicy, RecognizerCache, SessionError, Source, SourceEvent, svrdm,
 };
 
-/// Distribution of recognition over threads. Events are the same.
+/// Distribution of recognition over threads. Events do not depend on it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Threading {
     /// All of it on one thread.
     #[default]
     Inline,
-    /// Each stage on its own, as the thesis has it; of the `svrdm` method only. Six threads beside the source's, for
-    /// one stream: worth trying where cores are idle.
+    /// Each stage on its own thread, as in the thesis; for the method `svrdm` only. Uses six threads besides the source's for one
+    /// stream, which can pay off if cores are idle.
     Stages,
 }
 
@@ -31,12 +31,12 @@ pub enum Threading {
 pub struct SessionOptions {
     /// Distribution of recognition over threads; pools are always inline.
     pub layout: Threading,
-    /// Called first on every thread of the session, with what the thread is for: `source`, `recognition`, or the stage.
-    /// The place to tie it to a core or to give it a priority.
+    /// Called first on every thread of the session with the purpose of the thread: `source`, `recognition`, or the stage. Can
+    /// bind the thread to a core or set its priority.
     pub on_thread: Option<fn(&'static str)>,
     /// Selection of events.
     pub events: EventOptions,
-    /// Behaviour when recognition, or a reader, does not keep up.
+    /// Behaviour when recognition or a reader is too slow.
     pub overload: OverflowPolicy,
     /// Frames that may wait for recognition.
     pub frame_capacity: usize,
@@ -76,10 +76,10 @@ pub struct Session {
 }
 
 impl Session {
-    /// Starts recognising what `source` gives; returns the session and its readers.
+    /// Starts recognising the poses of `source` on new threads. Returns the session and its readers of events.
     ///
     /// # Errors
-    /// The model's parts do not fit together, the system refuses a thread, or stages are asked for of a method that has none.
+    /// The parts of the model do not fit together, a thread cannot be started, or stages are requested for a method without them.
     pub fn start<M: Clone + Into<Model>>(
         model: &M,
         source: Box<dyn Source>,
@@ -94,7 +94,7 @@ impl Session {
         Ok((session, readers))
     }
 
-    /// A session without a source: the caller feeds it. Dropping the [`FeedSender`] ends the stream.
+    /// A session without a source, fed by the caller through the [`FeedSender`]. Dropping the sender ends the stream.
     ///
     /// # Errors
     /// As [`start`](Self::start).
@@ -194,26 +194,28 @@ impl Session {
         Ok(())
     }
 
-    /// Status of the session. Never waits, holds nothing up.
+    /// Status of the session. Never waits, and never delays recognition.
     pub fn status(&self) -> Status {
         self.handle().get()
     }
 
-    /// For reading the status from elsewhere.
+    /// A handle for reading the status from other threads.
     pub fn handle(&self) -> StatusHandle {
         StatusHandle {
             cells: self.cells.clone(),
         }
     }
 
-    /// Waits until the source has ended and everything is reported. Under [`OverflowPolicy::Wait`] a reader must go on reading.
+    /// Waits until the source has ended and all events are reported. With [`OverflowPolicy::Wait`], readers must continue reading
+    /// meanwhile.
     pub fn join(mut self) -> Status {
         self.wait();
         self.status()
     }
 
-    /// Ends it now: the source is not asked again, what was taken is recognised, what a full reader has no room for
-    /// is dropped and counted.
+    /// Ends the session now: fetches no more poses from the source, recognises those already fetched, and drops events for which
+    /// a
+    /// reader has no room; these are counted.
     pub fn stop(mut self) -> Status {
         self.end();
         self.status()

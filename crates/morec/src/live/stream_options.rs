@@ -12,17 +12,15 @@ use crate::templates::PerformerKind;
 /// The longest [`StreamOptions::refractory_secs`].
 const MOST_REFRACTORY_SECS: f64 = 3600.0;
 
-/// Options of one performer's stream, the same behind every door: names and defaults of the command, of Python's keywords, of the
-/// npm package's objects and of the engines' properties are these.
+/// Options of one performer's stream. Command, Python, npm and the engines use the same names and defaults.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct StreamOptions {
-    /// Accepted false alarms a minute in background motion: 0.1 is strict, 1 is generous. As trained by default. As trained,
-    /// unless given.
+    /// Accepted false alarms a minute in background motion: 0.1 is strict, 1 is generous. As trained by default.
     pub sensitivity: Option<f64>,
     /// The expected performer: `auto`, `teacher`, `anyone`.
     pub performer: PerformerKind,
-    /// Report what seems to be under way, too: events of the phases start, update and cancel.
+    /// Also report motions before they end: events of the phases start, update and cancel.
     pub tentative: bool,
     /// Make each repetition of an activity an event of its own, of the phase repetition.
     pub each_repetition: bool,
@@ -33,7 +31,7 @@ pub struct StreamOptions {
     pub progress: bool,
     /// A motion of the same class that ends less than this after the one before it is not reported, seconds.
     pub refractory_secs: f64,
-    /// Roles of joints or points whose names do not tell them.
+    /// Roles of joints or points that the names do not identify.
     pub roles: Mapping,
     /// The axis that points up in the stream; `-y` for landmarks of pictures.
     pub up: SignedAxis,
@@ -55,11 +53,11 @@ impl Default for StreamOptions {
     }
 }
 
-/// An option that cannot be; its text begins with the option's name.
+/// An invalid option. The message begins with the option's name.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum OptionError {
-    /// There is no option of a name, or it cannot have the value.
+    /// The option does not exist, or has an invalid value.
     #[error("{0}")]
     Value(String),
     /// The index does not have this sensitivity.
@@ -68,16 +66,16 @@ pub enum OptionError {
     /// The index does not have a gate for this performer.
     #[error("performer: {0}")]
     Performer(#[from] PerformerError),
-    /// A time below 0, or no number.
+    /// The refractory time is below 0, above one hour, or not a number.
     #[error("refractory_secs: expected 0 to {MOST_REFRACTORY_SECS}, found {0}")]
     Refractory(f64),
 }
 
 impl StreamOptions {
-    /// Options from the text of a JSON object; what is not in it, or null, is as usual.
+    /// Reads options from the text of a JSON object. Missing options, and those that are null, have their defaults.
     ///
     /// # Errors
-    /// The option that does not exist, or that cannot have its value.
+    /// An option does not exist, or has an invalid value.
     pub fn from_json(text: &str) -> Result<Self, OptionError> {
         let given: Map<String, Value> =
             serde_json::from_str(text).map_err(|e| OptionError::Value(format!("options: {e}")))?;
@@ -93,10 +91,10 @@ impl StreamOptions {
             .map_err(|error| OptionError::Value(error.to_string()))
     }
 
-    /// `model` with the sensitivity and for the performer of these options.
+    /// `model` adjusted to the sensitivity and the performer of these options.
     ///
     /// # Errors
-    /// The model notes no rates of false alarms, has no gate for others than the teacher, or the sensitivity makes no sense.
+    /// The model has no rates of false alarms or no relaxed gate, or the sensitivity is not above 0.
     pub fn tuned(&self, mut model: Model) -> Result<Model, OptionError> {
         if let Some(alarms_per_minute) = self.sensitivity {
             model = model.with_sensitivity(alarms_per_minute)?;
@@ -107,10 +105,10 @@ impl StreamOptions {
         Ok(model)
     }
 
-    /// The selection and rate of events.
+    /// The selection of events, and their refractory time.
     ///
     /// # Errors
-    /// A refractory time below 0 or above an hour.
+    /// The refractory time is below 0 or above one hour.
     pub fn events(&self) -> Result<EventOptions, OptionError> {
         if !(0.0..=MOST_REFRACTORY_SECS).contains(&self.refractory_secs) {
             return Err(OptionError::Refractory(self.refractory_secs));
