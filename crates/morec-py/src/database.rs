@@ -342,7 +342,7 @@ impl PyDatabase {
         plain(py, &added)
     }
 
-    /// Stretches that are like an example, the likest first.
+    /// Segments similar to an example, most similar first.
     #[pyo3(signature = (example, start=0.0, stop=None, **settings))]
     fn search<'py>(
         &self,

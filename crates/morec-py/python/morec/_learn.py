@@ -116,17 +116,17 @@ def train(
     unlabelled : {"background", "ignore"}
         Use of the unlabelled parts of labelled clips.
     everyday : {"auto", "always", "never"}
-        Whether synthetic everyday motion is background too (not with method svrdm); auto: if background holds less than a
-        minute.
+        Whether to use the built-in everyday motion as background (not with method svrdm); auto: only if background has less than
+        1 minute.
     mirror : {"auto", "yes", "no"}
         Whether to train on mirrored copies of samples too (not with method svrdm). yes: all classes; auto: only between pairs of
         classes named for a side, such as wave_left and wave_right.
     one_sided : sequence of str
-        With mirror yes: classes whose mirror image is another motion; it then teaches what the class is not.
+        With mirror yes: classes whose mirror image is another motion, which becomes a negative example.
     activities, gestures : sequence of str
-        With method auto: classes that are one or the other whatever their samples say.
+        With method auto: classes that are activities or gestures, whatever their samples show.
     bones : str or sequence of str
-        Which parts count (not with method svrdm): all (of clips without a body: their hands), upper, arms, hand, left_hand, hands,
+        Body parts to use (not with method svrdm): all (for clips without a body: the hands), upper, arms, hand, left_hand, hands,
         body_and_hands, points3, or names of bones.
     params : dict, optional
         Parameters of the method by their path, as ``{"rho": 0.4, "decode.lag_ticks": 2}``.
@@ -135,14 +135,14 @@ def train(
     Returns
     -------
     Index
-        `Index.report` says what was learned.
+        The trained index; see `Index.report`.
 
     Raises
     ------
     MorecError
-        Clips and labels that do not fit together, too little to learn from.
+        Clips and labels do not fit together, or there are too few samples.
     ValueError
-        Labels or options that make no sense.
+        Labels or options are invalid.
 
     Warns
     -----

@@ -1,7 +1,7 @@
-"""Archives: a bucket of clips, on one machine and on many (``pip install './crates/morec-py[archive]'``).
+"""Archives: large collections of clips, processed on one or many machines (``pip install './crates/morec-py[archive]'``).
 
-An archive is a folder of Parquet tables, local or in an S3-compatible store. Daft does the work: on this machine by
-default, on a Ray cluster after `use_ray`.
+An archive is a folder of Parquet tables, local or in an S3-compatible store. Daft runs the work: on this machine by default, on a
+Ray cluster after `use_ray`.
 
 >>> import morec.archive as ma
 >>> a = ma.create("archive/", from_files="raw/**/*.bvh")
@@ -33,9 +33,9 @@ __all__ = ["Archive", "create", "open", "recognize", "use_ray"]
 
 
 def use_ray(address: str | None = None) -> None:
-    """Run on a Ray cluster: that at ``address``, or one that is started on this machine.
+    """Run on a Ray cluster: the cluster at ``address``, or a new cluster on this machine.
 
-    Call it before anything else; Daft chooses once how it runs.
+    Call this before anything else, because Daft chooses its runner only once.
     """
     daft.set_runner_ray(address=address, noop_if_initialized=True)
 
@@ -51,20 +51,20 @@ def create(
     s3: dict[str, str] | None = None,
     raw_s3: dict[str, str] | None = None,
 ) -> Archive:
-    """Make an archive, or add to it what is new.
+    """Create an archive, or add new files to it.
 
-    Files are parsed, compressed and turned into feature rows where the workers are; a task's result appears whole, so the
-    import may be stopped anywhere and begun again. A file that cannot be read is a row with an error.
+    Files are parsed, compressed and turned into feature rows on the workers. The result of a task is written as a whole, so the
+    import can be stopped at any time and started again. An unreadable file becomes a row with an error.
 
     Parameters
     ----------
     archive : path or s3://bucket/prefix
     from_files : path, URL or pattern, optional
-        ``raw/**/*.bvh``; a folder stands for all files in it and below. Files of the same path and size are known.
+        ``raw/**/*.bvh``; a folder stands for all files in it and below. Files with a known path and size are not read again.
     from_database : path, optional
-        A database of ``morec db``: its clips as they are, and its labels.
+        A database of ``morec db``, whose clips and labels are copied unchanged.
     subject, source, licence : str, optional
-        Of every new clip.
+        Description of all new clips.
     s3, raw_s3 : dict, optional
         ``endpoint_url``, ``key_id``, ``access_key``, ``session_token``, ``region_name`` of the archive's store, and of the raw
         files' if it is another; the environment's by default.
@@ -94,9 +94,9 @@ def open(archive: str | os.PathLike[str], *, s3: dict[str, str] | None = None) -
     Raises
     ------
     FileNotFoundError
-        There is none.
+        The archive does not exist.
     ValueError
-        It is of a later release.
+        The archive was written by a later release.
     """
     store = Store(os.fspath(archive), s3 or {})
     layout.check(store.read(layout.ABOUT), store.uri)
@@ -136,7 +136,7 @@ def recognize(
     roles: Expression | None = None,
     rest_frames: Expression | None = None,
 ) -> Expression:
-    """Detections of an index in a column of motion, as a list of events: an ordinary Daft expression.
+    """A Daft expression: the detections of an index in a column of motion, as a list of events.
 
     Parameters
     ----------
@@ -144,12 +144,12 @@ def recognize(
         Binary: the bytes of ``.mclip`` files, as the column ``motion`` of an archive.
     index : Index or path
     roles, rest_frames : Expression, optional
-        The columns of an archive of these names; inferred from the motion by default.
+        Columns of an archive with these names; inferred from the motion by default.
 
     Returns
     -------
     Expression
-        A list of structs: class, start_secs, stop_secs, score, reported_secs; empty where there is nothing to recognise.
+        A list of structs: class, start_secs, stop_secs, score, reported_secs; empty if nothing is recognised.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""An archive and what can be asked of it."""
+"""Archives and their operations."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ HITS = ["clip", "name", "start_secs", "stop_secs", "score", "warp_distance", "mi
 
 
 class Archive:
-    """Clips and labels in Parquet tables; made by `create` and `open`.
+    """Clips and labels in Parquet tables; returned by `create` and `open`.
 
-    Methods that give a Daft DataFrame do nothing until it is collected, shown or written.
+    Methods that return a Daft DataFrame are lazy: they run when it is collected, shown or written.
     """
 
     def __init__(self, store: Store) -> None:
@@ -66,14 +66,14 @@ class Archive:
         return frame.where(col("error").is_null()).exclude("error")
 
     def clips(self) -> DataFrame:
-        """Facts about each clip, without its motion.
+        """Descriptions of all clips, without their motion.
 
         ``clip`` is its key in all tables: the same for the same content. docs/formats/archive.md lists the columns.
         """
         return self._clips(*LIGHT)
 
     def errors(self) -> DataFrame:
-        """Files that are no clips, each with the reason: file_path, file_bytes, error."""
+        """Refused files with the reasons: columns file_path, file_bytes, error."""
         frame = self._frame(layout.CLIPS, ["file_path", "file_bytes", "error"])
         if frame is None:
             raise ValueError(f"{self.store.uri}: the archive holds no clip yet")
@@ -87,7 +87,7 @@ class Archive:
         return frame
 
     def info(self) -> dict[str, Any]:
-        """How much is in it: clips, hours, frames, bytes, errors, labels."""
+        """Numbers of clips, hours, frames, bytes, errors and labels."""
         clips = self._clips("secs", "frames").agg(
             col("clip").count().alias("clips"), col("secs").sum(), col("frames").sum()
         )
@@ -106,7 +106,7 @@ class Archive:
         }
 
     def clip(self, name: str) -> Clip:
-        """One clip, by its key or, if only one is called so, its name."""
+        """Read one clip, by its key, or by its name if the name is unique."""
         row = self._row(name, "motion", "roles", "rest_frames", "facts")
         return _morec.kept_clip(row["name"], row["motion"], row["roles"], row["rest_frames"], row["facts"])
 
@@ -122,7 +122,7 @@ class Archive:
     # Adding
 
     def known_files(self) -> set[tuple[str, int]]:
-        """Path and size of every file that was looked at."""
+        """Path and size of every file that was examined."""
         frame = self._frame(layout.CLIPS, ["file_path", "file_bytes"])
         if frame is None:
             return set()
@@ -130,9 +130,9 @@ class Archive:
         return {(row["file_path"], row["file_bytes"] or 0) for row in rows}
 
     def add_labels(self, labels: Labels, *, state: str = "accepted", by: str = "user") -> int:
-        """Add labels; they name clips by key or by name. How many there are.
+        """Add labels, which name clips by key or name. Returns their number.
 
-        The same labels added again change nothing.
+        Adding the same labels again changes nothing.
         """
         lengths = self._clips("name", "rate_hz", "secs").to_pylist()
         known = {row["clip"]: row for row in lengths} | {row["name"]: row for row in lengths}
@@ -162,7 +162,7 @@ class Archive:
             self.store.write(name, layout.parquet(rows, layout.LABEL_SCHEMA))
 
     def add_database(self, path: str | os.PathLike[str]) -> int:
-        """Add the clips of a database of ``morec db`` as they are, and its labels. How many clips were new."""
+        """Copy the clips and labels of a database of ``morec db``. Returns the number of new clips."""
         kept = _morec.kept_of_database(os.fspath(path))
         there = set(self._keys())
         rows, keys = [], {}
@@ -184,14 +184,14 @@ class Archive:
         return [] if not self._parts(layout.CLIPS) else [row["clip"] for row in self._clips().to_pylist()]
 
     def add_sketches(self) -> int:
-        """Make sketches of clips that have none, as `create` does. Returns the number of parts that were sketched.
+        """Create the missing sketches of clips, as `create` does. Returns the number of parts that got sketches.
 
-        Searching reads the sketches of all clips and the rows of a few; without sketches it reads all rows.
+        A search reads the sketches of all clips and the rows of a few; without sketches it reads all rows.
         """
         return add_sketches(self.store)
 
     def drop_copies(self) -> int:
-        """Turn rows whose content is there from another path into rows with an error that says so. How many."""
+        """Turn rows whose content was imported from another path into rows with an error. Returns their number."""
         first: dict[str, tuple[str, str]] = {}
         copies: dict[str, dict[str, str]] = {}
         for part in self._parts(layout.CLIPS):
@@ -228,14 +228,14 @@ class Archive:
     # Asking
 
     def recognize(self, index: Index | str | os.PathLike[str], *, parts: int = 1) -> DataFrame:
-        """Detections of an index in every clip.
+        """Recognise motions in all clips with an index.
 
         Parameters
         ----------
         index : Index or path
         parts : int
-            Into how many parts the index is divided by its classes, so that no worker holds more than one of them at a
-            time. The events stay the same; every clip is read and decoded once more for each part.
+            Number of parts into which the index is divided by its classes, so that each worker needs the memory of one part only.
+            The events stay the same; every clip is read and decoded once for each part.
 
         Returns
         -------
@@ -267,17 +267,16 @@ class Archive:
         one_a_clip: bool = False,
         exact: bool = True,
     ) -> Table:
-        """Stretches that are like an example, the likest first; what ``morec db search`` finds in the same clips.
+        """Segments similar to an example, most similar first, as ``morec db search`` finds them.
 
         Parameters
         ----------
         example : Clip, path, or key or name of a clip of the archive
         start, stop : float
-            The stretch of it, seconds.
+            The stretch of the example, seconds.
         exact : bool
-            If not, the search ends when the likeliest clips have been read: in a fraction of the time, and some hits may
-            be missed. Those that are found have the scores and the order of an exact search among the same clips. Clips that have
-            no sketches are read in any case.
+            If False, the search ends when the most promising clips have been read: it takes a fraction of the time, but may miss
+            hits. The hits found have the scores and order of an exact search. Clips without sketches are always read.
 
         Returns
         -------
@@ -308,7 +307,7 @@ class Archive:
     def cuts(
         self, *, window: float | None = None, penalty: float | None = None, least: float | None = None
     ) -> DataFrame:
-        """Where each clip's behaviour changes, by kernel change points; what ``morec db cut`` cuts.
+        """Find where the behaviour of each clip changes, by kernel change points, as ``morec cut`` does.
 
         Returns
         -------
@@ -349,7 +348,7 @@ class Archive:
         return discover_sets(self, minutes, rounds, seed)
 
     def moments(self) -> dict[int, dict[str, Any]]:
-        """Number, mean and covariance of all feature rows, for each set of bones (a bit each); merged, not sampled.
+        """Number, mean and covariance of all feature rows, exactly, for each set of bones (one bit for each bone).
 
         Returns
         -------
@@ -377,7 +376,7 @@ class Archive:
         return made
 
     def group(self, classes: Sequence[str] = (), *, groups: int = 8, seed: int = 1) -> Table:
-        """Labelled samples in groups of like ones, by mean and spread of their feature rows.
+        """Group similar labelled samples by the mean and spread of their feature rows.
 
         Returns
         -------
@@ -394,7 +393,7 @@ class Archive:
     def sample(
         self, clips: Iterable[str] | int | DataFrame | None = None, *, seed: int = 1
     ) -> Sample:
-        """Some clips: by key or name, N by chance, those that a DataFrame names in its column clip; or all."""
+        """Select clips: by key or name, N at random, those in the column clip of a DataFrame, or all."""
         if isinstance(clips, DataFrame):
             chosen: set[str] | None = {row["clip"] for row in clips.select("clip").distinct().to_pylist()}
         elif clips is None:
@@ -417,7 +416,7 @@ class Sample:
         self.archive, self.keys = archive, keys
 
     def to_database(self, path: str | os.PathLike[str]) -> int:
-        """Write them into a database of ``morec db``, as they are, with their labels. How many were new there."""
+        """Copy the clips and their labels into a database of ``morec db``. Returns the number of new clips."""
         rows = []
         for part in self.archive._parts(layout.CLIPS):
             for row in self.archive._read_part(part).to_pylist():

@@ -1,4 +1,4 @@
-"""Import: files to rows, in tasks that can be done again."""
+"""Import: files to rows, in tasks that can be repeated."""
 
 from __future__ import annotations
 
