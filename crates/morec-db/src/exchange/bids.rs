@@ -54,7 +54,7 @@ pub fn read(bytes: &[u8], clip: Option<&str>) -> Result<ReadLabels, ParseError> 
             NOTHING => 0.0,
             _ => number(duration)?,
         };
-        if start + length < 0.0 {
+        if length >= 0.0 && start + length < 0.0 {
             let said = format!("{class} lies before the recording; left out");
             read.warnings.push(Warning::new(Place::Line(line), said));
             continue;
@@ -87,7 +87,10 @@ pub fn write(annotations: &[Annotation], lengths: &ClipLengths) -> Result<String
         let names = [Some(&a.class), a.annotator.as_ref()];
         let mut names = names.into_iter().flatten();
         if let Some(name) = names.find(|name| {
-            name.contains(['\t', '\n', '\r', '"']) || name.trim() != *name || *name == NOTHING
+            name.contains(['\t', '\n', '\r'])
+                || name.starts_with('"')
+                || name.trim() != *name
+                || *name == NOTHING
         }) {
             return Err(format!(
                 "{name:?}: events of BIDS cannot hold this name; rename it"

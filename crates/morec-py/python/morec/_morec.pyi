@@ -426,7 +426,7 @@ class Database:
         Returns
         -------
         Table
-            Columns clip, class, start_secs, stop_secs, person, whole_clip, state, score, set_by. `morec.train` takes it.
+            Columns clip, class, start_secs, stop_secs, person, whole_clip, state, score, annotators (a list of names), set_by. `morec.train` takes it.
         """
     def label(self, labels: Any, *, state: str = "accepted", by: str = "user") -> dict[str, int]:
         """Add labels, given as in `morec.train`, all or none. Returns the numbers of added, changed and unchanged labels."""
