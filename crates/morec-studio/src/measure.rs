@@ -17,7 +17,7 @@ use morec::synth::{Person, Script};
 use morec_db::labels::{ClassCount, DbSample, SampleId, SampleState as Judged};
 use morec_db::{ClipId, ClipInfo, StoredClip};
 
-use crate::jobs::load::ClipMotion;
+use crate::body::ClipMotion;
 use crate::screenshot::Headless;
 use crate::state::{Command, Panel, PlayCommand, TimelineCommand};
 use crate::store::{Snapshot, Store};

@@ -100,7 +100,7 @@ impl Headless {
     #[cfg(feature = "measure")]
     pub fn of(
         store: crate::store::Store,
-        motion: std::sync::Arc<crate::jobs::load::ClipMotion>,
+        motion: std::sync::Arc<crate::body::ClipMotion>,
         size: [usize; 2],
     ) -> Self {
         let ctx = egui::Context::default();

@@ -3,8 +3,7 @@
 use morec::kinematics::WorldPose;
 use morec::math::{Axis, Vec3};
 
-use crate::jobs::align::Aligned;
-use crate::jobs::load::ClipMotion;
+use super::{Aligned, ClipMotion};
 
 /// To the left of a performer at a moment: the direction in which companions stand.
 pub fn aside(motion: &ClipMotion, secs: f64) -> Vec3 {

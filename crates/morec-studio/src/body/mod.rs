@@ -1,6 +1,8 @@
 //! A performer as limbs: which joints a limb joins, how thick it is, which side it belongs to.
 
+mod aligned;
 pub mod camera;
+mod clip_motion;
 pub mod companion;
 pub mod mesh;
 pub mod strip;
@@ -11,7 +13,9 @@ use morec::kinematics::WorldPose;
 use morec::math::Vec3;
 use morec::roles::{Role, RoleMap};
 
+pub use aligned::Aligned;
 pub use camera::Camera;
+pub use clip_motion::{ClipMotion, extent};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BodySide {

@@ -6,8 +6,8 @@ use morec::features::Profile;
 use morec::math::{Axis, Vec3};
 
 use super::BodySide;
+use super::ClipMotion;
 use super::mesh::BodyColours;
-use crate::jobs::load::ClipMotion;
 
 /// Figures evenly over a stretch, each seen from its own three-quarter front.
 pub fn strip(motion: &ClipMotion, span: TimeSpan, rect: Rect, palette: &BodyColours) -> Vec<Shape> {

@@ -9,49 +9,14 @@ use morec::features::{FeatureParams, RowLayout, Rows, bones_of_clip, mirrored_ro
 use morec::train::align as warp;
 use morec_db::{DbError, MotionDb};
 
-use super::load::ClipMotion;
 use super::progress::{JobError, JobProgress};
 use super::unlearned::Unlearned;
 use super::{nearest, similar};
+use crate::body::{Aligned, ClipMotion};
 use crate::stretch::Stretch;
 
 /// The table of the alignment has this many cells at most; longer stretches are compared at the same pace.
 const CELLS: usize = 4_000_000;
-
-/// Two stretches along their warping path.
-#[derive(Debug)]
-pub struct Aligned {
-    pub of: Stretch,
-    pub with: Stretch,
-    /// True if the second is shown in a mirror.
-    pub mirrored: bool,
-    /// The second's clip.
-    pub motion: Arc<ClipMotion>,
-    /// For every tick of the first, the moment of the second, seconds.
-    path: Vec<f64>,
-    tick_hz: f64,
-    /// How far the first is from the second; `None` of stretches too long to align.
-    pub deviation: Option<MotionDeviation>,
-}
-
-impl Aligned {
-    /// The moment of the second stretch that belongs to a moment of the first; before and after it, at the same pace.
-    pub fn at(&self, secs: f64) -> f64 {
-        let (first, last) = (self.with.span.start_secs, self.with.span.stop_secs);
-        let of = self.of.span;
-        if secs <= of.start_secs {
-            return (first + secs - of.start_secs).max(0.0);
-        }
-        if secs >= of.stop_secs {
-            return last + secs - of.stop_secs;
-        }
-        let place = (secs - of.start_secs) * self.tick_hz;
-        let (tick, rest) = (place.floor() as usize, place.fract());
-        let here = self.path.get(tick).copied().unwrap_or(last);
-        let next = self.path.get(tick + 1).copied().unwrap_or(last);
-        here + (next - here) * rest
-    }
-}
 
 /// The stretch that another one is compared with.
 #[derive(Debug, Clone, PartialEq)]

@@ -13,8 +13,8 @@ use morec_db::rows::ClipRows;
 use morec_db::{BY_HAND, ClipFilter, ClipId, ClipInfo};
 use morec_ops::{CutMethod, CutSettings, OperationError};
 
-use super::load::ClipMotion;
 use super::progress::{JobError, JobProgress};
+use crate::body::ClipMotion;
 use crate::store::DbPlace;
 
 /// Result of cutting clips.

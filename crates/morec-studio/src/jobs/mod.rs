@@ -48,7 +48,7 @@ pub enum JobOutcome {
     /// Detections at another sensitivity.
     Resensed(Vec<morec::live::Detection>),
     Similar(similar::Similar),
-    Aligned(Arc<align::Aligned>),
+    Aligned(Arc<crate::body::Aligned>),
     Channel(channel::ChannelCurve),
     /// The method of 2009, trained, and its index.
     Thesis((Arc<thesis::Thesis>, Box<train::TrainedIndex>)),

@@ -8,8 +8,8 @@ use morec::index::MotionIndex;
 use morec::live::{Detection, Model, recognize_clip, recognize_poses};
 use morec_db::ClipId;
 
-use super::load::ClipMotion;
 use super::progress::JobError;
+use crate::body::ClipMotion;
 
 /// Plays a clip through the recogniser; gives the clip with its detections.
 pub fn clip(

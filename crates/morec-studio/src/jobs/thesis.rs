@@ -14,9 +14,9 @@ use morec::train::{TrainError, TrainingData};
 use morec_db::ClipId;
 use morec_ops::{OperationError, TrainSettings};
 
-use super::load::ClipMotion;
 use super::progress::{JobError, JobProgress};
 use super::train::{self, TrainedIndex};
+use crate::body::ClipMotion;
 
 /// Places along each side of a picture of a branch.
 pub const GRID: usize = 72;

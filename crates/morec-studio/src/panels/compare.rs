@@ -4,10 +4,10 @@ use egui::Ui;
 use morec::kinematics::WorldPose;
 
 use super::Out;
+use crate::body::ClipMotion;
 use crate::body::mesh::BodyColours;
 use crate::body::{Body, companion};
 use crate::format;
-use crate::jobs::load::ClipMotion;
 use crate::state::compare::Placement;
 use crate::state::{Command, CompareCommand, State};
 use crate::theme::Colours;

@@ -3,13 +3,13 @@
 use egui::{Align2, Context, Key, RichText, WidgetInfo, WidgetType, Window};
 
 use super::{Out, widgets};
-use crate::dialogs::{self, DialogKind};
-use crate::state::{Command, FileCommand, State, TypedPath};
+use crate::dialogs;
+use crate::state::{self, Command, DialogKind, FileCommand, State, TypedPath};
 use crate::theme::Colours;
 
 pub fn show(ctx: &Context, state: &State, out: Out) {
     let Some(typed) = &state.typed else { return };
-    let dialog = dialogs::dialog(&typed.ask);
+    let dialog = state::dialog(&typed.ask);
     let mut open = true;
     Window::new(dialog.title)
         .open(&mut open)

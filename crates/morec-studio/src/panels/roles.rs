@@ -5,9 +5,9 @@ use morec::kinematics::WorldPose;
 use morec::roles::Role;
 
 use super::{Out, widgets};
+use crate::body::ClipMotion;
 use crate::body::camera::View;
 use crate::format;
-use crate::jobs::load::ClipMotion;
 use crate::state::{Command, LibraryCommand, State};
 use crate::theme::Colours;
 

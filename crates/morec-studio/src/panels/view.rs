@@ -7,9 +7,9 @@ use morec::roles::Role;
 
 use super::compare::Other;
 use super::{Out, player, widgets};
+use crate::body::ClipMotion;
 use crate::body::mesh::Painter;
 use crate::body::{Body, Camera};
-use crate::jobs::load::ClipMotion;
 use crate::state::{Command, Panel, State, ViewCommand};
 use crate::theme::Colours;
 

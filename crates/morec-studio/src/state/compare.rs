@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::jobs::align::Aligned;
+use crate::body::Aligned;
 use crate::stretch::Stretch;
 
 /// Placement of companions.

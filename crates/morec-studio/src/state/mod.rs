@@ -7,6 +7,7 @@ mod command;
 pub mod compare;
 mod crossval;
 pub mod cuts;
+mod dialog;
 mod label_import;
 pub mod layout;
 mod library;
@@ -28,8 +29,8 @@ use morec::roles::{Role, RoleMap};
 use morec::smooth::ChannelKind;
 use morec_db::{ClipId, ClipInfo};
 
-use crate::body::Camera;
-use crate::jobs::{JobOutcome, Jobs, channel::ChannelCurve, cut::Curves, import, load::ClipMotion};
+use crate::body::{Camera, ClipMotion};
+use crate::jobs::{JobOutcome, Jobs, channel::ChannelCurve, cut::Curves, import};
 use crate::store::{Edit, Store, Wake};
 use crate::stretch::Stretch;
 use crate::unsaved::{Leftover, OwnFolder};
@@ -42,6 +43,7 @@ pub use command::{
 pub use compare::{Companions, CompareCommand};
 pub use crossval::CrossvalView;
 pub use cuts::CutCommand;
+pub use dialog::{Dialog, DialogKind, dialog};
 pub use label_import::LabelImport;
 pub use library::Library;
 pub use live::{Live, LiveCommand};

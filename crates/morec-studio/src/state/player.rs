@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::jobs::load::ClipMotion;
+use crate::body::ClipMotion;
 
 /// A frame that took longer than this was not one: the window was hidden or the machine slept, seconds.
 pub const LONGEST_FRAME: f64 = 0.25;

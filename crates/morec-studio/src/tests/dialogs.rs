@@ -4,7 +4,7 @@ use egui::{Key, Modifiers};
 use morec_db::exchange::LabelFormat;
 
 use super::{Person, made, takes};
-use crate::dialogs::DialogKind;
+use crate::state::DialogKind;
 use crate::state::Panel;
 
 fn with_labels(labelled: usize) -> (tempfile::TempDir, Person) {

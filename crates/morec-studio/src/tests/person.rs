@@ -11,7 +11,8 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 
 use crate::app::Studio;
-use crate::dialogs::{Chooser, Dialog, Dialogs};
+use crate::dialogs::{Chooser, Dialogs};
+use crate::state::Dialog;
 use crate::state::{Command, Panel, State};
 
 /// Seconds that pass with every frame.

@@ -6,8 +6,9 @@ use morec::eval::ClipDetection;
 use morec::explain::MotionDeviation;
 use morec::math::Vec3;
 
+use crate::body::Aligned;
 use crate::jobs::JobOutcome;
-use crate::jobs::align::{self, Aligned, Partner};
+use crate::jobs::align::{self, Partner};
 use crate::jobs::unlearned::Unlearned;
 use crate::state::compare::Placement;
 use crate::state::{CompareCommand, State};

@@ -13,7 +13,7 @@ use crate::jobs::export::{self, Export};
 use crate::jobs::{JobOutcome, Jobs, example, import};
 use crate::state::{
     Ask, Classes, FileCommand, Library, Live, Motions, Player, State, TimelineState, Train,
-    TypedPath,
+    TypedPath, dialog,
 };
 use crate::store::{DbPlace, Store};
 use crate::unsaved::{self, Leftover, OwnFolder};
@@ -256,7 +256,7 @@ impl State {
             FileCommand::DismissLabels => self.label_import = None,
             FileCommand::NoDialog(ask) => {
                 self.typed = Some(TypedPath {
-                    text: crate::dialogs::dialog(&ask).file_name,
+                    text: dialog(&ask).file_name,
                     ask,
                     begun: false,
                 });

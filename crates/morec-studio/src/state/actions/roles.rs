@@ -64,7 +64,7 @@ impl State {
     }
 
     /// A clip that was decoded anew takes the place of what is shown of it.
-    pub(in crate::state) fn reopened(&mut self, motion: &Arc<crate::jobs::load::ClipMotion>) {
+    pub(in crate::state) fn reopened(&mut self, motion: &Arc<crate::body::ClipMotion>) {
         if self.reopening.take_if(|id| *id == motion.id).is_none() {
             return;
         }

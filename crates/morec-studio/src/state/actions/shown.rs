@@ -8,8 +8,8 @@ use morec::smooth::ChannelKind;
 use morec_db::ClipId;
 
 use crate::body::Camera;
+use crate::body::{ClipMotion, extent};
 use crate::jobs::JobOutcome;
-use crate::jobs::load::{ClipMotion, extent};
 use crate::state::{Panel, PlayCommand, State, ViewCommand};
 
 impl State {

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use morec_ops::TrainSettings;
 
 use super::lines::train_line;
+use crate::body::ClipMotion;
 use crate::jobs::JobOutcome;
-use crate::jobs::load::ClipMotion;
 use crate::jobs::thesis::{self, Thesis};
 use crate::state::{LibraryCommand, State};
 use crate::stretch::Stretch;

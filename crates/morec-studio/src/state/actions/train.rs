@@ -10,8 +10,8 @@ use morec_db::labels::DbSample;
 use morec_ops::{CrossvalSettings, LeftOut, TrainSettings};
 
 use super::lines::{ShownCommand, train_line};
+use crate::body::ClipMotion;
 use crate::jobs::export::write_whole;
-use crate::jobs::load::ClipMotion;
 use crate::jobs::{JobOutcome, judge, recognise, train};
 use crate::state::{Panel, State, TrainCommand};
 use crate::store::Edit;

@@ -7,7 +7,7 @@ use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, sync_channel};
 use morec::live::{Frame, PerformerId, Rig, Source, SourceCounts, SourceEvent, wall_now_secs};
 use morec_db::ClipId;
 
-use crate::jobs::load::ClipMotion;
+use crate::body::ClipMotion;
 use crate::store::Wake;
 
 /// Between one lap of a clip and the next.
