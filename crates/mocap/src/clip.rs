@@ -1,6 +1,5 @@
-//! A clip: a skeleton and its motion, with the units and axes of its file. Readers produce it, [`import`](crate::import) converts
-//! it
-//! to metres with Y up, and everything after that works on the result.
+//! A clip: a skeleton and its motion, with the units and axes of its file. Readers produce it, [`import`](crate::import)
+//! converts it to metres with Y up, and everything after that works on the result.
 
 #[cfg(feature = "formats")]
 use crate::math::same_hemisphere;

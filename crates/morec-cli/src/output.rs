@@ -1,6 +1,5 @@
-//! Writes files. Every output of the command passes through here, so that inputs and databases are never overwritten and files
-//! are
-//! written wholly or not at all.
+//! Writes files. Every output of the command passes through here, so that inputs and databases are never overwritten and
+//! files are written wholly or not at all.
 //!
 //! A file that this run reads is never written, whatever name or link it is reached by. Everything else is written beside
 //! its target, synced and renamed: after a failure (a full disk, a broken clip) the target is what it was before. A file

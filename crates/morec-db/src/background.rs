@@ -1,6 +1,5 @@
-//! Clips marked as background (tag `background`), which contain none of the classes. Training and the studio read them here; a
-//! clip
-//! with accepted samples is never background.
+//! Clips marked as background (tag `background`), which contain none of the classes. Training and the studio read them here;
+//! a clip with accepted samples is never background.
 
 use std::collections::BTreeSet;
 

@@ -152,14 +152,12 @@ pub(crate) fn find(conn: &Connection, name: &str) -> Result<ClipInfo, DbError> {
 }
 
 impl MotionDb {
-    /// The clips that match a filter, sorted by name. Unlike [`clips`](Self::clips), a filter that matches nothing is an error,
-    /// so that
-    /// a misspelt name is reported.
+    /// The clips that match a filter, sorted by name. Unlike [`clips`](Self::clips), a filter that matches nothing is an
+    /// error, so that a misspelt name is reported.
     ///
     /// # Errors
-    /// [`DbError::Unknown`] with the nearest names: no clip has the name or matches the pattern, no clip shows the person or has
-    /// the
-    /// tag, or the class does not exist.
+    /// [`DbError::Unknown`] with the nearest names: no clip has the name or matches the pattern, no clip shows the person or
+    /// has the tag, or the class does not exist.
     pub fn find_clips(&self, filter: &ClipFilter) -> Result<Vec<ClipInfo>, DbError> {
         if let Some(class) = &filter.class {
             self.need_class(class)?;
@@ -184,9 +182,8 @@ impl MotionDb {
         self.clips(filter)
     }
 
-    /// The clips that match a filter, sorted by name; empty if there is none. [`find_clips`](Self::find_clips) reports an unknown
-    /// name
-    /// instead.
+    /// The clips that match a filter, sorted by name; empty if there is none. [`find_clips`](Self::find_clips) reports an
+    /// unknown name instead.
     ///
     /// # Errors
     /// The database cannot be read.
@@ -252,9 +249,8 @@ impl MotionDb {
         })
     }
 
-    /// Changes the descriptions of clips (origin, licence, person, tags, roles), all or none, as one step. Returns the number of
-    /// clips
-    /// that exist.
+    /// Changes the descriptions of clips (origin, licence, person, tags, roles), all or none, as one step. Returns the
+    /// number of clips that exist.
     ///
     /// # Errors
     /// A text contains control characters, such as tabs or line ends; the database cannot be written.

@@ -190,8 +190,7 @@ impl MotionDb {
     }
 
     /// A number that changes whenever another connection has changed the file, and not after changes of this connection. The
-    /// studio
-    /// polls it to notice changes of the command.
+    /// studio polls it to notice changes of the command.
     ///
     /// # Errors
     /// The database cannot be read.
@@ -201,8 +200,7 @@ impl MotionDb {
     }
 
     /// Counts of clips, segments, classes, samples and indexes; sizes in bytes; the length of all clips in seconds; and the
-    /// largest
-    /// deviations of stored motion from its files, in radians and metres.
+    /// largest deviations of stored motion from its files, in radians and metres.
     ///
     /// # Errors
     /// The database cannot be read.
@@ -240,9 +238,8 @@ impl MotionDb {
         })
     }
 
-    /// Limits the size of the file, in bytes, until it is closed. The present content stays, even if it is larger. Changes that
-    /// need
-    /// more space fail as on a full disk, with [`DbError::Full`].
+    /// Limits the size of the file, in bytes, until it is closed. The present content stays, even if it is larger. Changes
+    /// that need more space fail as on a full disk, with [`DbError::Full`].
     ///
     /// # Errors
     /// The limit cannot be set.

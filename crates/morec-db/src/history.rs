@@ -205,9 +205,8 @@ impl MotionDb {
         self.history_since(&[])
     }
 
-    /// The history like [`history`](Self::history), but with counts taken from `before`, an earlier result, for all steps that
-    /// have not
-    /// changed since; only the other steps are counted again. O(rows of these).
+    /// The history like [`history`](Self::history), but with counts taken from `before`, an earlier result, for all steps
+    /// that have not changed since; only the other steps are counted again. O(rows of these).
     ///
     /// # Errors
     /// The database cannot be read.

@@ -66,9 +66,8 @@ fn taught(conn: &Connection) -> Result<String, DbError> {
 }
 
 impl MotionDb {
-    /// Stores an index file, as trained on the present accepted samples, under a name, and replaces an index of that name. One
-    /// step of
-    /// the history.
+    /// Stores an index file, as trained on the present accepted samples, under a name, and replaces an index of that name.
+    /// One step of the history.
     ///
     /// # Errors
     /// The database cannot be written.
@@ -78,9 +77,8 @@ impl MotionDb {
         })
     }
 
-    /// Stores the latest index under a name, without a step of the history, so that undo after training undoes the last label and
-    /// not
-    /// the training.
+    /// Stores the latest index under a name, without a step of the history, so that undo after training undoes the last
+    /// label and not the training.
     ///
     /// # Errors
     /// The database cannot be written.

@@ -9,9 +9,8 @@ use rusqlite::params;
 use crate::{DbError, MotionDb};
 
 impl MotionDb {
-    /// The place of each class, from 0, by name. Names of removed classes are included, so that a class that returns gets its
-    /// place
-    /// again.
+    /// The place of each class, from 0, by name. Names of removed classes are included, so that a class that returns gets
+    /// its place again.
     ///
     /// # Errors
     /// The database cannot be read.

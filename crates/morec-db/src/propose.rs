@@ -103,9 +103,8 @@ impl MotionDb {
         Ok(proposals)
     }
 
-    /// Searches all clips for stretches that may show the classes of accepted samples, most probable first. Nothing is written
-    /// except
-    /// feature rows that were missing. O(rows · rows of the templates).
+    /// Searches all clips for stretches that may show the classes of accepted samples, most probable first. Nothing is
+    /// written except feature rows that were missing. O(rows · rows of the templates).
     ///
     /// # Errors
     /// [`DbError::Invalid`] if no sample is accepted; [`DbError::Cancelled`]; the database cannot be read.

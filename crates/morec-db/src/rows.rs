@@ -81,8 +81,7 @@ impl Kept {
 
 impl MotionDb {
     /// The feature rows of every clip with at least one bone, in the order of clip numbers. Rows that are not stored, are
-    /// damaged, or
-    /// were made with other parameters are computed in parallel and, if the database is writable, stored.
+    /// damaged, or were made with other parameters are computed in parallel and, if the database is writable, stored.
     ///
     /// # Errors
     /// [`DbError::Cancelled`] by `progress`; [`DbError::Damaged`] motion; the database cannot be read.
@@ -100,9 +99,8 @@ impl MotionDb {
     }
 
     /// Like [`rows`](Self::rows), for a database opened for reading only: missing rows are stored for the next reader over a
-    /// second
-    /// connection. If that is not possible (a read-only file, another program writing, a full disk), they are computed and not
-    /// stored.
+    /// second connection. If that is not possible (a read-only file, another program writing, a full disk), they are
+    /// computed and not stored.
     ///
     /// # Errors
     /// [`DbError::Cancelled`] by `progress`; [`DbError::Damaged`] motion; the database cannot be read.

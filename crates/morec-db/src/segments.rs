@@ -43,9 +43,8 @@ pub struct Segment {
 }
 
 impl MotionDb {
-    /// Stores the segments that `method` found in `clips`, as one step, and replaces all earlier segments of these clips: a clip
-    /// has
-    /// the cuts of one method only.
+    /// Stores the segments that `method` found in `clips`, as one step, and replaces all earlier segments of these clips: a
+    /// clip has the cuts of one method only.
     ///
     /// # Errors
     /// The database cannot be written.

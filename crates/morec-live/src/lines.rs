@@ -63,9 +63,8 @@ impl Lines {
         Ok(Self { came, places })
     }
 
-    /// Lines from every program that connects to `address` over TCP. Also returns the actual address, with the port if `address`
-    /// has
-    /// port 0. Refused connections are reported in `notices`.
+    /// Lines from every program that connects to `address` over TCP. Also returns the actual address, with the port if
+    /// `address` has port 0. Refused connections are reported in `notices`.
     ///
     /// # Errors
     /// The address cannot be listened at, for instance because another program uses it.

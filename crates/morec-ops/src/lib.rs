@@ -6,16 +6,13 @@
 //!
 #![cfg_attr(feature = "db", doc = "```no_run")]
 #![cfg_attr(not(feature = "db"), doc = "```ignore")]
-//! use morec_db::MotionDb;
-//! use morec_ops::{MaterialBeside, TrainSettings, arguments, training_data};
+//! use morec_db::MotionDb; use morec_ops::{MaterialBeside, TrainSettings, arguments, training_data};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
-//! let settings = TrainSettings { classes: vec!["wave".to_owned()], ..TrainSettings::default() };
-//! let db = MotionDb::open_read_only("moves.mdb".as_ref())?;
-//! let data = training_data(&db, &settings.classes, MaterialBeside::default())?;
-//! let (index, report) = settings.train(&data, &())?;
-//! println!("{} classes; the same: morec train --db moves.mdb {:?}", report.classes.len(), arguments(&settings));
-//! index.save("wave.index")?;
+//! let settings = TrainSettings { classes: vec!["wave".to_owned()], ..TrainSettings::default() }; let db =
+//! MotionDb::open_read_only("moves.mdb".as_ref())?; let data = training_data(&db, &settings.classes,
+//! MaterialBeside::default())?; let (index, report) = settings.train(&data, &())?; println!("{} classes; the same: morec
+//! train --db moves.mdb {:?}", report.classes.len(), arguments(&settings)); index.save("wave.index")?;
 //! # Ok(())
 //! # }
 //! ```

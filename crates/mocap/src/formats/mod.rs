@@ -1,6 +1,5 @@
 //! Motion-capture file formats: reading, writing, and recognising them. Readers take bytes and never open files; paths are
-//! handled
-//! in [`files`](crate::files).
+//! handled in [`files`](crate::files).
 //!
 //! Readers take bytes, never paths. What can be saved is loaded with a [`Warning`] that names the place; what
 //! cannot is refused with a [`ParseError`] that says where, what was expected and what was found.

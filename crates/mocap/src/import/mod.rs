@@ -1,6 +1,5 @@
-//! Import: converts clips to metres with Y up, infers the joints of body parts (roles), and determines the kind of performer.
-//! Every
-//! command reads clips through it, so that all see the same motion.
+//! Import: converts clips to metres with Y up, infers the joints of body parts (roles), and determines the kind of
+//! performer. Every command reads clips through it, so that all see the same motion.
 //!
 //! Everything is inferred from the motion itself, never from the zero pose, which need not be a pose that anybody
 //! ever stood in; and everything inferred can be overridden in [`ImportOptions`].

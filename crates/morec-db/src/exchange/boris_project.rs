@@ -15,8 +15,7 @@ const OVERLAP: &str = "overlap ";
 const NO_SUBJECT: &str = "No focal subject";
 
 /// Reads the state events of a project, each from its start to its stop; an observation is a clip. Point events, and states
-/// without
-/// a stop, are left out with a warning.
+/// without a stop, are left out with a warning.
 ///
 /// # Errors
 /// The file is not a project of BORIS.

@@ -1,6 +1,5 @@
-//! Turns annotations into samples of clips in the database: finds the clips, cuts labels at the ends of clips, and reports what
-//! is
-//! left out.
+//! Turns annotations into samples of clips in the database: finds the clips, cuts labels at the ends of clips, and reports
+//! what is left out.
 
 use std::collections::BTreeMap;
 use std::path::Path;

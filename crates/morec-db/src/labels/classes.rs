@@ -121,8 +121,7 @@ impl MotionDb {
     }
 
     /// Moves all samples of the classes `from` to the class `into`, which is created if it does not exist, and removes the
-    /// emptied
-    /// classes, as one step. Returns the number of samples moved.
+    /// emptied classes, as one step. Returns the number of samples moved.
     ///
     /// # Errors
     /// [`DbError::Unknown`] if a class of `from` does not exist; [`DbError::Invalid`] if `into` is not a valid name.
@@ -143,9 +142,8 @@ impl MotionDb {
         })
     }
 
-    /// Moves samples, of any class, to the class `into`, which is created if it does not exist, as one step. Returns the number
-    /// of
-    /// samples moved.
+    /// Moves samples, of any class, to the class `into`, which is created if it does not exist, as one step. Returns the
+    /// number of samples moved.
     ///
     /// # Errors
     /// [`DbError::Unknown`] if a sample does not exist; [`DbError::Invalid`] if `into` is not a valid name.

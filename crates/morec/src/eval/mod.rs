@@ -1,6 +1,5 @@
 //! Evaluation: measures of detections, compared with labelled samples. Used by `evaluate`, `crossval`, the studio and tests;
-//! reads
-//! no files.
+//! reads no files.
 //!
 //! [`Evaluation::of`] computes every measure, [`timelines`] says of each sample and each detection what became of
 //! it. Both are functions of their arguments alone and do not depend on the order of rows.

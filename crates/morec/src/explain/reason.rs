@@ -65,8 +65,7 @@ pub enum Reason {
         other: f32,
     },
     /// An activity that continues unlike the samples of its class: the mean of its windows' distances, as shares of their
-    /// distances from what is no
-    /// activity.
+    /// distances from what is no activity.
     GoesOnUnlike {
         /// Its share; below 1 counts.
         share: f64,

@@ -240,9 +240,8 @@ impl PerformerStream {
         &self.rig
     }
 
-    /// Shortest time from the end of a motion to its report, seconds. `None` for a stream of a skeleton before its first frame,
-    /// unless
-    /// bones were announced.
+    /// Shortest time from the end of a motion to its report, seconds. `None` for a stream of a skeleton before its first
+    /// frame, unless bones were announced.
     pub fn latency_secs(&self) -> Option<f64> {
         self.performer.latency_secs()
     }

@@ -109,8 +109,7 @@ impl Recognizer {
     }
 
     /// Ends the stream and returns its last detections. The next push starts a new stream, of any performer: nothing of the
-    /// previous
-    /// stream is kept.
+    /// previous stream is kept.
     pub fn finish(&mut self) -> &[Detection] {
         self.found.begin(self.now_secs);
         self.pipeline.end_stretch(&mut self.found);
@@ -118,9 +117,8 @@ impl Recognizer {
         &self.found.detections
     }
 
-    /// Number of detections lost because one push completed more than 64. In practice 0: a push after a gap completes at most one
-    /// second
-    /// of ticks.
+    /// Number of detections lost because one push completed more than 64. In practice 0: a push after a gap completes at
+    /// most one second of ticks.
     pub fn dropped(&self) -> u64 {
         self.found.dropped
     }

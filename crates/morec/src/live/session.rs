@@ -213,9 +213,8 @@ impl Session {
         self.status()
     }
 
-    /// Ends the session now: fetches no more poses from the source, recognises those already fetched, and drops events for which
-    /// a
-    /// reader has no room; these are counted.
+    /// Ends the session now: fetches no more poses from the source, recognises those already fetched, and drops events for
+    /// which a reader has no room; these are counted.
     pub fn stop(mut self) -> Status {
         self.end();
         self.status()

@@ -1,6 +1,5 @@
-//! Clips as tables of numbers for NumPy and spreadsheets: joint positions, joint rotations and feature rows, with names, units
-//! and
-//! rate included.
+//! Clips as tables of numbers for NumPy and spreadsheets: joint positions, joint rotations and feature rows, with names,
+//! units and rate included.
 //!
 //! Tables are made of imported clips: metres, Y up, right-handed; rotations are quaternions `x, y, z, w` that take the
 //! joint's own frame to its parent's; times are seconds.

@@ -91,8 +91,7 @@ impl TrainingContext<'_> {
     }
 
     /// Runs `compare` on every stream of the set in parallel, each call with its own copies of `matchers`, and returns the
-    /// results in
-    /// the order of the set. `stage` names the work in reports of progress.
+    /// results in the order of the set. `stage` names the work in reports of progress.
     ///
     /// # Errors
     /// Progress was cancelled.
@@ -176,8 +175,8 @@ impl TrainingContext<'_> {
     }
 
     /// The matches of `negatives` in streams of other groups than their own. The `gates` of negatives admit a body at rest.
-    /// Without a
-    /// verifier, only background is compared, and only where templates come nearer than `most`, the upper bound of the threshold.
+    /// Without a verifier, only background is compared, and only where templates come nearer than `most`, the upper bound of
+    /// the threshold.
     ///
     /// # Errors
     /// Progress was cancelled.
@@ -211,9 +210,8 @@ impl TrainingContext<'_> {
         })
     }
 
-    /// Faster copies of samples, to be used as templates. Copies that match the beginning of a sample of their class are left
-    /// out,
-    /// because they would report such a sample before its end.
+    /// Faster copies of samples, to be used as templates. Copies that match the beginning of a sample of their class are
+    /// left out, because they would report such a sample before its end.
     ///
     /// # Errors
     /// Progress was cancelled.

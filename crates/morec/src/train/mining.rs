@@ -1,6 +1,5 @@
 //! Matches every template with every stream and keeps the near matches. Only the nearest match of each tick is kept, so that
-//! memory
-//! grows with the ticks and not with the templates.
+//! memory grows with the ticks and not with the templates.
 
 use std::ops::Range;
 

@@ -60,8 +60,7 @@ const REACH_OF_TANGENT: f64 = 1.8;
 
 impl MotionCoder {
     /// Writes `channel`, or reads a channel of `frames` frames and at most `most` curve segments, depending on `coder`. When
-    /// reading,
-    /// the content of `channel` is ignored.
+    /// reading, the content of `channel` is ignored.
     ///
     /// # Errors
     /// When reading: the bytes end early, or a value is out of range.

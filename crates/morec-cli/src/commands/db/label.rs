@@ -44,8 +44,7 @@ pub struct Args {
     /// Label files, or folders of them
     ///
     /// TSV, CSV, JSON (morec's, BABEL's, Label Studio's), ELAN (.eaf), Audacity (.txt), BORIS (TSV, CSV), BIDS
-    /// (_events.tsv), Praat
-    /// (.TextGrid), subtitles (.srt, .vtt), events of C3D.
+    /// (_events.tsv), Praat (.TextGrid), subtitles (.srt, .vtt), events of C3D.
     #[arg(value_name = "FILE|DIR")]
     labels: Vec<PathBuf>,
     /// Form of the files [default: by extension and content]

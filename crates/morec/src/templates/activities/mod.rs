@@ -1,6 +1,5 @@
 //! Activities: continuous motions such as walking or an exercise, recognised by windows of a few seconds instead of by a
-//! beginning
-//! and an end.
+//! beginning and an end.
 //!
 //! A template says in which order a motion's poses come; an activity can be met anywhere in its cycle, and each repetition at its own
 //! pace. What keeps are the statistics of a window of a few seconds: which poses, how far about them, how fast. Ten times a second a

@@ -1,6 +1,5 @@
-//! The second look: compares the whole motion around a match once with every training sample. It decides in indexes of bodies;
-//! the
-//! template match only proposes candidates.
+//! The second look: compares the whole motion around a match once with every training sample. It decides in indexes of
+//! bodies; the template match only proposes candidates.
 //!
 //! A subsequence match explains only a part of a motion: a push is found inside a serve. The second look takes each match as a
 //! candidate, finds the whole motion around it, compares that segment from end to end with the taught segments of
