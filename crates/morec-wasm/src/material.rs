@@ -37,6 +37,7 @@ pub fn labels(rows: Vec<SampleRow>) -> Result<Labels, String> {
             class: row.class,
             extent,
             person: row.person,
+            annotator: None,
             line,
         });
     }
