@@ -10,10 +10,10 @@ use morec::train::align as warp;
 use morec_db::{DbError, MotionDb};
 
 use super::progress::{JobError, JobProgress};
-use super::unlearned::Unlearned;
 use super::{nearest, similar};
 use crate::body::{Aligned, ClipMotion};
 use crate::stretch::Stretch;
+use morec_ops::Unlearned;
 
 /// The table of the alignment has this many cells at most; longer stretches are compared at the same pace.
 const CELLS: usize = 4_000_000;

@@ -9,8 +9,8 @@ use morec_db::labels::{SampleFilter, SampleState};
 use morec_db::{ClipId, DbError, MotionDb};
 
 use super::progress::JobProgress;
-use super::unlearned::Unlearned;
 use crate::stretch::Stretch;
+use morec_ops::Unlearned;
 
 /// Rows that a stretch of any length becomes where it is compared at an even pace.
 const POINTS: usize = 16;

@@ -8,6 +8,7 @@ use morec_db::labels::{DbSample, SampleState as Judged};
 use morec_ops::GroupMethod;
 
 use super::lists::List;
+use super::widgets::Clipped;
 use super::{Out, card, carried, groups, label, padded, proposals, shelf, similar, view, widgets};
 use crate::format;
 use crate::state::{ClassCommand, Command, State};
@@ -23,14 +24,14 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
         .frame(padded())
         .default_width(330.0)
         .width_range(260.0..=620.0)
-        .show_inside(ui, |ui| {
+        .show_clipped(ui, |ui| {
             let height = (ui.available_height() * 0.55).max(160.0);
             view::clip_over_transport(ui, state, height, out);
             chosen(ui, state, out);
         });
     CentralPanel::default()
         .frame(padded())
-        .show_inside(ui, |ui| {
+        .show_clipped(ui, |ui| {
             tools(ui, state, out);
             ui.add_space(4.0);
             match (&state.classes.similar, &state.classes.groups) {
@@ -104,7 +105,7 @@ fn groups_and_columns(ui: &mut Ui, state: &State, out: Out) {
             .frame(Frame::new())
             .default_width((0.45 * room).max(card::COLUMN + 24.0))
             .width_range(120.0..=0.7 * room)
-            .show_inside(ui, |ui| columns(ui, state, out));
+            .show_clipped(ui, |ui| columns(ui, state, out));
     }
     groups::show(ui, state, out);
 }

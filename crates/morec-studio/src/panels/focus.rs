@@ -1,6 +1,6 @@
 //! The keyboard's place: outlined, and brought into view when it moves.
 
-use egui::accesskit::{Action, ActionRequest};
+use egui::accesskit::{Action, ActionRequest, NodeId};
 use egui::{Context, Event, Id, Response, Stroke, StrokeKind, Ui};
 
 use crate::theme::Colours;
@@ -44,7 +44,7 @@ pub fn follow(ctx: &Context) {
     };
     let request = ActionRequest {
         action: Action::ScrollIntoView,
-        target: response.id.accesskit_id(),
+        target: NodeId(response.id.value()),
         data: None,
     };
     ctx.input_mut(|i| i.events.push(Event::AccessKitActionRequest(request)));

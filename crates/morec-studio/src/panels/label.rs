@@ -7,6 +7,7 @@ use egui::{
 use morec_db::labels::SampleState as Judged;
 
 use super::lists::List;
+use super::widgets::Clipped;
 use super::{Out, carried, deviation, library, padded, player, proposals, timeline, view, widgets};
 use crate::format;
 use crate::state::classes::is_free_name;
@@ -23,24 +24,24 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
         .resizable(true)
         .default_height((height * 0.40).clamp(240.0, 420.0))
         .height_range(160.0..=height * 0.65)
-        .show_inside(ui, |ui| timeline::show(ui, state, out));
+        .show_clipped(ui, |ui| timeline::show(ui, state, out));
     SidePanel::left("clips")
         .frame(padded())
         .default_width(190.0)
         .width_range(140.0..=320.0)
-        .show_inside(ui, |ui| clips(ui, state, out));
+        .show_clipped(ui, |ui| clips(ui, state, out));
     SidePanel::right("classes")
         .frame(padded())
         .default_width(250.0)
         .width_range(220.0..=340.0)
-        .show_inside(ui, |ui| {
+        .show_clipped(ui, |ui| {
             ScrollArea::vertical()
                 .auto_shrink(false)
                 .show(ui, |ui| classes(ui, state, out));
         });
     CentralPanel::default()
         .frame(padded())
-        .show_inside(ui, |ui| {
+        .show_clipped(ui, |ui| {
             let room = Vec2::new(0.0, player::HEIGHT + 6.0);
             let rect = Rect::from_min_size(ui.cursor().min, ui.available_size() - room);
             ui.scope_builder(egui::UiBuilder::new().max_rect(rect), |ui| {

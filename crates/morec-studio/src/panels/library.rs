@@ -7,6 +7,7 @@ use egui::{
 use morec_db::{BACKGROUND, ClipInfo};
 
 use super::lists::List;
+use super::widgets::Clipped;
 use super::{Out, background, details, import_report, padded, strips, view, whole, widgets};
 use crate::format;
 use crate::state::{Column, Command, FileCommand, LibraryCommand, State};
@@ -20,7 +21,7 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
     SidePanel::right("clip")
         .frame(padded())
         .exact_width(width)
-        .show_inside(ui, |ui| {
+        .show_clipped(ui, |ui| {
             let height = (ui.available_height() * 0.44).max(200.0);
             view::clip_over_transport(ui, state, height, out);
             scrub(ui, state, out);
@@ -30,7 +31,7 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
         });
     CentralPanel::default()
         .frame(padded())
-        .show_inside(ui, |ui| {
+        .show_clipped(ui, |ui| {
             tools(ui, state, out);
             import_report::show(ui, state, out);
             table(ui, state, out);

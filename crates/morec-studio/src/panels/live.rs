@@ -10,6 +10,7 @@ use morec_ops::RecognizeSettings;
 
 use super::compare::Other;
 use super::lists::List;
+use super::widgets::Clipped;
 use super::{Out, live_line, padded, teach, view, widgets};
 use crate::body::Body;
 use crate::format;
@@ -26,12 +27,12 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
         .resizable(true)
         .default_height(178.0)
         .height_range(120.0..=360.0)
-        .show_inside(ui, |ui| live_line::show(ui, state, out));
+        .show_clipped(ui, |ui| live_line::show(ui, state, out));
     SidePanel::left("source")
         .frame(padded())
         .default_width(250.0)
         .width_range(220.0..=340.0)
-        .show_inside(ui, |ui| {
+        .show_clipped(ui, |ui| {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                 source(ui, state, out);
                 performers(ui, state, out);
@@ -43,13 +44,13 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
         .frame(padded())
         .default_width(270.0)
         .width_range(230.0..=380.0)
-        .show_inside(ui, |ui| {
+        .show_clipped(ui, |ui| {
             teach::show(ui, state, out);
             teach::recognised(ui, state, out);
         });
     CentralPanel::default()
         .frame(padded())
-        .show_inside(ui, |ui| performer(ui, state, out));
+        .show_clipped(ui, |ui| performer(ui, state, out));
 }
 
 fn source(ui: &mut Ui, state: &State, out: Out) {

@@ -51,7 +51,7 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
             let first = rows.start;
             for (row, (at, moment)) in moments().enumerate().skip(first).take(rows.len()) {
                 let on = state.train.moment == Some(at);
-                let response = line(ui, moment, height, on);
+                let response = line(ui, (at, moment), height, on);
                 if list.row(ui, row, &response, on) {
                     out.push(Command::Train(TrainCommand::Moment(at)));
                 }
@@ -81,7 +81,7 @@ fn compare(ui: &mut Ui, state: &State, out: Out) {
 }
 
 /// A moment of the list.
-fn line(ui: &mut Ui, moment: &Moment, height: f32, on: bool) -> Response {
+fn line(ui: &mut Ui, (at, moment): (usize, &Moment), height: f32, on: bool) -> Response {
     let c = Colours::now(ui);
     let said = moment.said();
     let start = format::secs(moment.span.start_secs);
@@ -90,7 +90,10 @@ fn line(ui: &mut Ui, moment: &Moment, height: f32, on: bool) -> Response {
         name += &format!(": {why}");
     }
     let size = Vec2::new(ui.available_width(), height);
-    let (rect, mut response) = ui.allocate_exact_size(size, Sense::click());
+    let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
+    // What is chosen changes what lies above, and with it the numbers of widgets.
+    let id = egui::Id::new(("moment", at));
+    let mut response = ui.interact(rect, id, Sense::click());
     widgets::named(&response, WidgetType::Button, &name, on);
     if on {
         let fill = ui.visuals().selection.bg_fill;

@@ -1,6 +1,6 @@
 //! Reports that the database keeps: their list, and the one that was opened.
 
-use egui::{Frame, Margin, RichText, ScrollArea, Sense, Ui, Vec2, WidgetType};
+use egui::{Frame, Id, Margin, RichText, ScrollArea, Sense, Ui, Vec2, WidgetType};
 use morec_db::ReportKind;
 
 use super::lists::List;
@@ -36,7 +36,10 @@ pub fn list(ui: &mut Ui, state: &State, out: Out) {
         for at in rows {
             let report = &reports[at];
             let size = Vec2::new(ui.available_width(), ROW);
-            let (rect, response) = ui.allocate_exact_size(size, Sense::click());
+            let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
+            // What is opened changes what lies above, and with it the numbers of widgets.
+            let id = Id::new(("report", report.id));
+            let response = ui.interact(rect, id, Sense::click());
             let opened = state.train.opened.as_ref();
             let on = opened.is_some_and(|opened| opened.info.id == report.id);
             let what = name(report.kind);

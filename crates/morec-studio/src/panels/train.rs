@@ -5,6 +5,7 @@ use egui::{
 };
 
 use super::lists::List;
+use super::widgets::Clipped;
 use super::{Out, background, kinds, matrix, moments, padded, reports, thesis, view, widgets};
 use morec::features::BoneSet;
 use morec_ops::training_in_words;
@@ -19,7 +20,7 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
         .frame(padded())
         .default_width(220.0)
         .width_range(180.0..=320.0)
-        .show_inside(ui, |ui| {
+        .show_clipped(ui, |ui| {
             // Above the lists, which scroll when there are many classes.
             buttons(ui, state, out);
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
@@ -32,14 +33,14 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
         .frame(padded())
         .default_width(340.0)
         .width_range(280.0..=620.0)
-        .show_inside(ui, |ui| {
+        .show_clipped(ui, |ui| {
             let height = (0.52 * ui.available_height()).clamp(160.0, 420.0);
             view::clip_over_transport(ui, state, height, out);
             moments::show(ui, state, out);
         });
     CentralPanel::default()
         .frame(padded())
-        .show_inside(ui, |ui| {
+        .show_clipped(ui, |ui| {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                 // An index of the method of 2009 comes after its tree, which says more.
                 let index = state.train.index.as_ref();

@@ -1,8 +1,9 @@
 //! Small parts that several panels draw.
 
 use egui::{
-    Align2, Button, Color32, FontId, Frame, Key, Margin, Rect, Response, RichText, Sense, Stroke,
-    StrokeKind, TextEdit, Ui, Vec2, WidgetInfo, WidgetType,
+    Align, Align2, Button, CentralPanel, Color32, FontId, Frame, Key, Label, Layout, Margin, Rect,
+    Response, RichText, Sense, SidePanel, Stroke, StrokeKind, TextEdit, TopBottomPanel, Ui, Vec2,
+    WidgetInfo, WidgetType,
 };
 
 use crate::state::{Command, FileCommand, TrainCommand};
@@ -14,6 +15,41 @@ pub type Out<'a> = &'a mut Vec<Command>;
 /// The frame of panels' contents, on the colour with which every frame begins.
 pub fn padded() -> Frame {
     Frame::new().inner_margin(Margin::same(12))
+}
+
+/// Panels inside another area, of which nothing is drawn or clicked outside of it.
+pub trait Clipped {
+    /// Shows the panel; `egui` alone would let it reach over the edges of an area that scrolls it.
+    fn show_clipped(self, ui: &mut Ui, contents: impl FnOnce(&mut Ui));
+}
+
+/// The contents of a panel, no farther than an area reaches.
+fn within(area: Rect, contents: impl FnOnce(&mut Ui)) -> impl FnOnce(&mut Ui) {
+    move |ui| {
+        ui.set_clip_rect(ui.clip_rect().intersect(area));
+        contents(ui);
+    }
+}
+
+impl Clipped for SidePanel {
+    fn show_clipped(self, ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
+        let area = ui.clip_rect();
+        self.show_inside(ui, within(area, contents));
+    }
+}
+
+impl Clipped for TopBottomPanel {
+    fn show_clipped(self, ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
+        let area = ui.clip_rect();
+        self.show_inside(ui, within(area, contents));
+    }
+}
+
+impl Clipped for CentralPanel {
+    fn show_clipped(self, ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
+        let area = ui.clip_rect();
+        self.show_inside(ui, within(area, contents));
+    }
 }
 
 /// A heading of a section.
@@ -105,10 +141,20 @@ pub fn named(response: &Response, kind: WidgetType, name: impl ToString, selecte
 /// A figure with what it counts.
 pub fn figure(ui: &mut Ui, value: impl Into<String>, what: &str) {
     let c = Colours::now(ui);
-    ui.vertical(|ui| {
+    let value: String = value.into();
+    let width = |text: &str, size: f32| {
+        let font = FontId::proportional(size);
+        let galley = ui.painter().layout_no_wrap(text.to_owned(), font, c.text);
+        galley.size().x.ceil()
+    };
+    // As wide as it is, so that it goes to the next line whole.
+    let size = Vec2::new(width(&value, 19.0).max(width(what, 11.0)), 36.0);
+    ui.allocate_ui_with_layout(size, Layout::top_down(Align::Min), |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
-        ui.label(RichText::new(value).size(19.0).strong());
-        ui.label(RichText::new(what).size(11.0).color(c.muted));
+        let value = RichText::new(value).size(19.0).strong();
+        ui.add(Label::new(value).extend());
+        let what = RichText::new(what).size(11.0).color(c.muted);
+        ui.add(Label::new(what).extend());
     });
 }
 

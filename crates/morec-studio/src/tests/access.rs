@@ -129,7 +129,7 @@ fn in_a_small_window_tab_shows_and_outlines_each_control() {
             // What is larger than what shows it is seen as far as there is room.
             let seen = outline.size().min(window.size());
             let room = vec2(place.width().min(150.0), place.height().min(60.0));
-            let enough = seen.x + 2.0 >= room.x && seen.y + 2.0 >= room.y;
+            let enough = seen.x + 4.0 >= room.x && seen.y + 4.0 >= room.y;
             assert!(
                 enough && window.expand(4.0).contains_rect(outline),
                 "{panel:?}: {name} at {place}, seen {outline}"

@@ -5,7 +5,7 @@ use egui_kittest::kittest::Queryable;
 use morec_db::labels::{NewSample, SampleState as Judged};
 
 use super::{Person, made};
-use crate::state::{Command, Panel};
+use crate::state::{Command, Panel, TrainCommand};
 use crate::store::Edit;
 
 /// Cross-validated, with a label that cannot be recognised and a motion without its label.
@@ -77,6 +77,18 @@ fn matrix_list_and_figures_count_the_same() {
     assert_eq!(lines.count(), alarms);
     person.click("All mistakes");
     assert!(person.sees("MISTAKES"));
+    // The database has it, and shows it again.
+    let judged = person.state().train.judged.as_ref().unwrap();
+    let (moments, counts) = (judged.moments.clone(), judged.counts.clone());
+    let unlearned = judged.unlearned.clone();
+    let reports = &person.state().store.as_ref().unwrap().snapshot.reports;
+    assert_eq!(reports[0].kind, morec_db::ReportKind::Crossval);
+    let id = reports[0].id;
+    person.window.state_mut().state.train.judged = None;
+    person.command(Command::Train(TrainCommand::OpenReport(id)));
+    let again = person.state().train.judged.as_ref().unwrap();
+    assert_eq!((&again.moments, &again.counts), (&moments, &counts));
+    assert_eq!(again.unlearned, unlearned);
 }
 
 #[test]

@@ -43,12 +43,18 @@ fn half_of_a_full_screen_shows_each_panel_whole() {
     }
 }
 
+/// Heights of the bars at the top and at the bottom.
+const BARS: (f32, f32) = (42.0, 28.0);
+
 /// Where buttons, fields and rows of the panel are seen: each is wholly in the window, or a scroll area leads to it.
 fn controls(person: &Person) -> Vec<(String, Rect)> {
     use egui::accesskit::Role;
     use egui_kittest::kittest::NodeT;
     let mut found = Vec::new();
     for node in person.window.root().children_recursive() {
+        if node.accesskit_node().bounding_box().is_none() {
+            continue;
+        }
         let place = node.rect();
         let node = node.accesskit_node();
         let kinds = [
@@ -74,10 +80,11 @@ fn in_the_smallest_window_no_control_lies_on_another_and_the_bar_is_whole() {
             let at = person.place(name);
             assert!(window.contains_rect(at), "{panel:?}: {name} at {at:?}");
         }
-        let bars = person.place("File").bottom();
-        // Where a panel has no room, bars scroll what lies outside.
+        // What lies outside is brought in by scrolling.
+        let room = window.y_range();
+        let room = room.min + BARS.0..room.max - BARS.1;
         let all = controls(&person);
-        let inside = all.iter().filter(|(_, at)| at.top() > bars);
+        let inside = all.iter().filter(|(_, at)| room.contains(&at.center().y));
         for (at, (name, place)) in inside.clone().enumerate() {
             for (other, there) in inside.clone().skip(at + 1) {
                 let common = place.intersect(*there);
@@ -88,6 +95,38 @@ fn in_the_smallest_window_no_control_lies_on_another_and_the_bar_is_whole() {
                     "{panel:?}: {name} at {place} lies on {other} at {there}"
                 );
             }
+        }
+    }
+}
+
+#[test]
+fn nothing_of_a_scrolled_panel_lies_over_the_bars() {
+    let (_folder, mut person, window) = sized(640.0, 400.0);
+    for panel in Panel::ALL {
+        person.goes_to(panel);
+        person.frames(2);
+        let bar = window.bottom() - 0.5 * BARS.1;
+        let seen = |person: &Person| {
+            let state = person.state();
+            let focused = person.window.ctx.memory(|memory| memory.focused());
+            let (at, range) = (state.player.at_secs, state.timeline.range);
+            (
+                at,
+                range,
+                state.library.selected.clone(),
+                focused,
+                person.written(),
+            )
+        };
+        let before = seen(&person);
+        // Nothing but the bar's own button, which copies, lies there.
+        for x in (10..640).step_by(45) {
+            person.click_at(egui::pos2(x as f32, bar));
+            assert_eq!(
+                seen(&person),
+                before,
+                "{panel:?}: a click on the bar at {x}"
+            );
         }
     }
 }

@@ -17,6 +17,12 @@ fn an_index_is_trained_kept_and_its_mistakes_are_found() {
     let index = person.state().train.index.clone().unwrap();
     assert_eq!(index.model.classes().len(), 3);
     assert!(!person.state().train.is_stale());
+    let kept = person.state().store.as_ref().unwrap().snapshot.reports[0].clone();
+    assert_eq!(kept.kind, morec_db::ReportKind::Training);
+    person.click(&format!("Report {}: training, {}", kept.id, kept.title));
+    person.settle();
+    assert!(person.sees_part("Report of ") && person.sees_part(&kept.title));
+    person.click("Close the report");
     person.click("Keep");
     person.settle();
     assert!(person.sees("up to date"), "the database has it");

@@ -9,10 +9,10 @@ use morec::math::Vec3;
 use crate::body::Aligned;
 use crate::jobs::JobOutcome;
 use crate::jobs::align::{self, Partner};
-use crate::jobs::unlearned::Unlearned;
 use crate::state::compare::Placement;
 use crate::state::{CompareCommand, State};
 use crate::stretch::Stretch;
+use morec_ops::Unlearned;
 
 /// Name of the job that aligns.
 pub(in crate::state) const ALIGNING: &str = "Comparing";
