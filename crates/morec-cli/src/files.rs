@@ -6,7 +6,8 @@ use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
 use morec::diagnosis::errors_of_clip;
 use morec::files::{
-    ClipFile, FileError, FileReader, Listing, is_large, list, read_file, read_stream, split_choice,
+    ClipFile, FileError, FileReader, Listing, is_large, list_as, read_file, read_stream,
+    split_choice,
 };
 use morec::formats::bvh::PositionChannels;
 use morec::import::{ImportOptions, Take};
@@ -82,7 +83,12 @@ pub fn say_left_out(listing: &Listing) -> bool {
 /// Folders become the clips in them, however deep, in the order of their paths; files stay where they are named. No
 /// output of this run may take the place of any of them. What folders hold that cannot be read is said.
 pub fn expand(paths: &[PathBuf]) -> Result<Vec<PathBuf>> {
-    let listing = expand_all(paths)?;
+    expand_as(paths, false)
+}
+
+/// [`expand`]; with `planar`, tables of points in two dimensions are clips too.
+pub fn expand_as(paths: &[PathBuf], planar: bool) -> Result<Vec<PathBuf>> {
+    let listing = listed(paths, planar)?;
     for FileError { path, kind } in &listing.left_out {
         eprintln!("morec: {}: left out: {kind}", path.display());
     }
@@ -91,7 +97,11 @@ pub fn expand(paths: &[PathBuf]) -> Result<Vec<PathBuf>> {
 
 /// [`expand`] with what is left out, which is not said.
 pub fn expand_all(paths: &[PathBuf]) -> Result<Listing> {
-    let all = list(paths)?;
+    listed(paths, false)
+}
+
+fn listed(paths: &[PathBuf], planar: bool) -> Result<Listing> {
+    let all = list_as(paths, planar)?;
     all.clips.iter().for_each(|clip| output::mark_read(clip));
     Ok(all)
 }

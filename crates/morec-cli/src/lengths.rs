@@ -6,12 +6,12 @@ use std::path::PathBuf;
 use anyhow::{Result, bail};
 use morec::labels::{ClipLength, Extent, Labels, names_of_clip};
 
-use crate::files::{ReadArgs, expand, open_planar};
+use crate::files::{ReadArgs, expand_as, open_planar};
 use crate::progress::SlowProgress;
 
 /// Rate and length of every clip in `paths`, by name. What was repaired in them is for `morec inspect` to say.
 pub fn lengths(paths: &[PathBuf], read: &ReadArgs) -> Result<BTreeMap<String, ClipLength>> {
-    let files = expand(paths)?;
+    let files = expand_as(paths, true)?;
     let mut progress = SlowProgress::new(files.len(), "reading clips");
     let mut lengths = BTreeMap::new();
     for file in files {

@@ -14,7 +14,7 @@ use morec_ops::{MaterialBeside, TrainSettings, training_data};
 use rayon::prelude::*;
 
 use crate::database;
-use crate::files::{ReadArgs, expand, mapping, read, takes};
+use crate::files::{ReadArgs, expand, expand_as, mapping, read, takes};
 use crate::labels::{self, LabelArgs};
 
 /// Training data: clips, labels, background.
@@ -90,7 +90,7 @@ impl MaterialArgs {
 
     fn load_files(&self, unknown: &[PathBuf]) -> Result<ClipMaterial> {
         let (labels, people) = self.labels()?;
-        let taught = expand(&self.clips)?;
+        let taught = self.expand(&self.clips)?;
         let background = self.named(&taught, &self.background)?;
         let unknown = self.named(&taught, unknown)?;
         let mut paths = taught;
@@ -126,7 +126,7 @@ impl MaterialArgs {
     ) -> Result<TrainingData> {
         let text = labels::read(labels, &self.reading, paths)?;
         warn(labels, &text.warnings);
-        let clips = load_clips(&expand(paths)?, &self.read, &self.import_options()?)?;
+        let clips = load_clips(&self.expand(paths)?, &self.read, &self.import_options()?)?;
         let material = TrainingMaterial {
             labels: &text,
             people: None,
@@ -196,12 +196,18 @@ impl MaterialArgs {
         })
     }
 
+    /// The clips of folders; of animals in pictures too, if roles name their points.
+    fn expand(&self, paths: &[PathBuf]) -> Result<Vec<PathBuf>> {
+        let mapping = self.import_options()?.mapping;
+        expand_as(paths, mapping.is_some_and(|mapping| mapping.is_custom()))
+    }
+
     /// Paths as they are; what is no path but the file stem of one of `taught` is that clip.
     fn named(&self, taught: &[PathBuf], given: &[PathBuf]) -> Result<Vec<PathBuf>> {
         let mut paths = Vec::new();
         for path in given {
             if path.exists() {
-                paths.extend(expand(std::slice::from_ref(path))?);
+                paths.extend(self.expand(std::slice::from_ref(path))?);
                 continue;
             }
             let stem = path.as_os_str();

@@ -5,8 +5,8 @@ use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
-use crate::formats::Format;
 use crate::formats::probe::{format_of_name, probe};
+use crate::formats::{Format, IN_A_PICTURE};
 
 use super::sequence::FrameFiles;
 use super::{FileError, FileErrorKind};
@@ -33,6 +33,14 @@ pub struct Listing {
 /// # Errors
 /// A folder that cannot be read, or in which there is no clip.
 pub fn list(paths: &[PathBuf]) -> Result<Listing, FileError> {
+    list_as(paths, false)
+}
+
+/// [`list`]; with `planar`, tables of points in two dimensions are clips too, as [`FileReader::planar`](super::FileReader::planar) reads them.
+///
+/// # Errors
+/// As [`list`].
+pub fn list_as(paths: &[PathBuf], planar: bool) -> Result<Listing, FileError> {
     let mut all = Listing::default();
     for path in paths {
         if !path.is_dir() {
@@ -40,7 +48,7 @@ pub fn list(paths: &[PathBuf]) -> Result<Listing, FileError> {
             continue;
         }
         let (before, left_out) = (all.clips.len(), all.left_out.len());
-        collect(path, &mut all)?;
+        collect(path, planar, &mut all)?;
         all.clips[before..].sort();
         if all.clips.len() == before {
             let reasons = all.left_out[left_out..].iter().take(REASONS);
@@ -52,7 +60,7 @@ pub fn list(paths: &[PathBuf]) -> Result<Listing, FileError> {
     Ok(all)
 }
 
-fn collect(folder: &Path, all: &mut Listing) -> Result<(), FileError> {
+fn collect(folder: &Path, planar: bool, all: &mut Listing) -> Result<(), FileError> {
     let failed = |error| FileErrorKind::Io(error).at(folder);
     let entries: Vec<fs::DirEntry> = fs::read_dir(folder)
         .and_then(Iterator::collect)
@@ -72,12 +80,15 @@ fn collect(folder: &Path, all: &mut Listing) -> Result<(), FileError> {
         // A link to a folder could lead back here; links to files cannot.
         if entry.file_type().is_ok_and(|kind| kind.is_dir()) {
             // A folder that cannot be read is left out alone.
-            if let Err(error) = collect(&path, all) {
+            if let Err(error) = collect(&path, planar, all) {
                 all.left_out.push(error);
             }
         } else if path.is_file() {
             match kind_of(&path, firsts.get(&path).copied()) {
                 FileKind::Clip => all.clips.push(path),
+                FileKind::NotRead(FileErrorKind::NotRead(why)) if planar && why == IN_A_PICTURE => {
+                    all.clips.push(path)
+                }
                 FileKind::NotRead(why) => all.left_out.push(why.at(&path)),
                 FileKind::Other => all.others += 1,
                 FileKind::Needed => {}

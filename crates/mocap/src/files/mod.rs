@@ -32,7 +32,7 @@ pub use bounded::write_whole;
 pub use bounded::{LARGEST_FILE, LARGEST_STREAM, each_piece, is_large, read_stream};
 pub use choice::split_choice;
 pub use error::{FileError, FileErrorKind};
-pub use folder::{Listing, list};
+pub use folder::{Listing, list, list_as};
 pub use reader::{ClipFile, FileReader};
 pub use sequence::read_file;
 pub use takes::Takes;

@@ -17,7 +17,7 @@ use crate::roles::Role;
 use crate::roles::points::{numbered_counts, recognise_posed, subject_of};
 
 /// What is wrong with points in a picture.
-pub(in crate::formats) const IN_A_PICTURE: &str = "x and y alone: two dimensions are not enough for a person (triangulate several views); of an animal or a thing, name its points with --roles";
+pub(crate) const IN_A_PICTURE: &str = "x and y alone: two dimensions are not enough for a person (triangulate several views); of an animal or a thing, name its points with --roles";
 
 /// Models of face and hands beside the body: their points come behind its 33.
 pub(super) const WITH_HANDS_AND_FACE: [usize; 5] = [75, 501, 543, 553, 1629];

@@ -16,7 +16,7 @@ use morec_live::vmc::Bundling;
 use morec_ops::RecognizeSettings;
 
 use super::send::bundling;
-use crate::files::{ReadArgs, expand, mapping, open_planar, open_with, rate, read, say_doubts};
+use crate::files::{ReadArgs, expand_as, mapping, open_planar, open_with, rate, read, say_doubts};
 use crate::live::layout::LayoutArg;
 use crate::live::network::NetworkArgs;
 use crate::live::wire::recognise_over_vmc;
@@ -104,7 +104,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         mapping,
         ..ImportOptions::default()
     };
-    let paths = expand(&args.clips)?;
+    let paths = expand_as(&args.clips, is_custom(&index))?;
     let form = (args.form, "a table of detections (--form)");
     let failed = write_rows(args.output.as_deref(), form, |out| {
         recognize_all(out, &paths, &index, &options, args)
@@ -213,6 +213,11 @@ fn has_activities(index: &MotionIndex) -> bool {
     matches!(&index.model, Model::Templates(model) if model.activities.is_some())
 }
 
+/// True of an index of a skeleton that is no person's.
+fn is_custom(index: &MotionIndex) -> bool {
+    index.roles.keys().any(|role| role.is_custom())
+}
+
 fn recognize_file(
     path: &Path,
     index: &MotionIndex,
@@ -222,8 +227,7 @@ fn recognize_file(
     stats: &mut Stats,
 ) -> Result<Vec<FoundInClip>> {
     let shown = || path.display().to_string();
-    let is_custom = index.roles.keys().any(|role| role.is_custom());
-    let opened = stats.reading(|| match is_custom {
+    let opened = stats.reading(|| match is_custom(index) {
         true => open_planar(path, &args.read),
         false => open_with(path, &args.read, options.mapping.as_ref()),
     })?;

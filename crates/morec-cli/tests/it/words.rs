@@ -68,10 +68,8 @@ fn words_find_classes_captions_and_names() {
     );
     let page = std::fs::read_to_string(folder.path().join("hits.html")).unwrap();
     assert!(page.contains("<svg") && page.contains("Described by wave"));
-    let none = folder
-        .morec(&["db", "search", "m.mdb", "--words", "xylophone"])
-        .ok();
-    assert!(none.contains("not found: xylophone"), "{none}");
+    let none = folder.morec(&["db", "search", "m.mdb", "--words", "xylophone"]);
+    assert!(none.err.contains("not found: xylophone"), "{none:?}");
     let both = folder.morec(&["db", "search", "m.mdb", one, "--words", "wave"]);
     assert_eq!(both.code, Some(2));
     assert_eq!(folder.morec(&["db", "search", "m.mdb"]).code, Some(2));
