@@ -182,7 +182,11 @@ fn foreign_destroyed_and_exchanged_handles_are_refused() {
         morec_index_destroy(recognizer.0.cast()),
         MorecStatus::BadHandle
     );
-    assert!(last_error().contains("not of an index"), "{}", last_error());
+    assert!(
+        last_error().contains("not belong to an index"),
+        "{}",
+        last_error()
+    );
     assert_eq!(recognizer.push(&frame(0.0, &pose)), MorecStatus::Ok);
     // An index may go before the recognisers that were made of it.
     drop(index);
@@ -293,7 +297,7 @@ fn options_that_cannot_be_are_refused() {
     assert_eq!(status(&|_| {}), MorecStatus::Ok);
     assert_eq!(status(&|o| o.handedness = 0), MorecStatus::InvalidValue);
     assert_eq!(status(&|o| o.up_axis = 2), MorecStatus::InvalidValue);
-    assert_eq!(status(&|o| o.flags = 32), MorecStatus::InvalidValue);
+    assert_eq!(status(&|o| o.flags = 64), MorecStatus::InvalidValue);
     assert_eq!(
         status(&|o| o.flags = MOREC_PERFORMER_ANYONE | MOREC_PERFORMER_TEACHER),
         MorecStatus::InvalidValue
@@ -401,7 +405,7 @@ fn no_event_is_lost_if_nobody_polls() {
             let mut status = recognizer.push(&frame);
             if status == MorecStatus::QueueFull {
                 refused += 1;
-                assert!(last_error().contains("polled"), "{}", last_error());
+                assert!(last_error().contains("poll events"), "{}", last_error());
                 events.extend(recognizer.poll(1000));
                 status = recognizer.push(&frame);
             }

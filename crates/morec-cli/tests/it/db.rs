@@ -287,12 +287,10 @@ fn kept_reports_are_listed_and_written() {
         let text = std::fs::read_to_string(folder.path().join(name)).unwrap();
         serde_json::from_str(&text).unwrap()
     };
-    let write = ["db", "reports", "m.mdb", "--write", "all.json"];
+    let write = ["db", "reports", "m.mdb", "-o", "all.json"];
     folder.morec(&write).ok();
     assert_eq!(read("all.json")[1]["report"]["number"], 0);
-    let one = [
-        "db", "reports", "m.mdb", "--only", "2", "--write", "one.json",
-    ];
+    let one = ["db", "reports", "m.mdb", "--only", "2", "-o", "one.json"];
     folder.morec(&one).ok();
     assert_eq!(read("one.json")["report"]["number"], 1);
     assert_eq!(read("one.json")["about"]["title"], "2 of 3 found");

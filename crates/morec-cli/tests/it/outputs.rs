@@ -31,7 +31,7 @@ fn inputs_are_no_outputs() {
     );
     let motion = ["db", "export", "m.mdb", "m.mdb", "--motion", of_clip];
     spares(&folder, "m.mdb", &motion);
-    let reports = ["db", "reports", "m.mdb", "--write", "m.mdb"];
+    let reports = ["db", "reports", "m.mdb", "-o", "m.mdb"];
     spares(&folder, "m.mdb", &reports);
     let search = ["db", "search", "m.mdb", of_clip, "--report", "m.mdb"];
     spares(&folder, "m.mdb", &search);
@@ -214,7 +214,7 @@ fn endings_of_other_formats_are_refused() {
         ("recognize v1.index CLIP --form jsonl -o o.tsv", ".jsonl"),
         ("play CLIP -o o.bvh", ".html"),
         ("db report m.mdb -o o.tsv", ".html"),
-        ("db reports m.mdb --write o.tsv", ".json"),
+        ("db reports m.mdb -o o.tsv", ".json"),
         ("crossval --db m.mdb --by half --report o.JSON", ".html"),
         ("inspect CLIP --draw -o o.png", ".svg"),
         ("convert CLIP -o o.fbx", ".bvh"),

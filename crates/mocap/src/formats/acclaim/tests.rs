@@ -196,7 +196,7 @@ fn a_frame_that_is_cut_off_is_left_out() {
     let end = WAVE.windows(6).rposition(|w| w == b"\nlower").unwrap();
     let cut = amc(&arm, &WAVE[..end]).unwrap();
     assert_eq!(cut.clips[0].frames, whole.frames - 1);
-    assert!(cut.warnings.iter().any(|w| w.text.contains("cut off")));
+    assert!(cut.warnings.iter().any(|w| w.text.contains("incomplete")));
     assert_eq!(
         cut.clips[0].rotations[..],
         whole.rotations[..cut.clips[0].rotations.len()]

@@ -381,7 +381,10 @@ fn what_is_no_position_is_said() {
     for (head, said) in [
         ("time,Knee_angle,Hip_angle\n", "angles"),
         ("time,a_qx,a_qy,a_qz,a_qw\n", "rotations"),
-        ("time,Acc_X,Acc_Y,Acc_Z,Gyr_X,Gyr_Y,Gyr_Z\n", "sensors"),
+        (
+            "time,Acc_X,Acc_Y,Acc_Z,Gyr_X,Gyr_Y,Gyr_Z\n",
+            "sensor readings",
+        ),
         (
             "Format Version,1.25,Take Name,a\n\n,Type,Bone,Bone\n,Name,a,a\n,,Rotation,Rotation\nFrame,Time,X,Y\n",
             "export positions",

@@ -20,8 +20,8 @@ use crate::table::TextTable;
 #[command(after_help = "\
 Examples:
   morec db reports moves.mdb
-  morec db reports moves.mdb --write reports.json
-  morec db reports moves.mdb --only 12 --write report.json")]
+  morec db reports moves.mdb -o reports.json
+  morec db reports moves.mdb --only 12 -o report.json")]
 pub struct Args {
     /// The database
     #[arg(value_name = "DB")]
@@ -29,9 +29,9 @@ pub struct Args {
     /// Only the report of this number
     #[arg(long, value_name = "NUMBER")]
     only: Option<i64>,
-    /// Write the reports with their contents to this file, as JSON
-    #[arg(long, value_name = "FILE")]
-    write: Option<PathBuf>,
+    /// File to write the reports to, with their contents, as JSON
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
     /// Print one JSON array
     #[arg(long)]
     json: bool,
@@ -39,7 +39,7 @@ pub struct Args {
 
 /// Writes, then lists.
 pub fn run(args: &Args) -> Result<ExitCode> {
-    if let Some(path) = &args.write {
+    if let Some(path) = &args.output {
         output::check_ending(path, "JSON", &["json"])?;
     }
     let db = database::open_read_only(&args.db)?;
@@ -49,7 +49,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         db.report(only)?;
         reports.retain(|report| report.id == only);
     }
-    if let Some(path) = &args.write {
+    if let Some(path) = &args.output {
         let whole = reports.iter().map(|report| contents(&db, report));
         let text = match (args.only, whole.collect::<Result<Vec<Value>>>()?) {
             (Some(_), mut one) => one.swap_remove(0),

@@ -109,7 +109,7 @@ impl State {
         }
         if let Some(store) = &self.store {
             let line = ShownCommand::new("morec db reports").word(store.path());
-            let line = line.with("--only", id.to_string()).with("--write", path);
+            let line = line.with("--only", id.to_string()).with("-o", path);
             self.show_line(line);
         }
     }
