@@ -123,8 +123,8 @@ typedef int32_t MorecStatus;
 #endif // __cplusplus
 
 /**
- * A body part, named for the joint at its near end: the hip joint has the role thigh, the knee shin, the wrist hand. Torso is the
- * first joint of the spine above the hips.
+ * A body part, named for the joint at its near end: the hip joint has the role thigh, the knee shin, the wrist hand. Torso is
+ * the first joint of the spine above the hips.
  */
 enum MorecRole
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -497,8 +497,8 @@ typedef struct MorecSkeleton {
     const double *offsets;
     /**
      * `joint_count` values of `MorecRole`, `MOREC_ROLE_NONE` for most joints; or null: inferred from the tree and the names.
-     * Points of hands (`left_palm`, `left_thumb_1` … `right_little_tip`), points of a custom skeleton and `face` have the numbers
-     * from `MOREC_ROLE_COUNT` to below `MOREC_POINT_COUNT`; see `morec_role_from_name`.
+     * Points of hands (`left_palm`, `left_thumb_1` … `right_little_tip`), points of a custom skeleton and `face` have the
+     * numbers from `MOREC_ROLE_COUNT` to below `MOREC_POINT_COUNT`; see `morec_role_from_name`.
      */
     const int32_t *roles;
 } MorecSkeleton;
@@ -705,9 +705,9 @@ extern "C" {
 MorecStatus morec_recognizer_diagnosis(const struct MorecRecognizer *recognizer, struct MorecDiagnosis *diagnosis);
 
 /**
- * Writes the problems of the stream into the `size` bytes at `buffer`: one sentence with its remedy on each line, the most severe
- * first, zero-terminated; an empty text if there are none. If `needed` is not null, it receives the number of bytes needed. If
- * the buffer is too small, the text is truncated and the status is `MOREC_STATUS_BUFFER_TOO_SMALL`.
+ * Writes the problems of the stream into the `size` bytes at `buffer`: one sentence with its remedy on each line, the most
+ * severe first, zero-terminated; an empty text if there are none. If `needed` is not null, it receives the number of bytes
+ * needed. If the buffer is too small, the text is truncated and the status is `MOREC_STATUS_BUFFER_TOO_SMALL`.
  *
  * # Safety
  * `buffer` is null or may be written to for `size` bytes; `needed` is null or may be written to.
@@ -731,8 +731,8 @@ bool mrInit(const char *szClassifierFile);
 void mrTerminate(void);
 
 /**
- * Sets the clip in a file (BVH; AMC with its ASF in the same folder) as the source of motion; if the file has several people, the
- * first. `szSourceFile` is UTF-8.
+ * Sets the clip in a file (BVH; AMC with its ASF in the same folder) as the source of motion; if the file has several people,
+ * the first. `szSourceFile` is UTF-8.
  *
  * The clip is played frame by frame at the speed of the performance. It starts together with recognition, so that no frame is
  * missed.
@@ -877,7 +877,8 @@ MorecStatus morec_recognizer_push(struct MorecRecognizer *recognizer,
  * Moves up to `capacity` queued events to `events`, the oldest first, and writes their number to `*count`.
  *
  * `event_size` is `sizeof(MorecEvent)`, the distance of the elements in bytes. If `*count` equals `capacity`, more events may be
- * queued. With a `capacity` of 0, `events` may be null, and the status is `MOREC_STATUS_BUFFER_TOO_SMALL` if any event is queued.
+ * queued. With a `capacity` of 0, `events` may be null, and the status is `MOREC_STATUS_BUFFER_TOO_SMALL` if any event is
+ * queued.
  *
  * # Safety
  * `events` is null or may be written to for `capacity` times `event_size` bytes; `count` is null or may be written to.
@@ -931,8 +932,8 @@ const char *morec_version(void);
 const char *morec_role_name(int32_t role);
 
 /**
- * The `MorecRole` of this name, or the number of a point of a hand or of a custom skeleton; `MOREC_ROLE_NONE` if there is no such
- * name, or `name` is null.
+ * The `MorecRole` of this name, or the number of a point of a hand or of a custom skeleton; `MOREC_ROLE_NONE` if there is no
+ * such name, or `name` is null.
  *
  * # Safety
  * `name` is null or ends with a zero.
