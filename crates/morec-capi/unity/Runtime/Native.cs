@@ -71,6 +71,7 @@ namespace Morec
         Cancel = 2,
         End = 3,
         Repetition = 4,
+        Progress = 5,
     }
 
     public enum MorecMethod
