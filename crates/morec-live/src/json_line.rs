@@ -274,7 +274,12 @@ fn shown(text: &str) -> String {
 fn explain(text: &str, otherwise: &str) -> String {
     let value: Value = match serde_json::from_str(text) {
         Ok(value) => value,
-        Err(error) => return format!("column {}: invalid JSON: {error}", error.column()),
+        Err(error) => {
+            // The library names a line too, which is always the first here.
+            let why = error.to_string();
+            let why = why.split(" at line ").next().unwrap_or(&why);
+            return format!("column {}: invalid JSON: {why}", error.column());
+        }
     };
     let Some(object) = value.as_object() else {
         return format!("expected an object {{…}}, found {}", kind(&value));
@@ -467,8 +472,8 @@ mod tests {
     #[test]
     fn rubbish_is_no_pose() {
         for (line, said) in [
-            ("", "no JSON"),
-            ("hello", "column 1: no JSON"),
+            ("", "column 0: invalid JSON: EOF while parsing a value"),
+            ("hello", "column 1: invalid JSON: expected value"),
             ("{}", "expected `positions`, `points` or `rotations`"),
             ("[1,2]", "expected an object {…}, found 2 numbers"),
             (

@@ -214,7 +214,7 @@ mod tests {
             ),
             (
                 r#"{"hand": "left", "positions": {"hips": [0,0,0]}}"#,
-                "positions.hips: no point of a hand is called hips; there are wrist, palm, thumb_1",
+                "positions.hips: no point of a hand is called hips; the points are wrist, palm, thumb_1",
             ),
         ] {
             let error = PoseLine::of_line(line).unwrap_err();

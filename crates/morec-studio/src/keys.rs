@@ -5,7 +5,7 @@ mod typing;
 
 use egui::{Key, Modifiers};
 
-use crate::panels::lists;
+use crate::lists;
 use crate::state::{
     ClassCommand, Command, CompareCommand, CutCommand, FileCommand, Grip, LibraryCommand,
     LiveCommand, Panel, PlayCommand, SimilarCommand, State, TimelineCommand, TrainCommand,

@@ -14,6 +14,7 @@ mod fonts;
 mod format;
 mod jobs;
 mod keys;
+mod lists;
 #[cfg(feature = "measure")]
 pub mod measure;
 mod name_pattern;

@@ -80,7 +80,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         output::write_whole(path, |out| out.write_all(svg.as_bytes()))
             .with_context(|| path.display().to_string())?;
     }
-    let tables = Tables::of(&budget);
+    let tables = BudgetTables::of(&budget);
     if let Some(path) = &args.report {
         tables.write_page(path, &budget)?;
     }
@@ -133,7 +133,7 @@ fn of_labels(args: &Args) -> Result<TimeBudget> {
 }
 
 /// The budget in words and tables, for the terminal and the page.
-struct Tables {
+struct BudgetTables {
     head: String,
     classes: TextTable,
     /// Which class follows which, if any does.
@@ -142,7 +142,7 @@ struct Tables {
 
 const TRANSITIONS: &str = "Next label in the same clip, rows followed by columns";
 
-impl Tables {
+impl BudgetTables {
     fn of(budget: &TimeBudget) -> Self {
         let TimeBudget {
             clips,

@@ -107,7 +107,7 @@ fn folders_are_searched_in_order() {
     assert_eq!(paths, ["x/1/a.bvh", "x/1/b.BVH", "x/2.bvh"]);
     let ran = folder.morec(&["inspect", "empty"]);
     assert_eq!(ran.code, Some(1));
-    assert!(ran.err.contains("empty: no clip"), "{ran:?}");
+    assert!(ran.err.contains("empty: no readable clip"), "{ran:?}");
 }
 
 #[test]

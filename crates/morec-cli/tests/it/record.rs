@@ -380,7 +380,10 @@ fn live_says_what_is_wrong_with_a_stream_and_with_its_lines() {
         ),
         "{said}"
     );
-    assert!(said.contains("json:-: line 3: column 1: no JSON"), "{said}");
+    assert!(
+        said.contains("json:-: line 3: column 1: invalid JSON"),
+        "{said}"
+    );
     assert!(said.contains(" 2 malformed packets"), "{said}");
     let said = live("empty.jsonl", "");
     assert!(said.contains("nothing has arrived"), "{said}");

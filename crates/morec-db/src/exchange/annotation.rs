@@ -8,6 +8,9 @@ use morec::labels::{ClipLength, names_of_clip};
 
 use crate::labels::{DbSample, SampleState};
 
+/// End of the names of BIDS files.
+pub const BIDS_SUFFIX: &str = "_events";
+
 /// A labelled stretch as files tell of it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Annotation {
@@ -132,7 +135,7 @@ impl LabelFormat {
     /// The name of a file of one clip, whose name as a file's is given.
     pub fn file_of_clip(self, name: &str) -> String {
         let suffix = match self {
-            LabelFormat::Bids => super::bids::SUFFIX,
+            LabelFormat::Bids => BIDS_SUFFIX,
             _ => "",
         };
         format!("{name}{suffix}.{}", self.ending())

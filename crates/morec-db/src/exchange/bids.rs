@@ -2,13 +2,11 @@
 
 use morec::formats::{ParseError, Place, Warning};
 
-use super::annotation::{Annotation, ClipLengths, ReadLabels, secs, text};
+use super::annotation::{Annotation, BIDS_SUFFIX, ClipLengths, ReadLabels, secs, text};
 use super::csv::records;
 
 /// What stands for nothing.
 const NOTHING: &str = "n/a";
-/// End of the names of files.
-pub const SUFFIX: &str = "_events";
 
 /// True of a table whose columns are those of events.
 pub fn is_of_bids(bytes: &[u8]) -> bool {
@@ -23,7 +21,7 @@ pub fn read(bytes: &[u8], clip: Option<&str>) -> Result<ReadLabels, ParseError> 
         let expected = "to be given the clip (events do not name it)";
         ParseError::new(Place::File, expected, "no clip given")
     })?;
-    let clip = clip.strip_suffix(SUFFIX).unwrap_or(clip);
+    let clip = clip.strip_suffix(BIDS_SUFFIX).unwrap_or(clip);
     let mut records = records(text(bytes)?, '\t')?.into_iter();
     let (line, header) = records.next().unwrap_or_default();
     let find = |name: &str| header.iter().position(|cell| cell.trim() == name);

@@ -6,8 +6,8 @@ use std::path::Path;
 
 use morec::labels::{ClipLength, doubtful_unit, names_of_clip};
 
+use super::annotation::BIDS_SUFFIX;
 use super::annotation::{Annotation, ClipLengths, snap};
-use super::bids::SUFFIX;
 use super::clip_of_file_name;
 use crate::labels::NewSample;
 use crate::{ClipId, ClipInfo};
@@ -80,7 +80,7 @@ pub fn clip_lengths(clips: &[ClipInfo]) -> ClipLengths {
 /// The clip that a file is called after, if there is such a clip.
 pub fn clip_of_file(path: &Path, lengths: &ClipLengths) -> Option<String> {
     let clip = clip_of_file_name(&path.file_stem()?.to_string_lossy());
-    let recording = clip.strip_suffix(SUFFIX).map(str::to_owned);
+    let recording = clip.strip_suffix(BIDS_SUFFIX).map(str::to_owned);
     let named = [Some(clip), recording].into_iter().flatten();
     named.into_iter().find(|clip| lengths.contains_key(clip))
 }

@@ -1,4 +1,4 @@
-"""NWB files of neuroscience: labels as bouts (ndx-ethogram), clips as poses (ndx-pose). Needs ``pip install morec[nwb]``.
+"""NWB files of neuroscience: labels as bouts (ndx-ethogram), clips as poses (ndx-pose). Needs ``pip install './crates/morec-py[nwb]'``.
 
 >>> import morec, morec.nwb
 >>> nwbfile = pynwb.read_nwb("mouse.nwb")

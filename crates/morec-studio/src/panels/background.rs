@@ -6,9 +6,9 @@ use egui::{
 };
 use morec_db::{ClipId, ClipInfo};
 
-use super::lists::List;
 use super::{Out, widgets};
 use crate::format;
+use crate::lists::List;
 use crate::state::{Command, State};
 use crate::store::Edit;
 use crate::theme::Colours;

@@ -4,10 +4,10 @@ use egui::{Button, Rect, RichText, Sense, Ui, Vec2, WidgetType};
 use morec_db::labels::{DbSample, SampleId, SampleState as Judged};
 
 use super::carried::Carried;
-use super::lists::List;
 use super::strips::{STRIP, go};
 use super::{Out, strips, widgets};
 use crate::format;
+use crate::lists::List;
 use crate::state::{ClassCommand, Command, Panel, State};
 use crate::theme::Colours;
 

@@ -7,10 +7,10 @@ use egui::{
 use morec_db::labels::{DbSample, SampleState as Judged};
 use morec_ops::GroupMethod;
 
-use super::lists::List;
 use super::widgets::Clipped;
 use super::{Out, card, carried, groups, label, padded, proposals, shelf, similar, view, widgets};
 use crate::format;
+use crate::lists::List;
 use crate::state::{ClassCommand, Command, State};
 use crate::theme::Colours;
 

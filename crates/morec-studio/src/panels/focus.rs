@@ -12,7 +12,7 @@ const LINE: f32 = 1.5;
 
 /// What has the keyboard, and the frames for which it is followed.
 #[derive(Debug, Clone, Copy)]
-struct Followed {
+struct FollowedFocus {
     id: Option<Id>,
     left: u8,
 }
@@ -33,12 +33,12 @@ fn is_cut(response: &Response) -> bool {
 /// Before a frame is drawn: areas scroll to what got the keyboard, where a part of it is not seen.
 pub fn follow(ctx: &Context) {
     let id = ctx.memory(|memory| memory.focused());
-    let before: Option<Followed> = ctx.data(|data| data.get_temp(Id::NULL));
+    let before: Option<FollowedFocus> = ctx.data(|data| data.get_temp(Id::NULL));
     let left = match before.filter(|before| before.id == id) {
         Some(before) => before.left.saturating_sub(1),
         None => FRAMES,
     };
-    ctx.data_mut(|data| data.insert_temp(Id::NULL, Followed { id, left }));
+    ctx.data_mut(|data| data.insert_temp(Id::NULL, FollowedFocus { id, left }));
     let Some(response) = focused(ctx).filter(|response| left > 0 && is_cut(response)) else {
         return;
     };
@@ -53,7 +53,7 @@ pub fn follow(ctx: &Context) {
 
 /// At the end of an area with areas inside: scrolls it to what got the keyboard.
 pub fn follow_around(ui: &Ui) {
-    let followed: Option<Followed> = ui.data(|data| data.get_temp(Id::NULL));
+    let followed: Option<FollowedFocus> = ui.data(|data| data.get_temp(Id::NULL));
     let is_new = followed.is_some_and(|followed| followed.left > 0);
     let here = focused(ui.ctx()).filter(|response| is_new && response.layer_id == ui.layer_id());
     if let Some(response) = here.filter(is_cut) {

@@ -6,8 +6,8 @@ use egui::{Button, Rect, RichText, ScrollArea, Sense, Ui, Vec2, WidgetType};
 use morec::cluster::KwasParams;
 use morec_ops::{GroupMethod, Grouping};
 
-use super::lists::List;
 use super::strips::{STRIP, go};
+use crate::lists::List;
 use morec_db::labels::SampleState;
 
 use super::carried::Carried;

@@ -2,8 +2,8 @@
 
 use egui::{Align, Context, Frame, Layout, Margin, RichText, ScrollArea, SidePanel, WidgetType};
 
-use super::lists::List;
 use super::{Out, widgets};
+use crate::lists::List;
 use crate::state::{Command, State};
 use crate::store::Edit;
 use crate::theme::Colours;

@@ -3,9 +3,9 @@
 use egui::{RichText, ScrollArea, Ui};
 
 use super::Out;
-use super::lists::List;
 use crate::format;
 use crate::jobs::import::ImportSummary;
+use crate::lists::List;
 use crate::state::{Command, CompareCommand, FileCommand, LibraryCommand, State};
 use crate::store::Edit;
 use crate::theme::Colours;

@@ -6,10 +6,10 @@ use egui::{
 };
 use morec_db::labels::SampleState as Judged;
 
-use super::lists::List;
 use super::widgets::Clipped;
 use super::{Out, carried, deviation, library, padded, player, proposals, timeline, view, widgets};
 use crate::format;
+use crate::lists::List;
 use crate::state::classes::is_free_name;
 use crate::state::{
     ClassCommand, Command, CompareCommand, FileCommand, LibraryCommand, SimilarCommand, State,

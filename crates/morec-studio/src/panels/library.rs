@@ -6,10 +6,10 @@ use egui::{
 };
 use morec_db::{BACKGROUND, ClipInfo};
 
-use super::lists::List;
 use super::widgets::Clipped;
 use super::{Out, background, details, import_report, padded, strips, view, whole, widgets};
 use crate::format;
+use crate::lists::List;
 use crate::state::{Column, Command, FileCommand, LibraryCommand, State};
 use crate::theme::Colours;
 

@@ -9,11 +9,11 @@ use morec::templates::PerformerKind;
 use morec_ops::RecognizeSettings;
 
 use super::compare::Other;
-use super::lists::List;
 use super::widgets::Clipped;
 use super::{Out, live_line, padded, teach, view, widgets};
 use crate::body::Body;
 use crate::format;
+use crate::lists::List;
 use crate::state::live::Choice;
 use crate::state::{Command, LiveCommand, SPEEDS, State};
 use crate::theme::Colours;

@@ -2,10 +2,10 @@
 
 use egui::{Align2, FontId, Rect, ScrollArea, Sense, Ui, Vec2, WidgetType, pos2};
 
-use super::lists::List;
 use super::{Out, widgets};
 use crate::format;
 use crate::jobs::judge::only_part;
+use crate::lists::List;
 use crate::state::{Command, State, TrainCommand};
 use crate::theme::Colours;
 

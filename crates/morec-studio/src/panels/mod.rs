@@ -24,7 +24,6 @@ mod label;
 mod label_files;
 mod leave;
 mod library;
-pub mod lists;
 mod live;
 mod live_deviation;
 mod live_line;

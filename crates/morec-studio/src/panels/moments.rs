@@ -3,10 +3,10 @@
 
 use egui::{Rect, Response, RichText, ScrollArea, Sense, Ui, Vec2, WidgetType, pos2};
 
-use super::lists::List;
 use super::{Out, widgets};
 use crate::format;
 use crate::jobs::judge::Moment;
+use crate::lists::List;
 use crate::state::{Command, CompareCommand, State, TrainCommand};
 use crate::theme::Colours;
 

@@ -3,9 +3,9 @@
 use egui::{Frame, Id, Margin, RichText, ScrollArea, Sense, Ui, Vec2, WidgetType};
 use morec_db::ReportKind;
 
-use super::lists::List;
 use super::{Out, widgets};
 use crate::format;
+use crate::lists::List;
 use crate::state::{Command, FileCommand, State, TrainCommand};
 use crate::theme::Colours;
 

@@ -4,10 +4,10 @@ use egui::{
     Button, CursorIcon, Rect, RichText, ScrollArea, Sense, TextEdit, Ui, Vec2, WidgetType, pos2,
 };
 
-use super::lists::List;
 use super::strips::{STRIP, go};
 use super::{Out, strips, widgets};
 use crate::format;
+use crate::lists::List;
 use crate::state::shelf::{ShelfCommand, ShelfSet};
 use crate::state::{Command, State};
 use crate::stretch::Stretch;

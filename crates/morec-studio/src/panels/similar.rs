@@ -3,11 +3,11 @@
 use egui::{Rect, RichText, ScrollArea, Sense, Ui, Vec2, WidgetType};
 use morec_db::search::Hit;
 
-use super::lists::List;
 use super::strips::{STRIP, go};
 use super::{Out, strips, widgets};
 use crate::format;
 use crate::jobs::similar::Similar;
+use crate::lists::List;
 use crate::state::classes::LIKELY;
 use crate::state::{Command, CompareCommand, SimilarCommand, State};
 use crate::stretch::Stretch;

@@ -2,9 +2,9 @@
 
 use egui::{ProgressBar, RichText, ScrollArea, Ui, WidgetType};
 
-use super::lists::List;
 use super::{Out, label, live_deviation, widgets};
 use crate::format;
+use crate::lists::List;
 use crate::state::{Command, LiveCommand, State, TrainCommand};
 use crate::theme::Colours;
 

@@ -4,9 +4,9 @@ use egui::{
     CentralPanel, ComboBox, Frame, Margin, RichText, ScrollArea, SidePanel, Ui, WidgetType,
 };
 
-use super::lists::List;
 use super::widgets::Clipped;
 use super::{Out, background, kinds, matrix, moments, padded, reports, thesis, view, widgets};
+use crate::lists::List;
 use morec::features::BoneSet;
 use morec_ops::training_in_words;
 

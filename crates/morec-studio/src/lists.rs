@@ -43,7 +43,7 @@ struct Pending {
 
 /// A row that gets the keyboard once it is drawn, as of the pass in which its list was drawn last.
 #[derive(Debug, Clone, Copy)]
-struct Wanted {
+struct WantedRow {
     list: Id,
     at: usize,
     pass: u64,
@@ -142,7 +142,7 @@ impl List {
                 None => entry.is_some(),
             };
             let pending = pending.filter(|p| p.pass == now && len > 0 && is_here(p));
-            let before: Option<Wanted> = data.get_temp(Id::NULL);
+            let before: Option<WantedRow> = data.get_temp(Id::NULL);
             let before = before.filter(|w| w.list == id && w.pass + 2 > now);
             let at = match (pending, current) {
                 (Some(pending), Some(current)) => {
@@ -157,7 +157,7 @@ impl List {
             }
             if let Some(at) = at {
                 let pass = now;
-                data.insert_temp(Id::NULL, Wanted { list: id, at, pass });
+                data.insert_temp(Id::NULL, WantedRow { list: id, at, pass });
             }
             at
         });
@@ -185,7 +185,7 @@ impl List {
         let came = self.wanted == Some(at);
         if came {
             response.request_focus();
-            ui.data_mut(|data| data.remove::<Wanted>(Id::NULL));
+            ui.data_mut(|data| data.remove::<WantedRow>(Id::NULL));
         }
         if came || response.has_focus() {
             let current = Current {
