@@ -55,8 +55,13 @@ fn write_figures(out: &mut impl Write, e: &Evaluation) -> io::Result<()> {
     let events = &e.events;
     writeln!(
         out,
-        "{} clips, {:.1} s; {} samples, {} detections\n{} of {} samples found, {} false or double\n",
+        "{} {}, {:.1} s; {} samples, {} detections\n{} of {} samples found, {} false or double\n",
         totals.known_clips,
+        if totals.known_clips == 1 {
+            "clip"
+        } else {
+            "clips"
+        },
         totals.known_secs,
         totals.samples,
         totals.detections,
