@@ -98,7 +98,10 @@ fn outlined(person: &Person) -> Option<(String, Rect, Option<Rect>)> {
         rects.last()
     };
     let outline = drawn(c.playhead).zip(drawn(c.ground));
-    Some((name, node.rect(), outline.map(|(_, inner)| inner)))
+    let ctx = &person.window.ctx;
+    let id = ctx.memory(|memory| memory.focused())?;
+    let place = ctx.read_response(id)?.rect;
+    Some((name, place, outline.map(|(_, inner)| inner)))
 }
 
 #[test]

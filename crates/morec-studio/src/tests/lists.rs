@@ -10,7 +10,7 @@ use morec_ops::{GroupMethod, KeptCrossval, LeftOut};
 use super::{Person, made, takes};
 use crate::jobs::judge::CrossvalResult;
 use crate::state::shelf::ShelfCommand;
-use crate::state::{ClassCommand, Command, LibraryCommand, Panel, TrainCommand};
+use crate::state::{ClassCommand, Command, LibraryCommand, Panel};
 
 fn before(labelled: usize) -> (tempfile::TempDir, Person) {
     let folder = tempfile::tempdir().unwrap();
