@@ -65,6 +65,7 @@ pub fn changed_labels(counts: &morec_db::labels::Added) -> String {
         (counts.gone, "gone"),
         (counts.unchanged, "as before"),
         (counts.people, "people of clips"),
+        (counts.annotated, "given an annotator"),
     ];
     let parts = parts.into_iter().filter(|(n, _)| *n > 0);
     let parts: Vec<String> = parts.map(|(n, what)| format!("{n} {what}")).collect();

@@ -68,7 +68,8 @@ fn contents(ui: &mut Ui, state: &State, import: &LabelImport, out: Out) {
         });
     ui.add_space(6.0);
     ui.horizontal(|ui| {
-        let any = !changes.changes.is_empty() || changes.counts.people > 0;
+        let any =
+            !changes.changes.is_empty() || changes.counts.people + changes.counts.annotated > 0;
         if ui
             .add_enabled(any, widgets::main_button("Apply", &c))
             .clicked()
