@@ -13,7 +13,7 @@ use morec::math::Vec3;
 
 use super::moved;
 use crate::body::Body;
-use crate::jobs::load::extent;
+use crate::body::extent;
 
 /// Length of the stream that is kept for looking back, seconds.
 pub const KEPT_SECS: f64 = 300.0;
