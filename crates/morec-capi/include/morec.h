@@ -2,12 +2,11 @@
  *
  * Made from the sources of morec-capi; `MOREC_WRITE_HEADER=1 cargo test -p morec-capi header` makes it again.
  *
- * Handles are given back once, with the function that bears their name. Null, foreign and destroyed ones are refused
- * with a status, as are null pointers, misaligned ones and values that cannot be; what a pointer that is none of these
- * points to must be as the function says. An index may be used by any number of threads at once. One thread may push
- * into a recogniser while another polls it; a call that would meet another like it is refused with
- * MOREC_STATUS_BUSY and changes nothing. Different recognisers do not know of each other. Nothing calls back, and no
- * morec_ function starts a thread.
+ * Each handle is released once, with the destroy function of its type. Null, foreign and destroyed handles, null and misaligned
+ * pointers, and invalid values are refused with a status; the memory behind any other pointer must be as the function describes.
+ * An index may be used by any number of threads at once. One thread may push into a recogniser while another polls it. A call
+ * that collides with the same call on another thread is refused with MOREC_STATUS_BUSY and changes nothing. Different recognisers
+ * are independent. There are no callbacks, and no morec_ function starts a thread.
  */
 
 #ifndef MOREC_H
@@ -18,23 +17,24 @@
 #include <stdint.h>
 
 /**
- * Say what seems to be under way, too: starts, updates and cancellations beside the ends.
+ * Also report motions before they end: events of the phases start, update and cancel.
  */
 #define MOREC_TENTATIVE 1
 
 /**
- * Anyone performs: the bound of the score is never raised. For hands, tracked points and older indexes: more is accepted from the first
- * frame, not only once the performer's motions show somebody unlike the teacher.
+ * Any performer: the score threshold is never raised. For hands, tracked points and older indexes, matching is relaxed from the
+ * first frame, not only after motions of a performer unlike the training subject.
  */
 #define MOREC_PERFORMER_ANYONE 2
 
 /**
- * The person who taught performs: the bound of the score is raised from the first frame by the scores of the teacher's samples.
+ * The performer is the training subject: the score threshold is raised from the first frame, by the scores of the training
+ * samples.
  */
 #define MOREC_PERFORMER_TEACHER 4
 
 /**
- * Each repetition of an activity is an event of its own.
+ * Report each repetition of an activity as an event of its own.
  */
 #define MOREC_EACH_REPETITION 8
 
@@ -49,17 +49,17 @@
 #define MOREC_PROGRESS 32
 
 /**
- * Number of parts of the body; they are numbered from 0.
+ * Number of body parts; they are numbered from 0.
  */
 #define MOREC_ROLE_COUNT 18
 
 /**
- * Number of parts of the body, points of both hands, points of a custom skeleton and `face` together; they are numbered from 0.
+ * Number of body parts, points of both hands, points of a custom skeleton and `face` together; they are numbered from 0.
  */
 #define MOREC_POINT_COUNT 85
 
 /**
- * Result of a call. Numbers stay what they are; later versions may add some.
+ * Result of a call. Values never change; later versions may add new ones.
  */
 enum MorecStatus
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -75,7 +75,7 @@ enum MorecStatus
      */
     MOREC_STATUS_NULL_POINTER = 1,
     /**
-     * An invalid handle: never given, of another kind, or destroyed.
+     * An invalid handle: never created, of another type, or destroyed.
      */
     MOREC_STATUS_BAD_HANDLE = 2,
     /**
@@ -83,15 +83,15 @@ enum MorecStatus
      */
     MOREC_STATUS_INVALID_VALUE = 3,
     /**
-     * There is not enough room for the answer; the function's documentation says where the room needed is returned.
+     * The buffer is too small for the answer; the function returns the needed size as documented there.
      */
     MOREC_STATUS_BUFFER_TOO_SMALL = 4,
     /**
-     * Another thread is using this recogniser just now; nothing was changed.
+     * Another thread is using this recogniser; nothing was changed.
      */
     MOREC_STATUS_BUSY = 5,
     /**
-     * Events wait to be polled, and there is no room for more; the frame was not taken. Poll, and push it again.
+     * The event queue is full, so the frame was not processed. Poll events, then push the frame again.
      */
     MOREC_STATUS_QUEUE_FULL = 6,
     /**
@@ -99,15 +99,15 @@ enum MorecStatus
      */
     MOREC_STATUS_FILE = 7,
     /**
-     * Bytes are not an index that this release reads.
+     * The bytes are not an index that this release can read.
      */
     MOREC_STATUS_BAD_INDEX = 8,
     /**
-     * The index and what the stream shows of a body have no bone in common.
+     * The index and the stream have no bone in common.
      */
     MOREC_STATUS_NOTHING_IN_COMMON = 9,
     /**
-     * Not now: another call must come first.
+     * Another call must come first.
      */
     MOREC_STATUS_WRONG_ORDER = 10,
     /**
@@ -115,7 +115,7 @@ enum MorecStatus
      */
     MOREC_STATUS_STRUCT_SIZE = 11,
     /**
-     * A fault in morec itself. The handle should be destroyed; please report it.
+     * An internal error of morec. Destroy the handle, and please report the error.
      */
     MOREC_STATUS_INTERNAL = 12,
 };
@@ -128,8 +128,8 @@ typedef int32_t MorecStatus;
 #endif // __cplusplus
 
 /**
- * A part of the body, played by the joint at its near end: the thigh by the hip joint, the shin by the knee, the hand
- * by the wrist. Torso is the first joint of the spine above the hips.
+ * A body part, named for the joint at its near end: the hip joint has the role thigh, the knee shin, the wrist hand. Torso is
+ * the first joint of the spine above the hips.
  */
 enum MorecRole
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -137,7 +137,7 @@ enum MorecRole
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
     /**
-     * No part that recognition knows.
+     * No role: a joint that recognition does not use.
      */
     MOREC_ROLE_NONE = -1,
     MOREC_ROLE_HIPS = 0,
@@ -234,12 +234,12 @@ enum MorecSpace
      */
     MOREC_SPACE_UNKNOWN = 0,
     /**
-     * The world: `positions` are needed; `rotations` turn joints' axes into the world's.
+     * The world: `positions` are required; `rotations` turn the joints' axes into the world's.
      */
     MOREC_SPACE_WORLD = 1,
     /**
-     * The parent's frame: `rotations` are needed; `positions` take the place of the skeleton's offsets. A root's are in
-     * the world. Needs a skeleton.
+     * The parent's frame: `rotations` are required; `positions` replace the skeleton's offsets. A root's are in the world.
+     * Requires a skeleton.
      */
     MOREC_SPACE_LOCAL = 2,
 };
@@ -260,23 +260,23 @@ enum MorecPhase
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
     /**
-     * A motion seems to be under way. Tentative; only with `MOREC_TENTATIVE`.
+     * A motion has probably started. Tentative; only with `MOREC_TENTATIVE`.
      */
     MOREC_PHASE_START = 0,
     /**
-     * Its progress, or what it seems to be, has changed. Tentative.
+     * The progress or the probable class has changed. Tentative.
      */
     MOREC_PHASE_UPDATE = 1,
     /**
-     * It came to nothing. Ends what a start began.
+     * The motion that a start event announced was not confirmed.
      */
     MOREC_PHASE_CANCEL = 2,
     /**
-     * It has happened. Final: nothing that ended is taken back, and every motion ends once.
+     * The motion has ended. Final: an end is never revoked, and every motion ends once.
      */
     MOREC_PHASE_END = 3,
     /**
-     * One more repetition of an activity is over, from the event's start to its stop; `repetitions` is its number. Only with
+     * A repetition of an activity is complete, from the event's start to its stop; `repetitions` is its number. Only with
      * `MOREC_EACH_REPETITION`. (Not in the first version.)
      */
     MOREC_PHASE_REPETITION = 4,
@@ -303,11 +303,11 @@ enum MorecMethod
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
     /**
-     * Templates matched elastically, over the places of joints.
+     * Templates of joint positions, matched elastically in time.
      */
     MOREC_METHOD_TEMPLATES = 0,
     /**
-     * The method of 2009, over the rotations of joints.
+     * The method of 2009, on joint rotations.
      */
     MOREC_METHOD_SVRDM = 1,
 };
@@ -320,7 +320,7 @@ typedef int32_t MorecMethod;
 #endif // __cplusplus
 
 /**
- * A loaded index: what recognition knows. It does not change; any number of threads may use it at once.
+ * A loaded index. It does not change; any number of threads may use it at once.
  */
 typedef struct MorecIndex MorecIndex;
 
@@ -330,7 +330,7 @@ typedef struct MorecIndex MorecIndex;
 typedef struct MorecRecognizer MorecRecognizer;
 
 /**
- * Figures of a stream. An unknown figure is NaN. Lengths are metres by a guess of the stream's unit.
+ * Measures of a stream. Unknown measures are NaN. Lengths are in metres, converted from the inferred unit of the stream.
  */
 typedef struct MorecDiagnosis {
     /**
@@ -338,27 +338,27 @@ typedef struct MorecDiagnosis {
      */
     size_t struct_size;
     /**
-     * Frames looked at.
+     * Number of frames examined.
      */
     uint64_t frames;
     /**
-     * `MorecFinding` bits; 0 until there is about a second of stream.
+     * `MorecFinding` bits; 0 during about the first second of the stream.
      */
     uint32_t findings;
     /**
-     * A `MorecSeverity`: of the gravest finding.
+     * `MorecSeverity` of the most severe finding.
      */
     int32_t severity;
     /**
-     * Bit `r` for each `MorecRole` `r` that is never seen.
+     * Bit `r` for each `MorecRole` `r` that is always missing.
      */
     uint32_t missing_roles;
     /**
-     * Bit `r` for each `MorecRole` `r` that is seen only at times.
+     * Bit `r` for each `MorecRole` `r` that is missing in some frames.
      */
     uint32_t flickering_roles;
     /**
-     * From the first frame to the last.
+     * Time from the first frame to the last, seconds.
      */
     double secs;
     /**
@@ -366,45 +366,45 @@ typedef struct MorecDiagnosis {
      */
     double rate_hz;
     /**
-     * Half the range of nine tenths of the intervals at which frames arrived.
+     * Half the range of 90 % of the intervals between arrivals of frames, seconds.
      */
     double jitter_secs;
     /**
-     * Share of the frames that were due and did not come.
+     * Share of the expected frames that did not arrive, 0 to 1.
      */
     double lost_share;
     /**
-     * Share of the frames that repeat the one before.
+     * Share of the frames that repeat the previous frame, 0 to 1.
      */
     double repeated_share;
     /**
-     * Share of the frames that show no body.
+     * Share of the frames without a body, 0 to 1.
      */
     double empty_share;
     /**
-     * From the ankles to the head joint along the bones.
+     * Length from the ankles to the head joint along the bones, metres.
      */
     double height_m;
     /**
-     * Thigh and shin.
+     * Length of thigh and shin, metres.
      */
     double leg_m;
     /**
-     * Angle of a standing body, or of the trunk, with the vertical, radians.
+     * Angle between a standing body, or the trunk, and the vertical, radians.
      */
     double tilt_rad;
     /**
-     * Standard deviation of fast noise on each coordinate.
+     * Standard deviation of fast noise on each coordinate, metres.
      */
     double noise_m;
     /**
-     * Share of the frames in which a joint is thrown aside.
+     * Share of the frames in which a joint jumps far away, 0 to 1.
      */
     double spike_share;
 } MorecDiagnosis;
 
 /**
- * A motion that was recognised: a segment of the stream, and what it shows.
+ * A recognised motion: a segment of the stream and its class.
  */
 typedef struct MotionSeg {
     /**
@@ -416,15 +416,15 @@ typedef struct MotionSeg {
      */
     uint32_t class_id;
     /**
-     * Frame of the clip at which it began.
+     * First frame of the motion in the clip.
      */
     uint32_t start_frame;
     /**
-     * Frame at which it had ended.
+     * Frame of the clip after the motion's last frame.
      */
     uint32_t stop_frame;
     /**
-     * Bytes of `class_name` without the zero.
+     * Length of `class_name` in bytes, without the zero.
      */
     uint32_t class_name_bytes;
     /**
@@ -436,12 +436,12 @@ typedef struct MotionSeg {
      */
     double stop_secs;
     /**
-     * Probability that the motion is right, 0 to 1: a just accepted one has 0.05 to 0.44, by the kind of index. Of held poses and
-     * of indexes without calibration (svrdm, older ones) it is the closeness to a sample instead.
+     * Probability that the detection is right, 0 to 1. The lowest accepted score is 0.05 to 0.44, depending on the index. For
+     * held poses and indexes without calibration (svrdm, older files) it is the similarity to a sample instead.
      */
     double confidence;
     /**
-     * The name of its class, UTF-8, with a zero at its end; cut if it is longer.
+     * Name of its class, UTF-8, zero-terminated; truncated if it is longer.
      */
     char class_name[64];
 } MotionSeg;
@@ -459,30 +459,29 @@ typedef struct MorecIndexFacts {
      */
     uint32_t class_count;
     /**
-     * The parts of the body that recognition looks at: bit `r` for the `MorecRole` `r`. A stream that lacks some is
-     * compared by the others.
+     * Body parts that recognition uses: bit `r` for `MorecRole` `r`. If a stream lacks some, the others are compared.
      */
     uint32_t roles;
     /**
-     * Number of samples it learned from.
+     * Number of training samples.
      */
     uint64_t sample_count;
     /**
-     * Comparisons of the stream a second.
+     * Comparisons with the templates a second.
      */
     double tick_hz;
     /**
-     * Method of recognition, a `MorecMethod`. Later releases may add some. Not in the first version of this struct.
+     * Method of recognition, a `MorecMethod`; later releases may add values. Not in the first version of this struct.
      */
     int32_t method;
     /**
-     * 1 if frames must say how joints are turned, 0 if where they are is enough. Not in the first version of this struct.
+     * 1 if frames must have joint rotations, 0 if positions are enough. Not in the first version of this struct.
      */
     uint32_t needs_rotations;
 } MorecIndexFacts;
 
 /**
- * The joints of a stream's skeleton. Everything is copied; nothing is needed after the call it is given to.
+ * The joints of a stream's skeleton. Everything is copied; nothing is used after the call returns.
  */
 typedef struct MorecSkeleton {
     /**
@@ -494,22 +493,22 @@ typedef struct MorecSkeleton {
      */
     size_t joint_count;
     /**
-     * `joint_count` numbers: the joint's parent, which must come before it, or −1 for a root.
+     * `joint_count` numbers: each joint's parent, which must come before it, or −1 for a root.
      */
     const int32_t *parents;
     /**
-     * `joint_count` names, UTF-8, by which roles are found if they are not given; or null. Of joints without parents they may
-     * be landmarks, and points of hands.
+     * `joint_count` names, UTF-8, or null. If `roles` is null, roles are inferred from them. Joints without parents may be
+     * landmarks or points of hands.
      */
     const char *const *names;
     /**
-     * `joint_count` times x, y, z: where the joint is in its parent's frame; or null if every frame says it.
+     * `joint_count` times x, y, z: the joint's position in its parent's frame; or null if every frame has positions.
      */
     const double *offsets;
     /**
-     * `joint_count` times a `MorecRole`, `MOREC_ROLE_NONE` for most; or null: found by the tree, then the names. Points of hands
-     * (`left_palm`, `left_thumb_1` … `right_little_tip`), points of a custom skeleton and `face` have the numbers from `MOREC_ROLE_COUNT`
-     * to below `MOREC_POINT_COUNT`, which `morec_role_from_name` tells.
+     * `joint_count` values of `MorecRole`, `MOREC_ROLE_NONE` for most joints; or null: inferred from the tree and the names.
+     * Points of hands (`left_palm`, `left_thumb_1` … `right_little_tip`), points of a custom skeleton and `face` have the
+     * numbers from `MOREC_ROLE_COUNT` to below `MOREC_POINT_COUNT`; see `morec_role_from_name`.
      */
     const int32_t *roles;
 } MorecSkeleton;
@@ -523,7 +522,7 @@ typedef struct MorecOptions {
      */
     size_t struct_size;
     /**
-     * A `MorecHandedness`; must be said.
+     * A `MorecHandedness`; required.
      */
     int32_t handedness;
     /**
@@ -531,11 +530,11 @@ typedef struct MorecOptions {
      */
     int32_t up_axis;
     /**
-     * The stream's joints; null for a stream of roles, whose joint `r` plays `MorecRole` `r`.
+     * The stream's joints; null for a stream of roles, in which joint `r` has the `MorecRole` `r`.
      */
     const struct MorecSkeleton *skeleton;
     /**
-     * For a stream of roles: bit `r` for each `MorecRole` `r` that it shows; 0 for all.
+     * For a stream of roles: bit `r` for each `MorecRole` `r` that it contains; 0 for all.
      */
     uint32_t roles;
     /**
@@ -548,22 +547,22 @@ typedef struct MorecOptions {
      */
     size_t event_capacity;
     /**
-     * A motion of the same class that ends less than this after the one before it is not reported, but counted. 0: every
-     * motion is reported once.
+     * Least time between two reports of the same class, seconds; suppressed motions are counted. 0: every motion is reported
+     * once.
      */
     double refractory_secs;
     /**
-     * Sensitivity: false alarms a minute that background motion may raise, as in training, 0.1 strict … 1 generous.
-     * 0: as trained. (Not in the first version of this struct.)
+     * Sensitivity: accepted false alarms a minute in background motion; 0.1 is strict, 1 is generous. 0: as trained. (Not in the
+     * first version of this struct.)
      */
     double sensitivity;
 } MorecOptions;
 
 /**
- * One performer's pose at one instant. Nothing of it is needed after the call.
+ * One performer's pose at one instant. Nothing of it is used after the call returns.
  *
- * A joint that is not seen at this instant has a position, in local space a rotation, that is NaN; in local space a
- * position that is NaN stands for the skeleton's offset. Metres are best, but any one unit of length will do.
+ * A missing joint has a position of NaN, or in local space a rotation of NaN. In local space, a position of NaN means the
+ * skeleton's offset. Lengths may have any unit, the same in all frames; metres are best.
  */
 typedef struct MorecFrame {
     /**
@@ -571,8 +570,8 @@ typedef struct MorecFrame {
      */
     size_t struct_size;
     /**
-     * Time of the frame, seconds on any clock that does not go back; at any rate, even or uneven. Late and duplicate frames
-     * are left out; after a gap of more than half a second, or a step back by as much, the stream begins anew.
+     * Time of the frame, seconds on any clock that does not go back, at any regular or irregular rate. Late and duplicate frames
+     * are ignored; after a gap or a step back of more than 0.5 s, the stream starts again.
      */
     double time_secs;
     /**
@@ -584,7 +583,7 @@ typedef struct MorecFrame {
      */
     const double *positions;
     /**
-     * `joint_count` times x, y, z, w, or null; of any length but 0.
+     * Quaternions: `joint_count` times x, y, z, w, of any length but 0; or null.
      */
     const double *rotations;
     /**
@@ -598,7 +597,7 @@ typedef struct MorecFrame {
 } MorecFrame;
 
 /**
- * Something said of a motion. Times are seconds on the clock of the frames, if not said otherwise.
+ * An event of a motion. Times are seconds on the clock of the frames unless stated otherwise.
  */
 typedef struct MorecEvent {
     /**
@@ -606,7 +605,7 @@ typedef struct MorecEvent {
      */
     int32_t phase;
     /**
-     * Its class in the index, certain or assumed.
+     * Class in the index, from 0; tentative before the end.
      */
     uint32_t class_id;
     /**
@@ -614,13 +613,13 @@ typedef struct MorecEvent {
      */
     uint64_t motion;
     /**
-     * Number of the event, from 1. A gap would be a lost event, and be counted in `MorecStats.lost_events`.
+     * Number of the event, from 1. A gap means a lost event, which is counted in `MorecStats.lost_events`.
      */
     uint64_t sequence;
     /**
-     * Probability that the motion is right, 0 to 1: a just accepted one has 0.05 to 0.44, by the kind of index. Of held poses and
-     * of indexes without calibration (svrdm, older ones) it is the closeness to a sample instead. Of a tentative event: how near
-     * what was seen so far is to the beginning of a sample, 0 to 1.
+     * Probability that the detection is right, 0 to 1. The lowest accepted score is 0.05 to 0.44, depending on the index. For
+     * held poses and indexes without calibration (svrdm, older files) it is the similarity to a sample instead. Of a tentative
+     * event: how near what was seen so far is to the beginning of a sample, 0 to 1.
      */
     double score;
     /**
@@ -632,19 +631,19 @@ typedef struct MorecEvent {
      */
     double start_secs;
     /**
-     * Stop, seconds of the stream; if it has not ended, the time at which it was last seen.
+     * Stop, seconds of the stream; for a motion that has not ended, the time of its latest frame.
      */
     double stop_secs;
     /**
-     * The time of the frame that settled it.
+     * Time of the frame that caused the event, seconds of the stream.
      */
     double reported_secs;
     /**
-     * Wall clock when that frame was pushed: seconds since 1970, UTC.
+     * Wall clock when this frame was pushed, seconds since 1970, UTC.
      */
     double wall_secs;
     /**
-     * Repetitions of an activity so far; 0 where nothing is counted.
+     * Repetitions of an activity so far; 0 if nothing is counted.
      */
     uint32_t repetitions;
     /**
@@ -671,7 +670,7 @@ typedef struct MorecEvent {
 } MorecEvent;
 
 /**
- * Counts of a recogniser since it was made or reset.
+ * Counts of a recogniser since it was created or reset.
  */
 typedef struct MorecStats {
     /**
@@ -683,7 +682,7 @@ typedef struct MorecStats {
      */
     uint64_t frames;
     /**
-     * Frames refused because events waited to be polled (`MOREC_STATUS_QUEUE_FULL`).
+     * Frames refused because the event queue was full (`MOREC_STATUS_QUEUE_FULL`).
      */
     uint64_t refused_frames;
     /**
@@ -691,7 +690,7 @@ typedef struct MorecStats {
      */
     uint64_t events;
     /**
-     * Events for which there was no room in the queue. Frames are refused before that happens: 0.
+     * Events lost because the queue was full. Always 0, because frames are refused before that.
      */
     uint64_t lost_events;
     /**
@@ -699,7 +698,7 @@ typedef struct MorecStats {
      */
     uint64_t suppressed_motions;
     /**
-     * From the end of a motion to its event at the earliest, on the clock of the frames.
+     * Shortest time from the end of a motion to its event, seconds on the clock of the frames.
      */
     double latency_secs;
 } MorecStats;
@@ -709,7 +708,7 @@ extern "C" {
 #endif // __cplusplus
 
 /**
- * Fills in `*diagnosis`, whose `struct_size` must be set, with what is known of the stream so far. Takes no memory.
+ * Fills in `*diagnosis`, whose `struct_size` must be set, with measures of the stream so far. Allocates no memory.
  *
  * # Safety
  * `diagnosis` is null or points to a struct of the size it says.
@@ -717,9 +716,9 @@ extern "C" {
 MorecStatus morec_recognizer_diagnosis(const struct MorecRecognizer *recognizer, struct MorecDiagnosis *diagnosis);
 
 /**
- * Puts what is wrong with the stream into the `size` bytes at `buffer`, a sentence with what to do on each line, the
- * gravest first, with a zero at the end; an empty text if nothing is. If `needed` is not null, the bytes that takes are
- * put there. With too little room the text is cut and the status `MOREC_STATUS_BUFFER_TOO_SMALL`.
+ * Writes the problems of the stream into the `size` bytes at `buffer`: one sentence with its remedy on each line, the most
+ * severe first, zero-terminated; an empty text if there are none. If `needed` is not null, it receives the number of bytes
+ * needed. If the buffer is too small, the text is truncated and the status is `MOREC_STATUS_BUFFER_TOO_SMALL`.
  *
  * # Safety
  * `buffer` is null or may be written to for `size` bytes; `needed` is null or may be written to.
@@ -738,16 +737,16 @@ MorecStatus morec_recognizer_diagnosis_text(const struct MorecRecognizer *recogn
 bool mrInit(const char *szClassifierFile);
 
 /**
- * Ends whatever goes on and lets go of everything. Never fails; the speed of the source is 1 again.
+ * Ends recognition and releases everything. Never fails; the speed of sources is reset to 1.
  */
 void mrTerminate(void);
 
 /**
- * Takes the clip in a file (BVH; AMC with its ASF beside it) as the source of motion. Of several people in one file,
+ * Sets the clip in a file (BVH; AMC with its ASF in the same folder) as the source of motion; if the file has several people,
  * the first. `szSourceFile` is UTF-8.
  *
- * It is played frame by frame, in the time it took to perform. It begins when recognition does, so that nothing of it
- * is missed.
+ * The clip is played frame by frame at the speed of the performance. It starts together with recognition, so that no frame is
+ * missed.
  *
  * # Safety
  * `szSourceFile` is null or ends with a zero.
@@ -755,58 +754,62 @@ void mrTerminate(void);
 bool mrSetDataSource(const char *szSourceFile);
 
 /**
- * Sets how fast sources are played from now on, also while they are: 1 as they were performed, 2 twice as fast, infinity as
- * fast as recognition goes. Not one of the eight.
+ * Sets the speed of sources, also while they are playing: 1 as performed, 2 twice as fast, infinity as fast as recognition can.
+ * Not one of the eight functions of the thesis.
  */
 bool mrSetDataSourceSpeed(double speed);
 
 /**
- * Stops the source: no further frame comes from it. What has come is still recognised.
+ * Stops the source. Frames that it has already sent are still recognised.
  */
 bool mrStopDataSource(void);
 
 /**
- * True if nothing more will come from the source: it has played to its end or was stopped, or there is none.
+ * True if the source will send no more frames: it has ended, was stopped, or is not set.
  */
 bool mrIsDataSourceDepleted(void);
 
 /**
- * Starts recognition of the source, in threads of its own; a source that was played before begins anew.
+ * Starts recognition of the source, in separate threads; a source that was played before starts again.
  */
 bool mrStart(void);
 
 /**
- * Stops recognition, once everything that has come from the source is recognised. The solution remains.
+ * Stops recognition after all frames sent by the source have been recognised. The solution is kept.
  */
 bool mrStop(void);
 
 /**
- * Gives the solution so far: the last motions that were recognised since `mrStart`, at most `*nSegments`, in the order
- * of time. `*nSegments` becomes their number.
+ * Returns the solution so far: the last motions recognised since `mrStart`, at most `*nSegments`, in order of time. Sets
+ * `*nSegments` to their number.
  *
- * A motion stays in the solution: `number` shows which are new. Of more than 16384 the last are kept. If
- * `pSegments` is null, `*nSegments` becomes the number of all that are kept.
+ * Motions stay in the solution; `number` shows which are new. At most the last 16384 motions are kept. If `pSegments` is null,
+ * `*nSegments` is set to the number of all kept motions.
  *
  * # Safety
  * `pSegments` is null or has room for `*nSegments`; `nSegments` is null or may be read and written.
  */
-bool mrQueryMotionSegments(struct MotionSeg *pSegments, int *nSegments);
+bool mrQueryMotionSegments(struct MotionSeg *pSegments,
+                           int *nSegments);
 
 /**
  * Writes the name of a bone (`MorecEvent.worst_bone`), such as `left_forearm`, with a zero at the end.
  *
- * `*needed`, if `needed` is not null, becomes the number of bytes that takes, with the zero. If `size` is less, the
- * characters that fit are written with a zero, and the status is `MOREC_STATUS_BUFFER_TOO_SMALL`.
+ * If `needed` is not null, it receives the number of bytes needed, with the zero. If `size` is smaller, the text is truncated,
+ * zero-terminated, and the status is `MOREC_STATUS_BUFFER_TOO_SMALL`.
  *
  * # Safety
  * `buffer` is null or may be written to for `size` bytes; `needed` is null or may be written to.
  */
-MorecStatus morec_bone_name(uint32_t bone, char *buffer, size_t size, size_t *needed);
+MorecStatus morec_bone_name(uint32_t bone,
+                            char *buffer,
+                            size_t size,
+                            size_t *needed);
 
 /**
  * Loads an index from a file that `morec train` wrote. `path` is UTF-8.
  *
- * Puts the handle into `*index`, to be given back with `morec_index_destroy`.
+ * Writes the handle to `*index`; release it with `morec_index_destroy`.
  *
  * # Safety
  * `path` is null or ends with a zero; `index` is null or may be written to.
@@ -814,7 +817,7 @@ MorecStatus morec_bone_name(uint32_t bone, char *buffer, size_t size, size_t *ne
 MorecStatus morec_index_load(const char *path, struct MorecIndex **index);
 
 /**
- * Loads an index from the bytes of such a file. They are not needed after the call.
+ * Loads an index from the bytes of such a file. The bytes are not used after the call returns.
  *
  * # Safety
  * `bytes` is null or points to `size` bytes; `index` is null or may be written to.
@@ -822,7 +825,7 @@ MorecStatus morec_index_load(const char *path, struct MorecIndex **index);
 MorecStatus morec_index_from_memory(const uint8_t *bytes, size_t size, struct MorecIndex **index);
 
 /**
- * Gives an index back. Recognisers that were made of it go on.
+ * Releases an index. Recognisers made from it stay valid.
  */
 MorecStatus morec_index_destroy(struct MorecIndex *index);
 
@@ -837,9 +840,8 @@ MorecStatus morec_index_facts(const struct MorecIndex *index, struct MorecIndexF
 /**
  * Writes the name of class `class_id` and a zero into the `size` bytes at `buffer`. UTF-8.
  *
- * `*needed`, if `needed` is not null, becomes the number of bytes that takes, with the zero. If `size` is less, the
- * characters that fit are written with a zero, and the status is `MOREC_STATUS_BUFFER_TOO_SMALL`. With a `size` of 0,
- * `buffer` may be null.
+ * If `needed` is not null, it receives the number of bytes needed, with the zero. If `size` is smaller, the text is truncated,
+ * zero-terminated, and the status is `MOREC_STATUS_BUFFER_TOO_SMALL`. With a `size` of 0, `buffer` may be null.
  *
  * # Safety
  * `buffer` is null or may be written to for `size` bytes; `needed` is null or may be written to.
@@ -851,8 +853,8 @@ MorecStatus morec_index_class_name(const struct MorecIndex *index,
                                    size_t *needed);
 
 /**
- * Makes a recogniser of one performer's motions and puts its handle into `*recognizer`, to be given back with
- * `morec_recognizer_destroy`. Takes memory; may take some milliseconds.
+ * Creates a recogniser for one performer's motions and writes its handle to `*recognizer`; release it with
+ * `morec_recognizer_destroy`. Allocates memory and may take some milliseconds.
  *
  * # Safety
  * `options` is null or as its fields say; `recognizer` is null or may be written to.
@@ -862,12 +864,12 @@ MorecStatus morec_recognizer_create(const struct MorecIndex *index,
                                     struct MorecRecognizer **recognizer);
 
 /**
- * Gives a recogniser back. Events that wait are gone. A call that is under way on another thread ends well.
+ * Releases a recogniser and discards its queued events. A call running on another thread completes safely.
  */
 MorecStatus morec_recognizer_destroy(struct MorecRecognizer *recognizer);
 
 /**
- * Puts the joint that plays the `MorecRole` `role` into `*joint`, or −1 if none does.
+ * Writes the number of the joint with the `MorecRole` `role` to `*joint`, or −1 if no joint has it.
  *
  * # Safety
  * `joint` is null or may be written to.
@@ -875,11 +877,10 @@ MorecStatus morec_recognizer_destroy(struct MorecRecognizer *recognizer);
 MorecStatus morec_recognizer_joint_of_role(const struct MorecRecognizer *recognizer, int32_t role, int32_t *joint);
 
 /**
- * Takes a frame. What it settles waits to be polled. Takes no memory after the first frame, unless it fails, or a second of frames shows
- * other joints than were declared.
+ * Processes a frame and queues the events that it causes. Allocates no memory after the first frame, unless it fails or a second
+ * of frames has other joints than declared.
  *
- * Refused with `MOREC_STATUS_QUEUE_FULL` while too many events wait for there to be room for what it settles:
- * nothing is ever lost.
+ * Refused with `MOREC_STATUS_QUEUE_FULL` if the queue might not have room for these events, so that none is ever lost.
  *
  * # Safety
  * `frame` is null or as its fields say.
@@ -888,10 +889,11 @@ MorecStatus morec_recognizer_push(struct MorecRecognizer *recognizer,
                                   const struct MorecFrame *frame);
 
 /**
- * Moves events that wait into the `capacity` places at `events`, the oldest first, and says in `*count` how many.
+ * Moves up to `capacity` queued events to `events`, the oldest first, and writes their number to `*count`.
  *
- * `event_size` is `sizeof(MorecEvent)`: how far the places lie apart. If `*count` is `capacity`, more may wait. With a
- * `capacity` of 0, `events` may be null, and the status is `MOREC_STATUS_BUFFER_TOO_SMALL` if any wait.
+ * `event_size` is `sizeof(MorecEvent)`, the distance of the elements in bytes. If `*count` equals `capacity`, more events may be
+ * queued. With a `capacity` of 0, `events` may be null, and the status is `MOREC_STATUS_BUFFER_TOO_SMALL` if any event is
+ * queued.
  *
  * # Safety
  * `events` is null or may be written to for `capacity` times `event_size` bytes; `count` is null or may be written to.
@@ -903,14 +905,14 @@ MorecStatus morec_recognizer_poll(struct MorecRecognizer *recognizer,
                                   size_t *count);
 
 /**
- * Ends the stream: what its last moments hold waits to be polled. The next frame begins a new stream.
+ * Ends the stream and queues its last events. The next frame starts a new stream.
  *
- * Refused with `MOREC_STATUS_QUEUE_FULL` as a frame would be.
+ * Refused with `MOREC_STATUS_QUEUE_FULL` under the same condition as a frame.
  */
 MorecStatus morec_recognizer_finish(struct MorecRecognizer *recognizer);
 
 /**
- * Makes the recogniser as it was when it was made: the stream so far, events that wait, and counts are forgotten.
+ * Resets the recogniser to its initial state: discards the stream so far, queued events and counts.
  */
 MorecStatus morec_recognizer_reset(struct MorecRecognizer *recognizer);
 
@@ -923,28 +925,30 @@ MorecStatus morec_recognizer_reset(struct MorecRecognizer *recognizer);
 MorecStatus morec_recognizer_stats(const struct MorecRecognizer *recognizer, struct MorecStats *stats);
 
 /**
- * Message of the last call on this thread that failed, a sentence; empty if none has failed yet.
- * UTF-8. The text stays where it is until the next call on this thread that does not succeed. Never null.
+ * Message of the last failed call on this thread, one sentence; empty if no call has failed.
+ * UTF-8. The text is valid until the next failing call on this thread. Never null.
  */
 const char *morec_last_error(void);
 
 /**
- * Meaning of a status in a few words; null for a number that is no status. The text lives for ever.
+ * Meaning of a status in a few words; null if the number is not a status. The text is valid for ever.
  */
 const char *morec_status_text(int32_t status);
 
 /**
- * Version of the library, as in `0.1.0`. The text stays for ever.
+ * Version of the library, such as `0.1.0`. The text is valid for ever.
  */
 const char *morec_version(void);
 
 /**
- * The name of a `MorecRole` or a point of a hand or of a custom skeleton, as in `left_forearm`, `right_index_tip` and `point_1`; null for a number without a name. The text stays for ever.
+ * The name of a `MorecRole` or a point of a hand or of a custom skeleton, as in `left_forearm`, `right_index_tip` and `point_1`;
+ * null for a number without a name. The text is valid for ever.
  */
 const char *morec_role_name(int32_t role);
 
 /**
- * The `MorecRole` of this name, or the number of a point of a hand or of a custom skeleton; `MOREC_ROLE_NONE` if there is none, or `name` is null.
+ * The `MorecRole` of this name, or the number of a point of a hand or of a custom skeleton; `MOREC_ROLE_NONE` if there is no
+ * such name, or `name` is null.
  *
  * # Safety
  * `name` is null or ends with a zero.
