@@ -108,7 +108,7 @@ fn outlined(person: &Person) -> Option<(String, Rect, Option<Rect>)> {
 fn in_a_small_window_tab_shows_and_outlines_each_control() {
     let folder = tempfile::tempdir().unwrap();
     let path = made(folder.path(), 2);
-    crate::lists::keep_reports(&path);
+    super::lists::keep_reports(&path);
     let mut person = Person::before(&[path]);
     let window = Rect::from_min_size(Pos2::ZERO, vec2(640.0, 400.0));
     person.window.set_size(window.size());
