@@ -12,6 +12,9 @@ use crate::state::{Command, State, TrainCommand};
 const DIMS: usize = 16;
 const TAU: f64 = 0.95;
 
+/// Width of a label with its menu, points.
+const LINE: f32 = 230.0;
+
 /// The controls; what is changed counts from the next training on.
 pub fn show(ui: &mut Ui, state: &State, out: Out) {
     let now = &state.train.thesis_params;
@@ -77,6 +80,10 @@ fn pivots(ui: &mut Ui, pivots: &mut Pivots) {
     ];
     let same = |a: &Pivots, b: &Pivots| std::mem::discriminant(a) == std::mem::discriminant(b);
     let chosen = choices.iter().find(|(_, choice)| same(choice, pivots));
+    // A menu goes to the next line only with its label.
+    if ui.available_size_before_wrap().x < LINE {
+        ui.end_row();
+    }
     ui.label("Pivots");
     let combo = ComboBox::from_id_salt("pivots");
     let combo = combo.selected_text(chosen.map_or("a list", |(name, _)| name));
