@@ -248,7 +248,7 @@ mod tests {
         assert!(error(&["stages.acept=1"]).contains("did you mean `stages.accept`"));
         assert!(error(&["tree.sigma.fixed.full=0.3"]).contains("reduced"));
         assert!(error(&["stages.accept=high"]).contains("its value is 0.8"));
-        assert!(error(&["nothing=1"]).contains("there is no parameter nothing"));
+        assert!(error(&["nothing=1"]).contains("no parameter is called nothing"));
     }
 
     #[test]

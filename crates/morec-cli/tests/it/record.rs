@@ -388,6 +388,7 @@ fn live_says_what_is_wrong_with_a_stream_and_with_its_lines() {
     let said = live("empty.jsonl", "");
     assert!(said.contains("nothing has arrived"), "{said}");
     let help = folder.morec(&["live", "--help-all"]).ok();
+    let help = Vec::from_iter(help.split_whitespace()).join(" ");
     for part in [
         "hips, torso, neck, head",
         "thigh, shin, foot, shoulder, arm",
