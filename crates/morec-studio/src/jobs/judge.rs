@@ -67,7 +67,7 @@ impl Moment {
         classes
     }
 
-    /// Description in a few words: `wave taken for clap`.
+    /// Description in a few words: `wave mistaken for clap`.
     pub fn said(&self) -> String {
         match (&self.truth, &self.found) {
             (Some(truth), Some(found)) if truth == found => truth.clone(),

@@ -263,7 +263,10 @@ fn a_label_of_the_played_clip_is_not_marked_as_background() {
         person.click("Mark as background");
         person.settle();
         assert!(marked(&person).is_empty());
-        let why = format!("Not marked: ada_1 has a label {} there", label.class);
+        let why = format!(
+            "Not marked: ada_1 has a label of {} at this time",
+            label.class
+        );
         assert!(person.sees_part(&why), "{:?}", person.state().notices);
         person.command(Command::Dismiss(0));
     }

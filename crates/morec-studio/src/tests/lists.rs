@@ -303,7 +303,11 @@ fn mistakes_cells_reports_indexes_and_ticks_are_gone_through() {
     let unlabelled: Vec<String> = named(&person, "Background ");
     is_walked(&mut person, &unlabelled);
     person.key(Key::Escape);
-    let moments = ["bow taken for wave", "clap missed", "bow where"];
+    let moments = [
+        "bow mistaken for wave",
+        "clap missed",
+        "bow without a label",
+    ];
     let moments: Vec<String> = moments.iter().flat_map(|m| named(&person, m)).collect();
     let mut moments: Vec<String> = moments
         .into_iter()
@@ -316,13 +320,13 @@ fn mistakes_cells_reports_indexes_and_ticks_are_gone_through() {
         person.state().train.moment.map(|_| shown(&person)),
         Some("ada_1")
     );
-    let cells: Vec<String> = named(&person, "bow taken for ");
+    let cells: Vec<String> = named(&person, "bow mistaken for ");
     let cells: Vec<&String> = cells.iter().filter(|c| !c.contains("ada_1")).collect();
     focus(&mut person, cells[0]);
     person.key(Key::ArrowRight);
     assert_eq!(focused(&person), *cells[1]);
     person.key(Key::ArrowDown);
-    assert!(focused(&person).starts_with("clap taken for "));
+    assert!(focused(&person).starts_with("clap mistaken for "));
     person.key(Key::Enter);
     person.settle();
     assert!(person.state().train.cell.is_some(), "Enter chooses");
