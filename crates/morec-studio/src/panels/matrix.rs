@@ -153,7 +153,7 @@ fn one(
     let response = ui.interact(rect, ui.id().with(("cell", row, column)), Sense::click());
     let name = |n: Option<&String>, none: &str| n.map_or(none.to_owned(), Clone::clone);
     let said = format!(
-        "{} mistaken for {}: {count}",
+        "{} recognised as {}: {count}",
         name(truth, NO_LABEL),
         name(found, "nothing")
     );

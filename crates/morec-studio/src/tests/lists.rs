@@ -320,13 +320,13 @@ fn mistakes_cells_reports_indexes_and_ticks_are_gone_through() {
         person.state().train.moment.map(|_| shown(&person)),
         Some("ada_1")
     );
-    let cells: Vec<String> = named(&person, "bow mistaken for ");
+    let cells: Vec<String> = named(&person, "bow recognised as ");
     let cells: Vec<&String> = cells.iter().filter(|c| !c.contains("ada_1")).collect();
     focus(&mut person, cells[0]);
     person.key(Key::ArrowRight);
     assert_eq!(focused(&person), *cells[1]);
     person.key(Key::ArrowDown);
-    assert!(focused(&person).starts_with("clap mistaken for "));
+    assert!(focused(&person).starts_with("clap recognised as "));
     person.key(Key::Enter);
     person.settle();
     assert!(person.state().train.cell.is_some(), "Enter chooses");

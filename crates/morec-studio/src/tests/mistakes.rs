@@ -65,8 +65,8 @@ fn matrix_list_and_figures_count_the_same() {
         labels - judged.recognised() + wrong
     );
     // The corner is nothing that could be counted.
-    assert!(!person.offers("no label mistaken for nothing: 0"));
-    let name = format!("no label mistaken for wave: {}", judged.counts[rows][2]);
+    assert!(!person.offers("no label recognised as nothing: 0"));
+    let name = format!("no label recognised as wave: {}", judged.counts[rows][2]);
     let alarms = judged.of_cell(rows, 2).len();
     person.click(&name);
     person.settle();

@@ -55,7 +55,7 @@ fn an_index_is_trained_kept_and_its_mistakes_are_found() {
         .find(|m| m.truth.as_deref() == Some("wave") && m.is_right())
         .unwrap()
         .clone();
-    person.click(&format!("wave taken for wave: {waves}"));
+    person.click(&format!("wave recognised as wave: {waves}"));
     person.settle();
     let player = &person.state().player;
     assert_eq!(
