@@ -168,7 +168,7 @@ fn names_that_do_not_fit_are_told_and_left_alone() {
     person.key_with(Key::A, Modifiers::COMMAND);
     person.frames(2);
     person.types("Pattern of names", "ada_{class}");
-    assert!(person.sees_part("2 do not fit, such as ben_1"));
+    assert!(person.sees_part("2 names do not fit, such as ben_1"));
     person.click("Label 1 whole clip");
     person.settle();
     assert_eq!(person.whole(), [("ada_1".to_owned(), "1".to_owned())]);
