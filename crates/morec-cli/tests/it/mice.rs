@@ -106,7 +106,7 @@ impl Mouse {
         let mut mouse = Self::new(number);
         mouse.walk(2.0);
         for round in 0..10 {
-            mouse.act(if (round + number) % 2 == 0 {
+            mouse.act(if (round + number).is_multiple_of(2) {
                 "turn"
             } else {
                 "rear"
