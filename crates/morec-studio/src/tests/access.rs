@@ -89,13 +89,13 @@ fn outlined(person: &Person) -> Option<(String, Rect, Option<Rect>)> {
     // Two lines around each other, of which one is seen on any ground.
     let drawn = |colour: Color32| {
         let shapes = person.window.output().shapes.iter();
-        let rects = shapes.filter_map(|s| match &s.shape {
+        let mut rects = shapes.filter_map(|s| match &s.shape {
             Shape::Rect(rect) if rect.stroke.color == colour && rect.stroke.width == 1.5 => {
                 Some(rect.rect.intersect(s.clip_rect))
             }
             _ => None,
         });
-        rects.last()
+        rects.next_back()
     };
     let outline = drawn(c.playhead).zip(drawn(c.ground));
     let ctx = &person.window.ctx;
