@@ -193,7 +193,10 @@ fn of_lines(file_stem: &str, text: &str) -> Result<Vec<Caption>, ParseError> {
 mod tests {
     use super::*;
 
-    fn read(name: &str, text: &str) -> Vec<(String, String, Option<(f64, f64)>)> {
+    /// Clip, text, start and stop.
+    type Told = (String, String, Option<(f64, f64)>);
+
+    fn read(name: &str, text: &str) -> Vec<Told> {
         let captions = read_captions(name, text.as_bytes()).unwrap();
         let bounds = |span: TimeSpan| (span.start_secs, span.stop_secs);
         captions
