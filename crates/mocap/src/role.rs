@@ -28,7 +28,7 @@ macro_rules! roles {
 roles! {
     /// A part of the body, a point of a hand or a point of a custom skeleton. A part of the body is played by the joint at its near end (the
     /// thigh by the hip joint, the shin by the knee, the hand by the wrist); a finger has four points from its base (1) to its tip. A
-    /// custom skeleton, of whatever moves and is no person, has the points that a [mapping] says: `Point1` is its root. `Face` is any point
+    /// custom skeleton, of whatever moves and is no person, has the points that a [mapping](crate::roles::mapping) says: `Point1` is its root. `Face` is any point
     /// straight before the head, where a headset looks: it gives a head and two hands their heading.
     Hips "hips", LeftThigh "left_thigh", LeftShin "left_shin", LeftFoot "left_foot", RightThigh "right_thigh", RightShin "right_shin",
     RightFoot "right_foot", Torso "torso", Neck "neck", Head "head", LeftShoulder "left_shoulder", LeftArm "left_arm",
