@@ -314,7 +314,7 @@ def test_motions_that_repeat_are_found_in_all_clips(tmp_path: Path) -> None:
     half = sum(clip.duration_secs for clip in clips) / 2 / 60
     sets = archive.discover(minutes=half, rounds=2)
     # Not every clip was compared in the first round, and each set has one number in both.
-    assert {row["set"] for row in sets.sets} == {int(name.removeprefix("set_")) for name in sets.index.classes}
+    assert {row["set"] for row in sets.sets} == {int(found["name"].removeprefix("set_")) for found in sets.index.classes}
     of_motion: dict[str, set[str]] = {}
     found = 0
     events = sets.events.to_pylist()

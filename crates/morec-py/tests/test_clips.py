@@ -194,7 +194,7 @@ def test_arrays_of_another_shape_are_refused() -> None:
         morec.Clip.from_positions(np.zeros((5, 4, 3)), ["a", "b"], 30)
     with pytest.raises(ValueError, match="rate_hz"):
         morec.Clip.from_positions(np.zeros((5, 1, 3)), ["a"], 0)
-    with pytest.raises(morec.MorecError, match="seen"):
+    with pytest.raises(morec.MorecError, match="at least one point with a position"):
         morec.Clip.from_positions(np.full((5, 1, 3), np.nan), ["a"], 30)
     with pytest.raises(ValueError):
         morec.Clip.from_positions("nothing", ["a"], 30)

@@ -103,7 +103,7 @@ def test_labels_that_make_no_sense_are_plain_errors(clips: list[morec.Clip], tmp
     for option, value in [("method", "magic"), ("everyday", "often"), ("unlabelled", "x"), ("svrdm", "x")]:
         with pytest.raises(ValueError, match=option):
             morec.train(clips, [(name, "wave", 1.0, 2.0)], **{option: value})  # type: ignore[arg-type]
-    with pytest.raises(ValueError, match="there is no parameter nothing"):
+    with pytest.raises(ValueError, match="no parameter is called nothing"):
         morec.train(clips, [(name, "wave", 1.0, 2.0)], params={"nothing": 3})
 
 
