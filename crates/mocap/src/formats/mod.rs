@@ -74,6 +74,7 @@ pub use crate::parse_error::{ParseError, Place, Warning};
 use descriptor::FormatDescriptor;
 pub use descriptor::{Beside, FormatInput};
 pub use loaded::Loaded;
+#[cfg(feature = "files")]
 pub(crate) use points::IN_A_PICTURE;
 pub use points::from_positions;
 
