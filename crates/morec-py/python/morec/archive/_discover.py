@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -13,7 +14,7 @@ from daft import DataFrame, col
 from .. import _morec
 from .._discover import discover
 from .._learn import train
-from .._morec import Clip, Index, MorecError
+from .._morec import Clip, Index, MorecError, MorecWarning
 from .._tables import Table
 
 if TYPE_CHECKING:
@@ -72,7 +73,10 @@ def discover_sets(archive: Archive, minutes: float, rounds: int, seed: int) -> A
             {"clip": row["clip"], "class": f"{CLASS}{row['set']}", "start_secs": row["start_secs"], "stop_secs": row["stop_secs"]}
             for row in repetitions
         ]  # fmt: skip
-        index = train(list(compared.values()), labels)
+        with warnings.catch_warnings():
+            # Notes about labels that nobody has written.
+            warnings.simplefilter("ignore", MorecWarning)
+            index = train(list(compared.values()), labels)
         made = index, archive.recognize(index).collect()
     if made is None:
         raise MorecError(f"{archive.store.uri}: no motion repeats in {minutes:g} minutes of its clips")
