@@ -11,10 +11,10 @@ use morec::labels::names_of_clip;
 use crate::exchange::Caption;
 use crate::labels::{DbSample, SampleFilter, SampleState};
 use crate::{ClipFilter, ClipId, ClipInfo, DbError, MotionDb};
-use synonyms::group_of;
+use synonyms::synonyms_of;
 use tokens::stems;
 
-/// Where a word was found, the most telling first.
+/// Where a word was found, in the order of weight.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum WordPlace {
@@ -52,12 +52,12 @@ impl WordPlace {
     }
 }
 
-/// What a synonym counts against the word itself, and what the beginning of a word does.
+/// Weight of a synonym, and of a word that begins with the wanted one; the word itself has 1.
 const SYNONYM: f64 = 0.8;
 const BEGINNING: f64 = 0.6;
 /// The fewest letters that are a beginning.
 const LEAST_BEGINNING: usize = 3;
-/// What words of its clip count for a stretch.
+/// Weight of the clip's own words for a stretch of it.
 const OF_THE_CLIP: f64 = 0.5;
 
 /// A clip, or a stretch of one, that words describe.
@@ -89,7 +89,7 @@ pub struct WordHits {
     pub unknown: Vec<String>,
 }
 
-/// What is said of a clip or of a stretch of it.
+/// A clip, or a stretch of one, with its words.
 #[derive(Debug)]
 struct Described {
     clip: usize,
@@ -101,7 +101,7 @@ struct Described {
     stems: BTreeMap<String, (f64, WordPlace)>,
 }
 
-/// All that is said of the clips of a database.
+/// The words of all clips and labels of a database, and of captions.
 #[derive(Debug)]
 pub struct WordIndex {
     clips: Vec<ClipInfo>,
@@ -282,18 +282,19 @@ fn of_clip((number, clip): (usize, &ClipInfo)) -> Described {
 /// A word of a query.
 struct WantedWord {
     stem: String,
-    group: Option<usize>,
+    /// Stems of the words that mean about the same.
+    synonyms: Vec<String>,
 }
 
 impl WantedWord {
     fn new(stem: String) -> Self {
         Self {
-            group: group_of(&stem),
+            synonyms: synonyms_of(&stem),
             stem,
         }
     }
 
-    /// Its weight where it is said best, and there.
+    /// The greatest weight that the word has in `described`, and the place of that word.
     fn weight_in(&self, described: &Described) -> Option<(f64, WordPlace)> {
         let said = described
             .stems
@@ -303,7 +304,7 @@ impl WantedWord {
                     self.stem.len() >= LEAST_BEGINNING && stem.starts_with(self.stem.as_str());
                 let share = if *stem == self.stem {
                     1.0
-                } else if self.group.is_some() && self.group == group_of(stem) {
+                } else if self.synonyms.contains(stem) {
                     SYNONYM
                 } else if is_beginning {
                     BEGINNING

@@ -35,11 +35,11 @@ const GROUPS: [&str; 30] = [
     "stand upright",
 ];
 
-/// Number of the group that has a stem.
-pub(super) fn group_of(stem: &str) -> Option<usize> {
-    GROUPS
-        .iter()
-        .position(|group| group.split(' ').any(|word| stems(word) == [stem]))
+/// Stems of the group that has `stem`, itself among them; empty if no group has it.
+pub(super) fn synonyms_of(stem: &str) -> Vec<String> {
+    let mut groups = GROUPS.iter().map(|group| stems(group));
+    let found = groups.find(|group| group.iter().any(|word| word == stem));
+    found.unwrap_or_default()
 }
 
 #[cfg(test)]
@@ -56,9 +56,9 @@ mod tests {
                 assert_eq!(stem.len(), 1, "{word}");
                 let before = groups.insert(stem.concat(), number);
                 assert!(before.is_none_or(|before| before == number), "{word}");
-                assert_eq!(group_of(&stem[0]), Some(number), "{word}");
+                assert_eq!(synonyms_of(&stem[0]), stems(group), "{word}");
             }
         }
-        assert_eq!(group_of("xylophone"), None);
+        assert!(synonyms_of("xylophone").is_empty());
     }
 }
