@@ -30,8 +30,20 @@ pub fn lengths(paths: &[PathBuf], read: &ReadArgs) -> Result<BTreeMap<String, Cl
     Ok(lengths)
 }
 
+/// Rate and length of every labelled clip: of the clips in `paths`, or, without any, of clips that end with their last label.
+pub fn lengths_of(
+    paths: &[PathBuf],
+    read: &ReadArgs,
+    files: &[(&PathBuf, &Labels)],
+) -> Result<BTreeMap<String, ClipLength>> {
+    match paths.is_empty() {
+        true => lengths_of_labels(files),
+        false => lengths(paths, read),
+    }
+}
+
 /// Clips that end with their last label.
-pub fn lengths_of_labels(files: &[(&PathBuf, &Labels)]) -> Result<BTreeMap<String, ClipLength>> {
+fn lengths_of_labels(files: &[(&PathBuf, &Labels)]) -> Result<BTreeMap<String, ClipLength>> {
     /// Places to a second: finer than any labels.
     const RATE_HZ: f64 = 1000.0;
     let endings_count = names_with_endings(files);

@@ -18,7 +18,7 @@ use crate::figures::{self, figure};
 use crate::files::ReadArgs;
 use crate::json::write_json;
 use crate::labels::{self, LabelArgs};
-use crate::lengths::{lengths, lengths_of_labels};
+use crate::lengths::lengths_of;
 use crate::output;
 use crate::table::TextTable;
 
@@ -142,10 +142,8 @@ struct Both {
 fn of_two_files(args: &Args, b: &PathBuf) -> Result<Both> {
     let read = |path: &PathBuf| labels::read(path, &args.reading, &args.clips);
     let labels = [read(&args.a)?, read(b)?];
-    let lengths = match args.clips.is_empty() {
-        true => lengths_of_labels(&[(&args.a, &labels[0]), (b, &labels[1])])?,
-        false => lengths(&args.clips, &args.read)?,
-    };
+    let files = [(&args.a, &labels[0]), (b, &labels[1])];
+    let lengths = lengths_of(&args.clips, &args.read, &files)?;
     Ok(Both {
         labels,
         names: [&args.a, b].map(|path| path.display().to_string()),
@@ -162,10 +160,7 @@ fn of_one(args: &Args) -> Result<Both> {
         }
         None => {
             let all = labels::read(&args.a, &args.reading, &args.clips)?;
-            let lengths = match args.clips.is_empty() {
-                true => lengths_of_labels(&[(&args.a, &all)])?,
-                false => lengths(&args.clips, &args.read)?,
-            };
+            let lengths = lengths_of(&args.clips, &args.read, &[(&args.a, &all)])?;
             (all, lengths)
         }
     };
@@ -187,7 +182,7 @@ fn of_one(args: &Args) -> Result<Both> {
     })
 }
 
-/// Those that were asked for, or the only two.
+/// The annotators that `--annotators` names, or else the only two of the labels.
 fn two_annotators(args: &Args, all: &Labels) -> Result<[String; 2]> {
     let named = all.rows.iter().filter_map(|row| row.annotator.clone());
     let known: Vec<String> = named.collect::<BTreeSet<_>>().into_iter().collect();

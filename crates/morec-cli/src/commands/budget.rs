@@ -15,7 +15,7 @@ use crate::database;
 use crate::files::{self, ReadArgs};
 use crate::json::write_json;
 use crate::labels::{self, LabelArgs};
-use crate::lengths::{lengths, lengths_of_labels};
+use crate::lengths::lengths_of;
 use crate::output;
 use crate::table::TextTable;
 
@@ -118,13 +118,10 @@ fn of_labels(args: &Args) -> Result<TimeBudget> {
         let people = read_people(&files::read(table)?);
         labels.add_people(&people.with_context(|| table.display().to_string())?);
     }
-    let lengths = match args.clips.is_empty() {
-        true => {
-            eprintln!("morec: without --clips, each clip ends with its last label");
-            lengths_of_labels(&[(path, &labels)])?
-        }
-        false => lengths(&args.clips, &args.read)?,
-    };
+    if args.clips.is_empty() {
+        eprintln!("morec: without --clips, each clip ends with its last label");
+    }
+    let lengths = lengths_of(&args.clips, &args.read, &[(path, &labels)])?;
     let resolved = labels.resolve(&lengths);
     for warning in labels.warnings.iter().chain(&resolved.warnings) {
         eprintln!("morec: {}: {warning}", path.display());
