@@ -107,7 +107,7 @@ impl KeptCrossval {
     }
 }
 
-/// A training: what is said of it, and its figures for readers of the export.
+/// A training: its result in sentences, and its report for readers of the export.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct KeptTraining {
     /// Duration of training, seconds.
@@ -169,7 +169,7 @@ pub fn training_in_words(report: &TrainingReport) -> Vec<String> {
     }
     lines.push(match report.verified {
         true => "Candidates are verified.".to_owned(),
-        false => "Candidates are not verified: that takes five labels of a class by three people, and background."
+        false => "Candidates are not verified: this needs five labels in half of the classes, three people, and background."
             .to_owned(),
     });
     lines

@@ -170,7 +170,7 @@ fn print_templates(report: &TrainingReport) {
     let verified = if report.verified {
         "yes"
     } else {
-        "no (needs 5 samples of a class by 3 people, and background clips)"
+        "no (needs 5 samples in half of the classes, 3 people, and background clips)"
     };
     println!("candidates verified: {verified}");
 }
