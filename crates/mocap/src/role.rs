@@ -144,7 +144,7 @@ pub struct RoleMap {
 }
 
 impl Default for RoleMap {
-    /// Nobody plays anything.
+    /// No role has a joint.
     fn default() -> Self {
         Self {
             joints: [None; Role::COUNT],

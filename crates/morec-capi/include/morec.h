@@ -717,7 +717,7 @@ MorecStatus morec_recognizer_diagnosis(const struct MorecRecognizer *recognizer,
 
 /**
  * Writes the problems of the stream into the `size` bytes at `buffer`: one sentence with its remedy on each line, the most
- * severe first, zero-terminated; an empty text if there are none. If `needed` is not null, it receives the number of bytes
+ * severe first, zero-terminated. The text is empty if no problem is known. If `needed` is not null, it receives the number of bytes
  * needed. If the buffer is too small, the text is truncated and the status is `MOREC_STATUS_BUFFER_TOO_SMALL`.
  *
  * # Safety

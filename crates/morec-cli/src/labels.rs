@@ -155,7 +155,7 @@ pub fn read(path: &Path, args: &LabelArgs, clips: &[PathBuf]) -> Result<Labels> 
     Ok(all)
 }
 
-/// Accepted labels of a database: those that several annotators say once for each.
+/// Accepted labels of a database. A label with several annotators is there once for each of them.
 pub fn of_database(db: &MotionDb) -> Result<Labels> {
     let accepted = SampleFilter {
         state: Some(SampleState::Accepted),

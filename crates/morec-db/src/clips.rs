@@ -182,7 +182,7 @@ impl MotionDb {
         self.clips(filter)
     }
 
-    /// The clips that match a filter, sorted by name; empty if there is none. [`find_clips`](Self::find_clips) reports an
+    /// The clips that match a filter, sorted by name. The list is empty if no clip matches; [`find_clips`](Self::find_clips) reports an
     /// unknown name instead.
     ///
     /// # Errors

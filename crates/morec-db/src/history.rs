@@ -224,7 +224,7 @@ impl MotionDb {
         Ok(steps)
     }
 
-    /// The newest step that is not undone, without its counts of rows; `None` if there is none.
+    /// The newest step that is not undone, without its counts of rows; `None` if the history has no such step.
     ///
     /// # Errors
     /// The database cannot be read.

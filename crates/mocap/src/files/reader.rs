@@ -37,7 +37,7 @@ pub struct FileReader {
     pub limits: Limits,
     /// Unit, up axis and roles, where they are not to be inferred.
     pub import: ImportOptions,
-    /// Read points in two dimensions, all in one plane, in place of refusing them; so are those that custom roles are for.
+    /// Accept points that have two coordinates, as points of one plane. With custom roles they are always accepted.
     pub planar: bool,
 }
 

@@ -21,7 +21,7 @@ pub fn list(ui: &mut Ui, state: &State, out: Out) {
     ui.add_space(8.0);
     widgets::section(ui, "REPORTS IN THE DATABASE");
     if reports.is_empty() {
-        ui.colored_label(c.muted, "None is kept yet.");
+        ui.colored_label(c.muted, "No report is stored yet.");
         return;
     }
     ui.spacing_mut().item_spacing.y = 0.0;

@@ -1,12 +1,12 @@
-//! Points that whoever estimated them is not sure of.
+//! Gaps for points to which a pose estimator gave a low likelihood.
 
 use super::layout::{ColumnLayout, IN_PLANE, TableLine};
 use crate::formats::cells::{Decimal, number};
 
-/// The least likelihood of a point that was seen: the usual bound of DeepLabCut's own evaluations.
+/// The least likelihood of a point that counts as seen: the usual bound of DeepLabCut's own evaluations.
 const LEAST: f64 = 0.6;
 
-/// Empties the places of points whose likelihood, in the column behind their axes, is low; says how many.
+/// Empties the cells of points whose likelihood, in the column after their axes, is low. Returns a warning with their number.
 pub(super) fn without_doubtful(rows: &mut [TableLine], layout: &ColumnLayout) -> Option<String> {
     let last_row = layout.header_rows.checked_sub(1);
     let header: Vec<&str> = last_row

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 COLUMNS = ["set", "clip", "name", "start_secs", "stop_secs", "distance"]
 #: Class of a set in the index, before its number.
 CLASS = "set_"
-#: A discovered set is a known one if events of that one cover more than this share of its repetitions.
+#: A discovered set is an earlier one if events of the earlier set cover more than this share of its repetitions.
 KNOWN = 0.5
 
 
@@ -62,7 +62,7 @@ def discover_sets(archive: Archive, minutes: float, rounds: int, seed: int) -> A
         # First those of which most is not explained; the sort keeps the order by chance among equals.
         if made:
             left.sort(key=lambda key: sum(event.secs for event in explained.get(key, [])) - lengths[key]["secs"])
-        new = {key: clip for key, clip in _read(archive, list(_up_to(left, lengths, minutes * 60)))}
+        new = dict(_read(archive, list(_up_to(left, lengths, minutes * 60))))
         last = max((row["set"] for row in repetitions), default=0)
         found = _numbered(discover(list(new.values())), explained, last) if new else []
         if not found:
