@@ -242,7 +242,7 @@ impl DeviationMeter {
 }
 
 /// Angle between the directions of the bone in `slot` in row `i` of `a` and row `j` of `b`, degrees.
-pub(crate) fn angle_at(a: &Rows, i: usize, b: &Rows, j: usize, slot: usize) -> f64 {
+pub fn angle_at(a: &Rows, i: usize, b: &Rows, j: usize, slot: usize) -> f64 {
     let at = |rows: &Rows, i: usize| {
         let row = &rows.row(i)[3 * slot..3 * slot + 3];
         [f64::from(row[0]), f64::from(row[1]), f64::from(row[2])]

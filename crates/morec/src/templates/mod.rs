@@ -11,6 +11,7 @@ mod deviation;
 mod dot;
 mod early;
 mod engine;
+mod gestures;
 mod held;
 pub(crate) mod kernel;
 mod matcher;
@@ -39,9 +40,9 @@ pub use class_matches::{ClassMatches, ClassMatchesError};
 
 #[cfg(feature = "train")]
 pub(crate) use bytes::{snapped, steps};
-#[cfg(feature = "train")]
-pub(crate) use deviation::angle_at;
-pub use deviation::{BoneDeviation, Deviation, DeviationMeter, MotionDeviation, deviation_from};
+pub use deviation::{
+    BoneDeviation, Deviation, DeviationMeter, MotionDeviation, angle_at, deviation_from,
+};
 pub use dot::AT_ONCE;
 pub use early::{EarlyDetectionParams, OngoingMatch};
 pub use engine::TemplateEngine;

@@ -24,7 +24,7 @@ pub use comparison::{Comparison, Judged};
 pub use decoder::LookDecoder;
 pub use model::SecondLook;
 #[cfg(feature = "train")]
-pub(crate) use segment::grown_of;
+pub use segment::grown_of;
 pub use segment::{SEGMENT_ROWS, sample_span, segment_of};
 
 /// Values of a row of the second look over a whole body, see [`BodyTrack`].
