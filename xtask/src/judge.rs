@@ -12,11 +12,11 @@ use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
 use morec::classify::Classifier;
-use morec::crossval::{Tested, perturbed};
-use morec::eval::{ClipDetection, GroundTruth, StreamInfo};
+use morec::labels::{ClipDetection, GroundTruth, StreamInfo};
 use morec::live::{Detection, Model, recognize_clip, recognize_poses};
 use morec::train::{LabelSet, Recipe, StreamKind, TrainClip, TrainOptions, train_model};
 use morec::{ClassId, TimeSpan};
+use morec_measure::crossval::{Tested, perturbed};
 use rayon::prelude::*;
 
 use measured::{JudgeTable, beside, figures, from_tsv, to_tsv};

@@ -88,6 +88,20 @@ impl TimeSpan {
         self.overlap_secs(other) > 0.5 * shorter + Self::SAME_SECS
     }
 
+    /// The union of spans, as disjoint spans in order. `sorted` is ordered by start. O(n).
+    pub fn union(sorted: impl IntoIterator<Item = Self>) -> Vec<Self> {
+        let mut merged: Vec<Self> = Vec::new();
+        for next in sorted {
+            match merged.last_mut() {
+                Some(last) if next.start_secs <= last.stop_secs => {
+                    last.stop_secs = last.stop_secs.max(next.stop_secs);
+                }
+                _ => merged.push(next),
+            }
+        }
+        merged
+    }
+
     /// Intersection over union, 0 to 1.
     pub fn iou(self, other: Self) -> f64 {
         let shared = self.overlap_secs(other);

@@ -4,9 +4,9 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use anyhow::Context;
-use morec::eval::{ClassFigures, Evaluation, MEASURED_OVERLAP};
-use morec::explain::Miss;
-use morec::report::Report;
+use morec_measure::eval::{ClassFigures, Evaluation, MEASURED_OVERLAP};
+use morec_measure::explain::Miss;
+use morec_measure::report::Report;
 
 use crate::output;
 use crate::table::TextTable;

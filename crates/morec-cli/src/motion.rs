@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 use anyhow::Result;
-use morec::eval::Timeline;
 use morec::import::Take;
 use morec::labels::Mark;
-use morec::player::{PlayedClip, Reel};
 use morec_db::{ClipFilter, MotionDb};
+use morec_measure::eval::Timeline;
+use morec_measure::player::{PlayedClip, Reel};
 
 use crate::files::{ReadArgs, expand};
 

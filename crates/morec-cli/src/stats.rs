@@ -10,9 +10,9 @@ use morec::import::Take;
 use morec::kinematics::for_each_world_pose;
 use morec::live::Model;
 use morec::pivots::{PivotMap, pose_rows_of_clip};
-use morec::reproduce::StageClock;
 use morec::svrdm::{Stage, SvrdmEngine, SvrdmModel};
 use morec::templates::{AT_ONCE, ClassMatcher, Metric, TemplateEngine, TemplateModel};
+use morec_measure::reproduce::StageClock;
 
 /// Frames and times, summed over clips; all on one thread.
 #[derive(Debug, Clone, Default)]

@@ -1,5 +1,5 @@
 //! Draws docs/guide/activities.svg: what a session says of a synthetic person who waves eight times.
-//! `cargo run --release -p morec --example activity_picture > docs/guide/activities.svg`.
+//! `cargo run --release -p morec-measure --example activity_picture > docs/guide/activities.svg`.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
@@ -7,9 +7,9 @@ use std::sync::Arc;
 
 use morec::TimeSpan;
 use morec::live::{Event, EventOptions, Frame, Performer, PerformerId, Phase, Rig};
-use morec::plot::{Bar, LaneChart};
+use morec_measure::plot::{Bar, LaneChart};
 
-#[path = "../tests/it/made.rs"]
+#[path = "../../morec/tests/it/made.rs"]
 #[allow(dead_code)]
 mod made;
 

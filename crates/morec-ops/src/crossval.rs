@@ -2,13 +2,13 @@
 
 use std::collections::BTreeSet;
 
-use morec::crossval::{
+use morec::progress::Progress;
+use morec_measure::crossval::{
     CrossvalData, CrossvalOptions, CrossvalOutcome, FoldBy, FoldReport, TaughtLimit, Tested,
     crossval,
 };
-use morec::eval::{EvalError, Evaluation};
-use morec::perturb::Perturbation;
-use morec::progress::Progress;
+use morec_measure::eval::{EvalError, Evaluation};
+use morec_measure::perturb::Perturbation;
 use serde::{Deserialize, Serialize};
 
 use crate::{OperationError, TrainSettings, text};

@@ -2,10 +2,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use morec::crossval::{CrossvalData, CrossvalError, CrossvalOptions, TaughtLimit, crossval};
-use morec::eval::{Evaluation, MEASURED_OVERLAP};
 use morec::progress::Progress;
 use morec::train::TrainError;
+use morec_measure::crossval::{
+    CrossvalData, CrossvalError, CrossvalOptions, TaughtLimit, crossval,
+};
+use morec_measure::eval::{Evaluation, MEASURED_OVERLAP};
 use serde::Serialize;
 
 use crate::crossval::evaluation;
@@ -53,7 +55,7 @@ pub struct CurveFigures {
 
 impl CurveFigures {
     fn of(e: &Evaluation) -> Self {
-        let of_class = |of: &morec::eval::ClassFigures| {
+        let of_class = |of: &morec_measure::eval::ClassFigures| {
             let at = of.overlap.iter().find(|o| o.min_iou == MEASURED_OVERLAP)?;
             Some((of.class.clone(), at.recall?))
         };

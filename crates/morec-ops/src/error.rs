@@ -1,12 +1,12 @@
 //! Errors of operations.
 
-use morec::crossval::CrossvalError;
-use morec::eval::EvalError;
 use morec::index::IndexError;
 use morec::live::OptionError;
 use morec::train::{DataError, TrainError};
 #[cfg(feature = "db")]
 use morec_db::DbError;
+use morec_measure::crossval::CrossvalError;
+use morec_measure::eval::EvalError;
 
 use crate::ParamError;
 

@@ -3,14 +3,12 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use morec::classes::ClassId;
-use morec::eval::{
-    ClipDetection, DetectionVerdict, Evaluation, GroundTruth, StreamInfo, Timeline, event_pairs,
-    timelines,
-};
-use morec::explain::{Miss, Performance, deviation, explain};
+use morec::labels::{ClipDetection, GroundTruth, StreamInfo};
 use morec::labels::{ClipLength, Mark, Resolved, Sample, hint, said_absent, some_of};
 use morec::live::{Detection, Model};
 use morec::train::TrainClip;
+use morec_measure::eval::{DetectionVerdict, Evaluation, Timeline, event_pairs, timelines};
+use morec_measure::explain::{Miss, Performance, deviation, explain};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 

@@ -3,10 +3,11 @@
 use std::collections::BTreeMap;
 
 use morec::TimeSpan;
-use morec::eval::{ClipDetection, Evaluation, GroundTruth, StreamInfo};
-use morec::explain::Miss;
+use morec::labels::{ClipDetection, GroundTruth, StreamInfo};
 use morec::train::TrainingReport;
 use morec_db::{DbError, MotionDb, ReportKind};
+use morec_measure::eval::Evaluation;
+use morec_measure::explain::Miss;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 

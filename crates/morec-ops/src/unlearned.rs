@@ -3,9 +3,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use morec::TimeSpan;
-use morec::crossval::{FoldBy, folds};
 use morec::labels::Sample;
 use morec::train::TrainClip;
+use morec_measure::crossval::{FoldBy, folds};
 
 /// Labels that did not teach.
 #[derive(Debug, Clone, Default, PartialEq, serde::Serialize, serde::Deserialize)]

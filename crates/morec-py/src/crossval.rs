@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
-use morec::crossval::CrossvalData;
-use morec::eval::{MEASURED_OVERLAP, timelines};
-use morec::report::{Report, TrainedClass};
 use morec::train::TrainingData;
+use morec_measure::crossval::CrossvalData;
+use morec_measure::eval::{MEASURED_OVERLAP, timelines};
+use morec_measure::report::{Report, TrainedClass};
 use morec_ops::{CrossvalMeasures, CrossvalSettings, LeftOut, TrainSettings};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

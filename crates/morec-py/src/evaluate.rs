@@ -3,9 +3,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use morec::TimeSpan;
-use morec::crossval::measure_as_taught;
 use morec::labels::{ClipLength, Extent, FoundRow, FoundTable, ReportedAt, read_detections};
 use morec::train::TrainClip;
+use morec_measure::crossval::measure_as_taught;
 use morec_ops::EvaluateSettings;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};

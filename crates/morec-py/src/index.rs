@@ -156,7 +156,7 @@ impl PyIndex {
                 let found = recognizers.recognize_clip(parts.0, parts.1, parts.2);
                 let found = found.map(|found| {
                     let deviations = match deviation {
-                        true => morec::explain::deviation(&index.model, parts, &found),
+                        true => morec_measure::explain::deviation(&index.model, parts, &found),
                         false => vec![None; found.len()],
                     };
                     found.into_iter().zip(deviations).collect()

@@ -1,7 +1,8 @@
 //! `morec.agree` and `morec.budget`: what labels say without any motion.
 
-use morec::eval::{GroundTruth, LabelAgreement};
+use morec::labels::GroundTruth;
 use morec::labels::{Labels, SharedClips, TimeBudget};
+use morec_measure::eval::LabelAgreement;
 use pyo3::prelude::*;
 
 use crate::errors::{value_error, warn};

@@ -5,8 +5,8 @@ use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyList, PyString};
 
 use morec::decode::Repetitions;
-use morec::explain::MotionDeviation;
 use morec::live::{Detection, Event, Model};
+use morec_measure::explain::MotionDeviation;
 use serde::Serialize;
 
 use crate::errors::morec_error;

@@ -71,16 +71,15 @@
 //! | keeping | [`index`] | one file, with a checksum and where it came from |
 //! | recognising | [`templates`] or [`svrdm`], [`decode`], [`live`] | [`Detection`]s, nothing taken back |
 //! | naming whole clips | [`classify`] | one class each, or none, with probabilities |
-//! | numbers for other programs | [`tables`] | positions, rotations and feature rows as NumPy archives and CSV |
 //! | looking at a stream | [`diagnosis`] | what is wrong with it, in sentences that say what to do |
 //! | without labels | [`pivots`], [`pca`], [`segment`], [`cluster`] | pose rows, fewer dimensions, cuts, samples that are alike |
-//! | measuring | [`eval`], [`crossval`], [`explain`], [`report`], [`plot`] | figures, timelines, charts, one page of HTML |
 //!
 //! [`smooth`] turns clips into keyframes and curves, a small form to keep them in. [`synth`] makes people, clips and
 //! labels where there are none; [`resample`], [`math`], [`classes`] and [`progress`] are shared by several of these.
 //!
 //! Clips and what is read from them are the crate `mocap`, rows and classes `morec-features`, [`pivots`], [`pca`] and [`svrdm`]
-//! (the method of 2009) `morec-svrdm`; their modules have their paths here.
+//! (the method of 2009) `morec-svrdm`; their modules have their paths here. Figures, reports, pictures and tables of what was
+//! recognised are the crate `morec-measure`.
 //!
 //! # Features
 //!
@@ -91,8 +90,7 @@
 //! | `live` | index files, and recognition of poses: [`index`], [`live`], [`diagnosis`] and what they need |
 //! | `formats` | clip files as bytes, and takes: [`formats`], [`import`], [`smooth`] |
 //! | `files` | clip files by path: [`files`]; includes `formats` |
-//! | `train` | labels, training, measuring, synthetic people; includes `formats` and `live` |
-//! | `report` | pages and pictures: [`report`], [`plot`], [`reproduce`]; includes `train` |
+//! | `train` | labels, training, synthetic people; includes `formats` and `live` |
 //! | `fbx` | FBX files, which takes a C compiler |
 //! | `hdf5` | HDF5 files of pose estimators |
 //!
@@ -126,9 +124,6 @@
 #[cfg(any(feature = "formats", feature = "live"))]
 mod facade;
 
-#[cfg(feature = "files")]
-pub mod tables;
-
 #[cfg(feature = "live")]
 pub mod classify;
 #[cfg(feature = "live")]
@@ -147,32 +142,15 @@ pub mod templates;
 #[cfg(feature = "train")]
 pub mod cluster;
 #[cfg(feature = "train")]
-pub mod crossval;
-#[cfg(feature = "train")]
 pub mod discover;
 #[cfg(feature = "train")]
-pub mod eval;
-#[cfg(feature = "train")]
-pub mod explain;
-#[cfg(feature = "train")]
 pub mod labels;
-#[cfg(feature = "train")]
-pub mod perturb;
 #[cfg(feature = "train")]
 pub mod segment;
 #[cfg(feature = "train")]
 pub mod synth;
 #[cfg(feature = "train")]
 pub mod train;
-
-#[cfg(feature = "report")]
-pub mod player;
-#[cfg(feature = "report")]
-pub mod plot;
-#[cfg(feature = "report")]
-pub mod report;
-#[cfg(feature = "report")]
-pub mod reproduce;
 
 /// The Rust of README, so that it compiles.
 #[cfg(all(doctest, feature = "files", feature = "train"))]

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use anyhow::Result;
-use morec::crossval::Tested;
-use morec::eval::{Evaluation, MEASURED_OVERLAP};
+use morec_measure::crossval::Tested;
+use morec_measure::eval::{Evaluation, MEASURED_OVERLAP};
 
 /// Columns of the table, after the name of the row.
 pub const COLUMNS: [&str; 10] = [

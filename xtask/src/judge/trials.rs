@@ -2,10 +2,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use morec::crossval::{FoldBy, folds};
 use morec::labels::Sample;
-use morec::perturb::Perturbation;
 use morec::train::{TrainClip, is_built_in};
+use morec_measure::crossval::{FoldBy, folds};
+use morec_measure::perturb::Perturbation;
 
 use super::sets::{DataSets, MotionSet, whole_clips};
 
@@ -414,7 +414,7 @@ fn of_folds<'a>(
             .map(|&i| samples[i].clone())
             .collect::<Vec<_>>()
     };
-    let of_fold = |fold: morec::crossval::Fold| {
+    let of_fold = |fold: morec_measure::crossval::Fold| {
         let tested = set.clips.iter().filter(|c| fold.tested.contains(&c.name));
         let lessons = at_most(pick(&fold.taught), most);
         let mut trial = Trial::new(row, set, lessons, tested, samples);

@@ -6,7 +6,7 @@ use crate::markdown::lines;
 use crate::sources::{read, root};
 
 /// Folders of what goes to a registry, with the README that is shown there.
-const PACKAGES: [(&str, &str); 11] = [
+const PACKAGES: [(&str, &str); 12] = [
     ("crates/mocap", "README.md"),
     ("crates/morec", "README.md"),
     ("crates/morec-capi", "README.md"),
@@ -14,6 +14,7 @@ const PACKAGES: [(&str, &str); 11] = [
     ("crates/morec-db", "README.md"),
     ("crates/morec-features", "README.md"),
     ("crates/morec-live", "README.md"),
+    ("crates/morec-measure", "README.md"),
     ("crates/morec-ops", "README.md"),
     ("crates/morec-svrdm", "README.md"),
     ("crates/morec-py", "README.md"),

@@ -6,12 +6,10 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::{Result, anyhow, bail};
-use morec::eval::{
-    ClassAgreement, ClipDetection, Evaluation, GroundTruth, Kappa, LabelAgreement, StreamInfo,
-    timelines,
-};
+use morec::labels::{ClipDetection, GroundTruth, StreamInfo};
 use morec::labels::{ClipLength, Labels, SharedClips, some_of};
-use morec::report::Report;
+use morec_measure::eval::{ClassAgreement, Evaluation, Kappa, LabelAgreement, timelines};
+use morec_measure::report::Report;
 
 use crate::database;
 use crate::figures::{self, figure};

@@ -7,8 +7,8 @@ use std::process::ExitCode;
 use anyhow::{Context, Result, bail};
 use morec::TimeSpan;
 use morec::labels::{ClassBudget, ClassTransitions, Sample, TimeBudget, read_people};
-use morec::plot::HeatMap;
 use morec_db::labels::{DbSample, SampleFilter, SampleState};
+use morec_measure::plot::HeatMap;
 
 use crate::commands::db::page::Page;
 use crate::database;

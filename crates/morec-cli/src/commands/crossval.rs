@@ -6,12 +6,12 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use morec::crossval::{CrossvalData, FoldReport, Tests};
-use morec::eval::{Evaluation, MEASURED_OVERLAP, timelines};
-use morec::explain::Miss;
-use morec::perturb::Perturbation;
-use morec::report::{Report, TrainedClass};
 use morec::templates::ALARM_RATES;
+use morec_measure::crossval::{CrossvalData, FoldReport, Tests};
+use morec_measure::eval::{Evaluation, MEASURED_OVERLAP, timelines};
+use morec_measure::explain::Miss;
+use morec_measure::perturb::Perturbation;
+use morec_measure::report::{Report, TrainedClass};
 use morec_ops::{
     CrossvalMeasures, CrossvalSettings, KeptCrossval, LeftOut, Method, MissedLabel, Unlearned,
     tested_together,

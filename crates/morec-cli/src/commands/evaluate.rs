@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::Context;
-use morec::crossval::measure_as_taught;
 use morec::formats::Warning;
 use morec::import::ImportOptions;
 use morec::labels::read_detections;
-use morec::report::Report;
 use morec::train::TrainClip;
+use morec_measure::crossval::measure_as_taught;
+use morec_measure::report::Report;
 use morec_ops::EvaluateSettings;
 
 use super::recognize::open_index;

@@ -16,7 +16,7 @@ use morec::live::Detection;
 use morec::live::recognize_clip;
 use morec::pca::{ComponentCount, Moments, Pca};
 use morec::pivots::{PivotMap, PivotSet, PoseParams, clip_of_pose_rows, pose_rows_of_clip};
-use morec::player::{PlayedClip, page};
+use morec_measure::player::{PlayedClip, page};
 
 use super::recognize::open_index;
 use crate::files::{self, ReadArgs};

@@ -6,13 +6,13 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result};
 use clap::ValueEnum;
-use morec::explain::{MotionDeviation, deviation};
 use morec::features::all_bones_of_clip;
 use morec::import::{ImportOptions, Take};
 use morec::index::MotionIndex;
 use morec::labels::{FOUND_HEADER, FoundLine, some_of};
 use morec::live::{Detection, Model, PoseExtractor, RecognizerCache, recognize_clip_in_session};
 use morec_live::vmc::Bundling;
+use morec_measure::explain::{MotionDeviation, deviation};
 use morec_ops::RecognizeSettings;
 
 use super::send::bundling;

@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use anyhow::{Context, Result, bail};
 use morec::pca::{ComponentCount, Moments, Pca, QualityRow};
 use morec::pivots::{PivotMap, clip_of_pose_rows, pose_rows_of_clip};
-use morec::report::pictures::quality_chart;
+use morec_measure::report::pictures::quality_chart;
 use serde::Serialize;
 
 use super::convert::write_clip;

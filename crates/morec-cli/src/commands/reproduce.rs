@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, Result};
-use morec::reproduce::{Reproduction, StageCost, Study, page, reproduce};
+use morec_measure::reproduce::{Reproduction, StageCost, Study, page, reproduce};
 
 use crate::material::MaterialArgs;
 use crate::output;

@@ -2,8 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::labels::Sample;
-use crate::rng::Rng;
+use morec::labels::Sample;
+use morec::rng::Rng;
 
 /// Unit that is left out of training in turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -200,7 +200,7 @@ mod tests {
         Sample {
             clip: clip.into(),
             class: class.into(),
-            span: crate::TimeSpan::new(0.0, 1.0),
+            span: morec::TimeSpan::new(0.0, 1.0),
             whole_clip: false,
             person: Some(person.into()),
             line: 1,

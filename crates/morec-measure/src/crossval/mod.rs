@@ -4,8 +4,8 @@
 //! use std::collections::BTreeSet;
 //!
 //! use morec::Labels;
-//! use morec::crossval::{CrossvalData, FoldBy, crossval};
-//! use morec::eval::Evaluation;
+//! use morec_measure::crossval::{CrossvalData, FoldBy, crossval};
+//! use morec_measure::eval::Evaluation;
 //! use morec::synth::{DatabaseSpec, database};
 //! use morec::train::{TrainOptions, TrainingMaterial};
 //!
@@ -39,15 +39,16 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use rayon::prelude::*;
 
-use crate::eval::{ClipDetection, GroundTruth, StreamInfo, event_pairs};
+use crate::eval::event_pairs;
 use crate::explain::{Miss, explain};
-use crate::features::for_each_pose;
-use crate::labels::Mark;
-use crate::labels::Sample;
-use crate::live::{Detection, Model, RecognizerCache, StartError};
 use crate::perturb::{Perturbation, Perturbed, perturb};
-use crate::progress::Progress;
-use crate::train::{
+use morec::features::for_each_pose;
+use morec::labels::Mark;
+use morec::labels::Sample;
+use morec::labels::{ClipDetection, GroundTruth, StreamInfo};
+use morec::live::{Detection, Model, RecognizerCache, StartError};
+use morec::progress::Progress;
+use morec::train::{
     LabelSet, Recipe, StreamKind, TrainClip, TrainError, TrainingReport, train_model,
 };
 

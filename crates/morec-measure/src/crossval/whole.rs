@@ -1,9 +1,9 @@
 //! Labels of whole clips, reduced to their moving part, as training does.
 
-use crate::TimeSpan;
-use crate::features::{FeatureParams, bones_of_clip, rows_of_clip};
-use crate::labels::Sample;
-use crate::train::{TrainClip, motion_span};
+use morec::TimeSpan;
+use morec::features::{FeatureParams, bones_of_clip, rows_of_clip};
+use morec::labels::Sample;
+use morec::train::{TrainClip, motion_span};
 
 /// The part of a clip that a label of all of it teaches: from the first to the last movement, seconds. O(frames · joints).
 pub fn taught_span(clip: &TrainClip) -> TimeSpan {

@@ -10,8 +10,8 @@ use super::{
     Boundaries, ClipDetection, EvalError, EvaluatedStream, GroundTruth, MEASURED_OVERLAP,
     StreamInfo, all_classes, streams, timing,
 };
-use crate::TimeSpan;
-use crate::rng::Rng;
+use morec::TimeSpan;
+use morec::rng::Rng;
 
 /// Draws by which agreement by chance is estimated.
 const CHANCE_DRAWS: usize = 200;

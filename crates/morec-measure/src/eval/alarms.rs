@@ -1,10 +1,11 @@
 //! False alarms: detections in unlabelled motion and in clips without classes.
 
+use morec::TimeSpan;
 use serde::Serialize;
 
 use super::EvaluatedStream;
 use super::figures::share;
-use super::spans::{mostly_outside, union};
+use super::spans::mostly_outside;
 
 /// Detections of which less than half lies in labelled samples, of whatever class, in known streams.
 ///
@@ -39,7 +40,7 @@ pub struct UnknownFigures {
 
 /// Marks the detections of a stream that are false alarms. O(samples × detections).
 pub(super) fn are_false_alarms(stream: &EvaluatedStream<'_>) -> Vec<bool> {
-    let labelled = union(stream.truths.iter().map(|t| t.span));
+    let labelled = TimeSpan::union(stream.truths.iter().map(|t| t.span));
     stream
         .founds
         .iter()

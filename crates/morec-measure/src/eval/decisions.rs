@@ -3,9 +3,9 @@
 
 use serde::Serialize;
 
-use super::spans::{gaps, union};
+use super::spans::gaps;
 use super::{ClipDetection, EvaluatedStream, UNLABELLED_MIN_SECS};
-use crate::TimeSpan;
+use morec::TimeSpan;
 
 /// The thesis's accuracy of segmentation and recognition (§5.4, Eq. 5.2) and its four counts.
 ///
@@ -62,7 +62,7 @@ pub(super) struct Decision<'a> {
 /// The decisions of a stream: its samples in order, then its unlabelled stretches.
 /// O(samples × detections).
 pub(super) fn decisions<'a>(stream: &EvaluatedStream<'a>) -> Vec<Decision<'a>> {
-    let labelled = union(stream.truths.iter().map(|t| t.span));
+    let labelled = TimeSpan::union(stream.truths.iter().map(|t| t.span));
     let unlabelled = gaps(&labelled, stream.info.duration_secs, UNLABELLED_MIN_SECS);
     let samples = stream
         .truths

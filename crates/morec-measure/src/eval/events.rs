@@ -1,6 +1,6 @@
 //! Measures of detections as events: a detection is right if its middle lies within a sample of its class.
 
-use crate::TimeSpan;
+use morec::TimeSpan;
 use serde::Serialize;
 
 use super::figures::share;

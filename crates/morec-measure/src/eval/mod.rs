@@ -14,7 +14,8 @@
 //!
 //! ```
 //! use morec::TimeSpan;
-//! use morec::eval::{ClipDetection, Evaluation, GroundTruth, StreamInfo};
+//! use morec::labels::{ClipDetection, GroundTruth, StreamInfo};
+//! use morec_measure::eval::Evaluation;
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let stream = StreamInfo { clip: "a".to_owned(), duration_secs: 10.0, unknown: false };
@@ -56,8 +57,8 @@ mod tests;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::TimeSpan;
-use crate::live::Detection;
+use morec::TimeSpan;
+use morec::labels::{ClipDetection, GroundTruth, StreamInfo};
 
 pub use agreement::{ClassAgreement, EventAgreement, Kappa, LabelAgreement, UnitConfusion};
 pub use alarms::{FalseAlarms, UnknownFigures};
@@ -68,7 +69,6 @@ pub use events::{EVENT_TOLERANCE_SECS, EventScore, event_pairs};
 pub use frames::FrameScore;
 pub use pairs::OverlapScore;
 pub use reliability::{Reliability, SCORE_BINS, ScoreBin};
-pub(crate) use spans::union;
 pub use timeline::{DetectionVerdict, GroundTruthVerdict, Timeline, timelines};
 pub use timing::{Boundaries, Delay};
 
@@ -81,48 +81,6 @@ pub const MEASURED_OVERLAP: f64 = 0.5;
 
 /// Unlabelled stretches shorter than this take part in no decision (`docs/guide/measure.md`).
 pub const UNLABELLED_MIN_SECS: f64 = 0.4;
-
-/// A labelled sample.
-#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct GroundTruth {
-    /// The stream's name.
-    pub clip: String,
-    /// Class of the motion.
-    pub class: String,
-    /// When it happens, from the stream's beginning.
-    #[serde(flatten)]
-    pub span: TimeSpan,
-}
-
-/// What was recognised in a stream, as a table of detections has it.
-#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct ClipDetection {
-    /// The stream's name.
-    pub clip: String,
-    /// Name of the class.
-    pub class: String,
-    /// When it happens, from the stream's beginning.
-    #[serde(flatten)]
-    pub span: TimeSpan,
-    /// Score, if the recogniser gives one; larger is surer.
-    pub score: Option<f64>,
-    /// When it was reported, in seconds of the stream, if known.
-    pub reported_secs: Option<f64>,
-    /// Repetitions that were counted, of an activity.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub repetitions: Option<u32>,
-}
-
-/// A stream that was searched.
-#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct StreamInfo {
-    /// Name of the clip.
-    pub clip: String,
-    /// Length, seconds.
-    pub duration_secs: f64,
-    /// True if it is known to hold none of the classes.
-    pub unknown: bool,
-}
 
 /// Input that cannot be evaluated.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -174,34 +132,6 @@ pub enum EvalError {
         /// The sample's class.
         class: String,
     },
-}
-
-impl From<&GroundTruth> for ClipDetection {
-    /// A label in the place of a detection: what another annotator found.
-    fn from(label: &GroundTruth) -> Self {
-        Self {
-            clip: label.clip.clone(),
-            class: label.class.clone(),
-            span: label.span,
-            score: None,
-            reported_secs: None,
-            repetitions: None,
-        }
-    }
-}
-
-impl ClipDetection {
-    /// What a recogniser `found` in the stream of that name.
-    pub fn new(clip: &str, found: Detection<&str>) -> Self {
-        Self {
-            clip: clip.to_owned(),
-            class: found.class.to_owned(),
-            span: found.span,
-            score: Some(found.score),
-            reported_secs: Some(found.reported_secs),
-            repetitions: found.repetitions.map(|r| r.count),
-        }
-    }
 }
 
 /// One stream with what lies in it, each kind ordered by start, stop, class (and score).

@@ -1,24 +1,10 @@
 //! Spans of time and their overlaps.
 
-use crate::TimeSpan;
+use morec::TimeSpan;
 
 /// True if the intersection over union is at least `least`.
 pub(super) fn reaches(a: TimeSpan, b: TimeSpan, least: f64) -> bool {
     a.overlaps(b) && a.iou(b) >= least - TimeSpan::SAME_SECS
-}
-
-/// The union of stretches, as disjoint stretches in order. `sorted` is ordered by start. O(n).
-pub(crate) fn union(sorted: impl IntoIterator<Item = TimeSpan>) -> Vec<TimeSpan> {
-    let mut merged: Vec<TimeSpan> = Vec::new();
-    for next in sorted {
-        match merged.last_mut() {
-            Some(last) if next.start_secs <= last.stop_secs => {
-                last.stop_secs = last.stop_secs.max(next.stop_secs);
-            }
-            _ => merged.push(next),
-        }
-    }
-    merged
 }
 
 /// True if less than half of `span` lies in any of `disjoint` stretches. O(n).

@@ -1,10 +1,10 @@
 //! Bones whose directions differ from those of a template.
 
-use crate::features::{ALL_BONES, Rows};
-use crate::templates::{align, angle_at};
+use morec::features::{ALL_BONES, Rows};
+use morec::templates::{align, angle_at};
 
 use super::reason::BoneOff;
-use crate::features::BoneSet;
+use morec::features::BoneSet;
 
 /// At most this many bones are named.
 const MOST: usize = 3;

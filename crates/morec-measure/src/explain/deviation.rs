@@ -1,11 +1,11 @@
 //! Compares the recognised motions of a clip with their nearest samples, bone by bone.
 
-use crate::TimeSpan;
-use crate::clip::{Clip, Span};
-use crate::features::{Rows, all_bones_of_clip, rows_of_clip};
-use crate::live::{Detection, Model};
-use crate::roles::RoleMap;
-use crate::templates::{DeviationMeter, MotionDeviation, TemplateModel, TemplateSample};
+use morec::TimeSpan;
+use morec::clip::{Clip, Span};
+use morec::features::{Rows, all_bones_of_clip, rows_of_clip};
+use morec::live::{Detection, Model};
+use morec::roles::RoleMap;
+use morec::templates::{DeviationMeter, MotionDeviation, TemplateModel, TemplateSample};
 
 /// A motion of a clip and how well it was performed.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]

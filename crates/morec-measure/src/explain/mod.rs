@@ -1,7 +1,7 @@
 //! Explanations: why a labelled motion was not reported, and how well a reported motion was performed.
 //!
 //! The stream is compared with the index once more, and the nearest match of the sample's class within the sample is
-//! followed through the conditions of [`decode`](crate::decode) in their order. The first that fails is the reason.
+//! followed through the conditions of [`decode`](morec::decode) in their order. The first that fails is the reason.
 
 mod bones;
 mod deviation;
@@ -13,25 +13,25 @@ mod tests;
 
 use std::ops::Range;
 
-use crate::TimeSpan;
-use crate::classes::ClassId;
-use crate::clip::{Clip, Span};
-use crate::decode::FAR;
-use crate::features::{RowLayout, Rows, all_bones_of_clip, rows_of_clip};
-use crate::labels::Mark;
-use crate::live::{Detection, Model};
-use crate::roles::RoleMap;
-use crate::templates::second_look::{
+use morec::TimeSpan;
+use morec::classes::ClassId;
+use morec::clip::{Clip, Span};
+use morec::decode::FAR;
+use morec::features::{RowLayout, Rows, all_bones_of_clip, rows_of_clip};
+use morec::labels::Mark;
+use morec::live::{Detection, Model};
+use morec::roles::RoleMap;
+use morec::templates::second_look::{
     BodyTrack, Comparison, Judged, SecondLook, grown_of, segment_of,
 };
-use crate::templates::{
+use morec::templates::{
     Activities, Nearest, OperatingPoint, PerformerKind, PerformerLevel, StrangerGate,
     TemplateModel, Trace,
 };
-use crate::train::overlap_share;
+use morec::train::overlap_share;
 
-pub use crate::templates::{BoneDeviation, MotionDeviation, deviation_from};
 pub use deviation::{Performance, deviation};
+pub use morec::templates::{BoneDeviation, MotionDeviation, deviation_from};
 pub use reason::{BoneOff, Reason};
 
 /// A sample that was not reported.
@@ -173,7 +173,7 @@ impl<'a> ComparedStream<'a> {
     }
 
     fn reason(&mut self, sought: &Mark<&str>) -> (Reason, Option<f64>) {
-        let named = |c: &crate::classes::ClassInfo| c.name == sought.class;
+        let named = |c: &morec::classes::ClassInfo| c.name == sought.class;
         let Some(class) = self.model.classes.iter().position(named) else {
             return (Reason::NoSuchClass, None);
         };

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::TimeSpan;
+use morec::TimeSpan;
 
 /// Reason why a sample was not reported.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -55,7 +55,7 @@ pub enum Reason {
         /// Distance of the nearest negative template.
         negative: f32,
     },
-    /// Another class is nearer than [`DecodeParams::rival_share`](crate::decode::DecodeParams::rival_share) times the distance.
+    /// Another class is nearer than [`DecodeParams::rival_share`](morec::decode::DecodeParams::rival_share) times the distance.
     OtherClass {
         /// Name of the class.
         class: String,

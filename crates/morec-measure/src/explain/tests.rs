@@ -1,14 +1,14 @@
 //! Each reason brought about on purpose, on synthetic people.
 
-use crate::clip::{Clip, Span};
-use crate::features::{FeatureParams, FeatureStream, Rows, bones_of_clip, for_each_pose};
-use crate::import::Take;
-use crate::live::{Model, recognize_clip};
-use crate::math::Axis;
 use crate::perturb::{Perturbation, perturb};
-use crate::roles::{Role, RoleMap};
-use crate::synth::{DatabaseSpec, SyntheticTake, database};
-use crate::train::{LabelSet, StreamKind, TrainClip, TrainOptions, train_clips};
+use morec::clip::{Clip, Span};
+use morec::features::{FeatureParams, FeatureStream, Rows, bones_of_clip, for_each_pose};
+use morec::import::Take;
+use morec::live::{Model, recognize_clip};
+use morec::math::Axis;
+use morec::roles::{Role, RoleMap};
+use morec::synth::{DatabaseSpec, SyntheticTake, database};
+use morec::train::{LabelSet, StreamKind, TrainClip, TrainOptions, train_clips};
 
 use super::*;
 

@@ -1,12 +1,12 @@
 //! Finds the rate of false alarms at which a missed sample is reported. Each rate is tried with a real recogniser, because scores
 //! alone would promise too much.
 
-use crate::clip::{Clip, Span};
 use crate::eval::EVENT_TOLERANCE_SECS;
-use crate::labels::Mark;
-use crate::live::{Detection, Model, RecognizerCache};
-use crate::roles::RoleMap;
-use crate::templates::{OperatingPoint, TemplateModel};
+use morec::clip::{Clip, Span};
+use morec::labels::Mark;
+use morec::live::{Detection, Model, RecognizerCache};
+use morec::roles::RoleMap;
+use morec::templates::{OperatingPoint, TemplateModel};
 
 /// For each of `sought` in a clip the smallest noted rate, no smaller than the wanted one, at which it is reported; none where no rate
 /// is wanted or helps. O(rates) recognitions of the clip, none if nothing is wanted.

@@ -1,9 +1,9 @@
 //! Applying perturbations to a sequence of poses.
 
-use crate::features::KeyPose;
-use crate::math::{Axis, Vec3};
-use crate::rng::Rng;
-use crate::roles::Role;
+use morec::features::KeyPose;
+use morec::math::{Axis, Vec3};
+use morec::rng::Rng;
+use morec::roles::Role;
 
 use super::noise::{normal3, slow};
 use super::{OCCLUSION_SECS, Perturbation, REFERENCE_LEG_METRES, SLOW_SIGMA_SECS, SPIKE_METRES};

@@ -6,7 +6,7 @@
 //!
 //! ```
 //! use morec::Take;
-//! use morec::perturb::{Perturbation, perturb};
+//! use morec_measure::perturb::{Perturbation, perturb};
 //! use morec::synth::{DatabaseSpec, database};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {

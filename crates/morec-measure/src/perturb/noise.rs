@@ -1,7 +1,7 @@
 //! Sequences of noise.
 
-use crate::math::Vec3;
-use crate::rng::Rng;
+use morec::math::Vec3;
+use morec::rng::Rng;
 
 /// A vector of three independent values of deviation 1.
 pub(super) fn normal3(rng: &mut Rng) -> Vec3 {

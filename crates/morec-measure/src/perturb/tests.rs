@@ -1,7 +1,7 @@
 use super::*;
-use crate::features::KeyPose;
-use crate::math::Vec3;
-use crate::roles::Role;
+use morec::features::KeyPose;
+use morec::math::Vec3;
+use morec::roles::Role;
 
 fn still(frames: usize) -> Vec<(f64, KeyPose)> {
     let mut pose = KeyPose::default();

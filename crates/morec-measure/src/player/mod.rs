@@ -8,13 +8,13 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::json;
 
-use crate::TimeSpan;
-use crate::clip::Clip;
-use crate::features::{ALL_BONES, Bone, BoneKind, Hand, Profile};
-use crate::kinematics::WorldPose;
-use crate::labels::Mark;
-use crate::math::Vec3;
-use crate::roles::{Role, RoleMap};
+use morec::TimeSpan;
+use morec::clip::Clip;
+use morec::features::{ALL_BONES, Bone, BoneKind, Hand, Profile};
+use morec::kinematics::WorldPose;
+use morec::labels::Mark;
+use morec::math::Vec3;
+use morec::roles::{Role, RoleMap};
 
 /// A clip with what is known of it.
 #[derive(Debug, Clone)]
@@ -275,8 +275,8 @@ fn middle(poses: &[Vec<Vec3>]) -> (Vec3, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::import::Take;
-    use crate::synth::{Person, Script};
+    use morec::import::Take;
+    use morec::synth::{Person, Script};
 
     #[test]
     fn a_page_stands_alone_and_holds_every_clip() {

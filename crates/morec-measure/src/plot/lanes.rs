@@ -2,7 +2,7 @@
 
 use super::axis::PlotAxis;
 use super::{Text, colour, open};
-use crate::TimeSpan;
+use morec::TimeSpan;
 
 const WIDTH: f64 = 1100.0;
 const LEFT: f64 = 90.0;

@@ -4,7 +4,7 @@
 //! title what it shows. Values that are not finite are left out.
 //!
 //! ```
-//! use morec::plot::Chart;
+//! use morec_measure::plot::Chart;
 //!
 //! let chart = Chart::new("distance").axes("seconds", "metres").line("hand", (0..9).map(|t| (f64::from(t), 0.1)));
 //! assert!(chart.svg().starts_with("<svg"));

@@ -1,7 +1,7 @@
 //! Pictures hold what was put in, whatever it was called, and nothing that is not a number.
 
 use super::{Bar, Chart, HeatMap, LaneChart, Regions};
-use crate::TimeSpan;
+use morec::TimeSpan;
 
 fn whole(svg: &str) {
     assert!(

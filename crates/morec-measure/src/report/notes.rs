@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use crate::eval::{Boundaries, ClassFigures, Evaluation};
-use crate::labels::Sample;
+use morec::labels::Sample;
 
 /// Fewer training samples than this are called few.
 const FEW_SAMPLES: usize = 5;

@@ -3,7 +3,7 @@
 use super::TrainedClass;
 use super::html::{Figure, Text, secs};
 use crate::eval::{Confusion, Evaluation, MEASURED_OVERLAP, Timeline};
-use crate::labels::{ClassLengths, class_lengths};
+use morec::labels::{ClassLengths, class_lengths};
 
 /// The strongest tint of a cell: writing on it stays readable in both themes.
 const STRONGEST: f64 = 0.6;

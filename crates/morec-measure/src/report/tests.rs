@@ -1,9 +1,10 @@
 //! Properties that a reader of the report may rely on.
 
 use super::*;
-use crate::TimeSpan;
-use crate::eval::{ClipDetection, GroundTruth, StreamInfo, timelines};
+use crate::eval::timelines;
 use crate::explain::{BoneDeviation, MotionDeviation, Reason};
+use morec::TimeSpan;
+use morec::labels::{ClipDetection, GroundTruth, StreamInfo};
 
 fn truth(clip: &str, class: &str, start_secs: f64, stop_secs: f64) -> GroundTruth {
     GroundTruth {

@@ -3,8 +3,9 @@
 use super::grid;
 use super::html::Text;
 use super::palette::Palette;
-use crate::TimeSpan;
-use crate::eval::{ClipDetection, DetectionVerdict, GroundTruth, GroundTruthVerdict, Timeline};
+use crate::eval::{DetectionVerdict, GroundTruthVerdict, Timeline};
+use morec::TimeSpan;
+use morec::labels::{ClipDetection, GroundTruth};
 
 const WIDTH: f64 = 1120.0;
 /// Room for the lanes' names on the left, and a little on the right.

@@ -5,20 +5,20 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use crate::classes::ClassId;
 use crate::crossval::{Fold, FoldBy, folds};
-use crate::features::Rows;
-use crate::index::{MotionIndex, Provenance};
-use crate::labels::Sample;
 use crate::plot::HeatMap;
 use crate::report::pictures::{branch_picture, path_text, tree_picture};
-use crate::svrdm::{PathStep, SampleClassifier, SvrdmModel};
-use crate::train::LabelSet;
-use crate::train::thesis::{Estimated, SvrdmOptions, train_svrdm};
-use morec_svrdm::train_tree::{BranchReport, FeatureSample};
+use morec::classes::ClassId;
+use morec::features::Rows;
+use morec::index::{MotionIndex, Provenance};
+use morec::labels::Sample;
+use morec::svrdm::{PathStep, SampleClassifier, SvrdmModel};
+use morec::train::LabelSet;
+use morec::train::svrdm::{BranchReport, FeatureSample};
+use morec::train::thesis::{Estimated, SvrdmOptions, train_svrdm};
 
 use super::study::{Picture, ReproduceError, Study, frames_of, rows_of};
-use crate::train::thesis::Setting;
+use morec::train::thesis::Setting;
 
 /// Classification rates of samples (Eq. 5.1).
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]

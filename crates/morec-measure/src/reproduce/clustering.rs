@@ -2,13 +2,13 @@
 
 use serde::Serialize;
 
-use crate::cluster::{
+use morec::cluster::{
     KwasForm, KwasParams, PairCounts, Spectrum, adjusted_rand_index, kwas_clusters,
 };
-use crate::features::Rows;
-use crate::pca::{ComponentCount, Moments, Pca};
-use crate::pivots::{PivotSet, PoseParams};
-use crate::train::StreamKind;
+use morec::features::Rows;
+use morec::pca::{ComponentCount, Moments, Pca};
+use morec::pivots::{PivotSet, PoseParams};
+use morec::train::StreamKind;
 
 use super::study::{ReproduceError, Study, frames_of, rows_of};
 

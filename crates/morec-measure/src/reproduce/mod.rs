@@ -14,8 +14,8 @@ mod unlabelled;
 
 use serde::Serialize;
 
-use crate::labels::{ClassLengths, Sample, class_lengths};
-use crate::progress::Progress;
+use morec::labels::{ClassLengths, Sample, class_lengths};
+use morec::progress::Progress;
 
 pub use classification::SplitResult;
 pub use clustering::Clustering;
@@ -25,7 +25,7 @@ pub use segmentation::Segmented;
 pub use streams::Streamed;
 pub use study::{Picture, ReproduceError, Study};
 
-pub use crate::train::thesis::Setting;
+pub use morec::train::thesis::Setting;
 pub use unlabelled::UnlabelledChain;
 
 /// Everything that came out.

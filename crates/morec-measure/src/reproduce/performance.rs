@@ -4,13 +4,13 @@ use std::time::{Duration, Instant};
 
 use serde::Serialize;
 
-use crate::features::Rows;
-use crate::svrdm::{Stage, SvrdmEngine};
-use crate::train::LabelSet;
-use crate::train::thesis::{SvrdmOptions, train_svrdm};
+use morec::features::Rows;
+use morec::svrdm::{Stage, SvrdmEngine};
+use morec::train::LabelSet;
+use morec::train::thesis::{SvrdmOptions, train_svrdm};
 
 use super::study::{ReproduceError, Study, rows_of};
-use crate::train::thesis::Setting;
+use morec::train::thesis::Setting;
 
 /// Passes over the clips; the one of median time counts.
 const PASSES: usize = 5;

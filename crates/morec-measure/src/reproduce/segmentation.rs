@@ -1,13 +1,13 @@
 //! §5.1: cutting clips without labels.
 
-use crate::TimeSpan;
+use morec::TimeSpan;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::pivots::{PivotSet, PoseParams};
 use crate::plot::{Bar, LaneChart};
-use crate::segment::{PpcaParams, segment};
-use crate::train::{StreamKind, TrainClip};
+use morec::pivots::{PivotSet, PoseParams};
+use morec::segment::{PpcaParams, segment};
+use morec::train::{StreamKind, TrainClip};
 
 use super::study::{Picture, ReproduceError, Study, rows_of};
 

@@ -6,16 +6,16 @@ use serde::Serialize;
 
 use crate::crossval::{CrossvalData, FoldBy, crossval};
 use crate::eval::{Evaluation, Timeline, timelines};
-use crate::live::Model;
 use crate::plot::{Bar, LaneChart};
 use crate::report::pictures::confidence_picture;
-use crate::svrdm::{ConfidenceMap, SvrdmEngine, SvrdmModel};
-use crate::train::StreamKind;
+use morec::live::Model;
+use morec::svrdm::{ConfidenceMap, SvrdmEngine, SvrdmModel};
+use morec::train::StreamKind;
 
-use crate::train::thesis::SvrdmOptions;
+use morec::train::thesis::SvrdmOptions;
 
 use super::study::{Picture, ReproduceError, Study, rows_of};
-use crate::train::thesis::Setting;
+use morec::train::thesis::Setting;
 
 /// One half split.
 #[derive(Debug, Clone, PartialEq, Serialize)]

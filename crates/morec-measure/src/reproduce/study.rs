@@ -4,13 +4,13 @@ use std::ops::Range;
 
 use crate::crossval::CrossvalError;
 use crate::eval::EvalError;
-use crate::features::Rows;
-use crate::index::IndexError;
-use crate::labels::Sample;
-use crate::pivots::{NoPivots, PivotMap, PivotSet, PoseParams, pose_rows_of_clip};
-use crate::segment::SegmentError;
-use crate::train::thesis::{Setting, SvrdmOptions};
-use crate::train::{TrainClip, TrainError};
+use morec::features::Rows;
+use morec::index::IndexError;
+use morec::labels::Sample;
+use morec::pivots::{NoPivots, PivotMap, PivotSet, PoseParams, pose_rows_of_clip};
+use morec::segment::SegmentError;
+use morec::train::thesis::{Setting, SvrdmOptions};
+use morec::train::{TrainClip, TrainError};
 
 /// Data of the study.
 #[derive(Debug, Clone)]

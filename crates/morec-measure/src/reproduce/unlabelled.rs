@@ -2,13 +2,13 @@
 
 use serde::Serialize;
 
-use crate::TimeSpan;
-use crate::cluster::{KwasParams, PairCounts, Spectrum, adjusted_rand_index, kwas_clusters};
-use crate::discover::{DiscoverParams, discover};
-use crate::features::{BoneSet, FeatureParams, RowLayout, Rows, bones_of_clip, rows_of_clip};
-use crate::pca::{ComponentCount, Moments, Pca};
-use crate::pivots::{PivotSet, PoseParams};
-use crate::train::{StreamKind, TrainClip};
+use morec::TimeSpan;
+use morec::cluster::{KwasParams, PairCounts, Spectrum, adjusted_rand_index, kwas_clusters};
+use morec::discover::{DiscoverParams, discover};
+use morec::features::{BoneSet, FeatureParams, RowLayout, Rows, bones_of_clip, rows_of_clip};
+use morec::pca::{ComponentCount, Moments, Pca};
+use morec::pivots::{PivotSet, PoseParams};
+use morec::train::{StreamKind, TrainClip};
 
 use super::Segmented;
 use super::study::{ReproduceError, Study, rows_of};

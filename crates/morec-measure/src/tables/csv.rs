@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use super::{Features, for_each_frame};
-use crate::import::Take;
+use morec::import::Take;
 
 /// Content of a table's rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

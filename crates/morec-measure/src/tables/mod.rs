@@ -7,7 +7,7 @@
 //! ```
 //! use morec::Take;
 //! use morec::synth::{DatabaseSpec, database};
-//! use morec::tables::{Content, write_csv};
+//! use morec_measure::tables::{Content, write_csv};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let take = Take::new(database(1, &DatabaseSpec { people: 1, ..Default::default() }).remove(0).clip)?;
@@ -24,10 +24,10 @@ mod npz;
 pub use csv::{Content, write as write_csv};
 pub use npz::write as write_npz;
 
-use crate::clip::Clip;
-use crate::features::{FeatureParams, RowLayout, Rows, bones_of_clip, rows_of_clip};
-use crate::import::Take;
-use crate::kinematics::WorldPose;
+use morec::clip::Clip;
+use morec::features::{FeatureParams, RowLayout, Rows, bones_of_clip, rows_of_clip};
+use morec::import::Take;
+use morec::kinematics::WorldPose;
 
 /// The feature rows of a clip with the name of each column.
 #[derive(Debug, Clone, PartialEq)]

@@ -5,8 +5,8 @@ use std::io::{self, Cursor, Write};
 use zip::write::{SimpleFileOptions, ZipWriter};
 
 use super::{Features, for_each_frame};
-use crate::import::Take;
-use crate::roles::Role;
+use morec::import::Take;
+use morec::roles::Role;
 
 /// Writes `take` as an archive for `numpy.load`, with these arrays (`f` frames, `j` joints, `r` feature rows, `d`
 /// values in each):

@@ -1,10 +1,10 @@
 use std::io::Read;
 
 use super::*;
-use crate::formats::{Limits, numpy, table};
-use crate::kinematics::WorldPose;
+use morec::formats::{Limits, numpy, table};
+use morec::kinematics::WorldPose;
 
-use crate::synth;
+use morec::synth;
 
 fn waving() -> Take {
     let script = synth::Script::new(3, synth::Person::draw(31, 2))
@@ -98,11 +98,11 @@ fn every_table_has_as_many_cells_as_names() {
 
 #[test]
 fn features_are_named_one_by_one() {
-    let names = crate::features::RowLayout::column_names(crate::features::BoneSet::of_roles(
+    let names = morec::features::RowLayout::column_names(morec::features::BoneSet::of_roles(
         &waving().roles,
     ));
     let dim =
-        crate::features::RowLayout::of(crate::features::BoneSet::of_roles(&waving().roles)).dim();
+        morec::features::RowLayout::of(morec::features::BoneSet::of_roles(&waving().roles)).dim();
     assert_eq!(names.len(), dim);
 }
 

@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use morec::explain::deviation;
 use morec::features::KeyPose;
 use morec::index::{MotionIndex, Provenance};
 use morec::live::{
@@ -13,6 +12,7 @@ use morec::math::{Quat, Vec3};
 use morec::roles::{Role, RoleMap};
 use morec::synth::{LimbSide, Person, Script};
 use morec::templates::TemplateModel;
+use morec_measure::explain::deviation;
 
 use crate::made::{self, Timed};
 

@@ -5,13 +5,14 @@
 
 use std::collections::BTreeMap;
 
-use morec::eval::{ClipDetection, Evaluation, GroundTruth, StreamInfo};
 use morec::import::Take;
 use morec::labels::Mark;
+use morec::labels::{ClipDetection, GroundTruth, StreamInfo};
 use morec::live::{Model, recognize_poses};
-use morec::perturb::{Device, perturb};
 use morec::synth::{DatabaseSpec, database, living_room};
 use morec::train::{LabelSet, StreamKind, TrainClip, TrainOptions, train_clips};
+use morec_measure::eval::Evaluation;
+use morec_measure::perturb::{Device, perturb};
 
 const CLASSES: [&str; 5] = ["wave", "raise_hands", "point_side", "push", "bow"];
 const PEOPLE: std::ops::Range<usize> = 20..24;

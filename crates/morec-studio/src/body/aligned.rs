@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use morec::explain::MotionDeviation;
+use morec_measure::explain::MotionDeviation;
 
 use super::ClipMotion;
 use crate::stretch::Stretch;

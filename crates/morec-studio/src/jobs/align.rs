@@ -4,10 +4,10 @@ use std::path::Path;
 use std::sync::Arc;
 
 use morec::TimeSpan;
-use morec::explain::{MotionDeviation, deviation_from};
 use morec::features::{FeatureParams, RowLayout, Rows, bones_of_clip, mirrored_rows, rows_of_clip};
 use morec::train::align as warp;
 use morec_db::{DbError, MotionDb};
+use morec_measure::explain::{MotionDeviation, deviation_from};
 
 use super::progress::{JobError, JobProgress};
 use super::{nearest, similar};

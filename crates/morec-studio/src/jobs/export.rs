@@ -7,10 +7,10 @@ use morec::TimeSpan;
 use morec::clip::{Clip, Gap, JointTrack, Points, Span};
 use morec::formats::bvh;
 use morec::labels::Mark;
-use morec::player::{PlayedClip, page};
 use morec_db::exchange::{self, Annotation, LabelFormat};
 use morec_db::labels::{DbSample, SampleFilter, SampleState};
 use morec_db::{ClipFilter, ClipId, MotionDb};
+use morec_measure::player::{PlayedClip, page};
 
 use super::progress::JobError;
 use crate::format;

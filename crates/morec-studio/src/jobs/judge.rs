@@ -4,13 +4,13 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use morec::TimeSpan;
-use morec::crossval::{CrossvalData, Tested};
-use morec::eval::{
-    ClipDetection, DetectionVerdict, EvalError, Evaluation, GroundTruth, GroundTruthVerdict,
-    Timeline, timelines,
-};
 use morec::labels::Sample;
+use morec::labels::{ClipDetection, GroundTruth};
 use morec::train::TrainClip;
+use morec_measure::crossval::{CrossvalData, Tested};
+use morec_measure::eval::{
+    DetectionVerdict, EvalError, Evaluation, GroundTruthVerdict, Timeline, timelines,
+};
 use morec_ops::{
     CrossvalSettings, KeptCrossval, LeftOut, Method, MissedLabel, OperationError, TrainSettings,
     Unlearned, tested_together,
@@ -239,7 +239,7 @@ fn without(mut outcome: Tested, classes: &[String]) -> Tested {
 
 #[cfg(test)]
 mod tests {
-    use morec::eval::StreamInfo;
+    use morec::labels::StreamInfo;
 
     use super::*;
 

@@ -44,7 +44,7 @@ pub enum JobOutcome {
     Judged(Box<judge::CrossvalResult>),
     Taught(teach::Taught),
     /// Detections of an index in a clip.
-    Recognised((morec_db::ClipId, Vec<morec::eval::ClipDetection>)),
+    Recognised((morec_db::ClipId, Vec<morec::labels::ClipDetection>)),
     /// Detections at another sensitivity.
     Resensed(Vec<morec::live::Detection>),
     Similar(similar::Similar),

@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use morec::eval::ClipDetection;
 use morec::features::KeyPose;
 use morec::index::MotionIndex;
+use morec::labels::ClipDetection;
 use morec::live::{Detection, Model, recognize_clip, recognize_poses};
 use morec_db::ClipId;
 

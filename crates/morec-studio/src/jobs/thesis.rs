@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
-use morec::eval::GroundTruth;
+use morec::labels::GroundTruth;
 use morec::labels::{ClassLengths, Sample, class_lengths};
 use morec::live::Model;
 use morec::pivots::{PivotMap, pose_rows_of_clip};

@@ -1,7 +1,7 @@
 //! How far a performance is from the one beside it, bone by bone, and how well a recognised motion was performed.
 
 use egui::{Color32, Rect, Sense, Ui, Vec2, WidgetType, pos2};
-use morec::explain::BoneDeviation;
+use morec_measure::explain::BoneDeviation;
 
 use super::{Out, widgets};
 use crate::state::{Command, CompareCommand, PlayCommand, State};

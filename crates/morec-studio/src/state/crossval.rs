@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use morec::eval::Evaluation;
+use morec_measure::eval::Evaluation;
 use morec_ops::{LeftOut, Unlearned};
 
 use crate::jobs::judge::{CrossvalResult, Moment};

@@ -24,7 +24,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::{SystemTime, UNIX_EPOCH};
 
-use morec::eval::ClipDetection;
+use morec::labels::ClipDetection;
 use morec::roles::{Role, RoleMap};
 use morec::smooth::ChannelKind;
 use morec_db::{ClipId, ClipInfo};

@@ -3,7 +3,7 @@
 use egui::Key;
 use egui_kittest::kittest::{NodeT, Queryable};
 use morec::TimeSpan;
-use morec::eval::{ClipDetection, GroundTruth, StreamInfo};
+use morec::labels::{ClipDetection, GroundTruth, StreamInfo};
 use morec_db::MotionDb;
 use morec_ops::{GroupMethod, KeptCrossval, LeftOut};
 

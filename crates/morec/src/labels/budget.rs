@@ -6,7 +6,6 @@ use serde::Serialize;
 
 use super::{ClipLength, Sample};
 use crate::TimeSpan;
-use crate::eval::union;
 
 /// How much time each class takes, for everyone and for each person, and which class follows which.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -162,7 +161,7 @@ fn covered_secs(samples: &[&Sample]) -> f64 {
     }
     let covered = by_clip.into_values().map(|mut spans| {
         spans.sort_by(|a, b| by_start(*a, *b));
-        let disjoint = union(spans).into_iter();
+        let disjoint = TimeSpan::union(spans).into_iter();
         disjoint.map(|span| span.duration_secs()).sum::<f64>()
     });
     covered.sum()

@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 use super::Extent;
+use super::ground_truth::ClipDetection;
 use super::read::ExtentColumns;
 use super::resolve::{ClipLength, known_name};
 use super::table::{Row, Table};
-use crate::eval::ClipDetection;
 use crate::formats::{ParseError, Place, Warning};
 use crate::live::Detection;
 

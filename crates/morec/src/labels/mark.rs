@@ -1,7 +1,7 @@
 //! A class at a span of time, without a clip.
 
+use super::ground_truth::GroundTruth;
 use crate::TimeSpan;
-use crate::eval::GroundTruth;
 
 /// A stretch of a clip with the name of what happens there.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -28,6 +28,7 @@
 mod budget;
 mod doubt;
 mod found;
+mod ground_truth;
 mod lengths;
 mod mark;
 mod names;
@@ -44,6 +45,7 @@ use crate::formats::Warning;
 pub use budget::{ClassBudget, ClassTransitions, PersonBudget, TimeBudget};
 pub use doubt::{doubtful_unit, misspelled, said_absent};
 pub use found::{FOUND_HEADER, FoundLine, FoundRow, FoundTable, ReportedAt, read_detections};
+pub use ground_truth::{ClipDetection, GroundTruth, StreamInfo};
 pub use lengths::{ClassLengths, class_lengths};
 pub use mark::Mark;
 pub use names::{hint, some_of};

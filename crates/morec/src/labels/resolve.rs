@@ -2,10 +2,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::ground_truth::GroundTruth;
 use super::{Extent, Label, Labels, doubtful_unit, misspelled};
 use crate::TimeSpan;
 use crate::clip::Clip;
-use crate::eval::GroundTruth;
 use crate::formats::{Place, Warning};
 
 /// What turns frames of a clip into seconds.

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::ClipLength;
-use crate::eval::{GroundTruth, StreamInfo};
+use super::ground_truth::{GroundTruth, StreamInfo};
 
 /// The clips that two annotators both labelled.
 #[derive(Debug, Clone, PartialEq)]

@@ -212,18 +212,3 @@ fn what_makes_no_sense_is_refused() {
     let error = segment(&spoilt, 120.0, &PpcaParams::default()).unwrap_err();
     assert_eq!(error, SegmentError::NotFinite { row: 1 });
 }
-
-#[test]
-fn the_chart_shows_h_and_both_kinds_of_cuts() {
-    let found = segment(
-        &behaviours(&[4.0, 5.0], 120.0),
-        120.0,
-        &PpcaParams::default(),
-    )
-    .unwrap();
-    let svg = found.chart("two behaviours", &[4.0]).svg();
-    for part in ["two behaviours", "forward", "backward", "cuts", "known"] {
-        assert!(svg.contains(part), "{part}");
-    }
-    assert!(!found.chart("t", &[]).svg().contains("known"));
-}

@@ -8,7 +8,7 @@ use morec::roles::RoleMap;
 use morec::synth::{LimbSide, Person, Script, SyntheticTake};
 use morec::train::thesis::SvrdmTrainParams;
 
-use crate::thesis_method::{index_of, trained};
+use crate::thesis_people::{index_of, trained};
 
 fn committed(name: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))

@@ -16,7 +16,7 @@ use morec::train::thesis::SvrdmTrainParams;
 use proptest::prelude::*;
 
 use crate::made;
-use crate::thesis_method::{takes, trained};
+use crate::thesis_people::{takes, trained};
 
 /// Steps of a source, as plain data, so that the same stream can be had twice.
 #[derive(Clone)]

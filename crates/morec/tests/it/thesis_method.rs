@@ -1,78 +1,14 @@
-//! The thesis's method as a whole: clips to a model, to a file and back, to detections; and its evaluation.
-
-use std::collections::BTreeMap;
-use std::sync::OnceLock;
+//! The thesis's method as a whole: clips to a model, to a file and back, to detections.
 
 use morec::features::{BoneSet, for_each_pose};
-use morec::index::{MotionIndex, Provenance};
+use morec::index::MotionIndex;
 use morec::labels::Sample;
 use morec::live::{Model, Recognizer, recognize_clip};
-use morec::reproduce::{Setting, Study, page, reproduce};
 use morec::roles::RoleMap;
-use morec::synth::{DatabaseSpec, SyntheticTake, database};
 use morec::train::thesis::{SvrdmOptions, SvrdmTrainParams, train_svrdm};
-use morec::train::{LabelSet, StreamKind, TrainClip, TrainError, TrainingReport};
+use morec::train::{LabelSet, TrainError};
 
-const CLASSES: [&str; 3] = ["wave", "bow", "push"];
-
-pub fn takes() -> &'static Vec<SyntheticTake> {
-    static TAKES: OnceLock<Vec<SyntheticTake>> = OnceLock::new();
-    TAKES.get_or_init(|| {
-        let classes = CLASSES.to_vec();
-        database(
-            5,
-            &DatabaseSpec {
-                people: 3,
-                repetitions: 2,
-                rate_hz: 60.0,
-                classes,
-                ..Default::default()
-            },
-        )
-    })
-}
-
-fn clips(takes: &[SyntheticTake]) -> (Vec<TrainClip>, Vec<Sample>) {
-    let clip = |take: &SyntheticTake| TrainClip {
-        name: take.clip.name.clone(),
-        roles: RoleMap::find(&take.clip.skeleton),
-        clip: take.clip.clone(),
-        rest: 0..0,
-        source: StreamKind::Labelled,
-        person: Some(take.person.clone()),
-    };
-    let samples = takes.iter().flat_map(SyntheticTake::samples);
-    (takes.iter().map(clip).collect(), samples.collect())
-}
-
-fn classes() -> Vec<String> {
-    CLASSES.map(str::to_owned).to_vec()
-}
-
-pub fn trained(params: SvrdmTrainParams) -> (Model, TrainingReport) {
-    let (clips, samples) = clips(takes());
-    let classes = classes();
-    let labelling = LabelSet {
-        samples: &samples,
-        classes: &classes,
-        unlabelled_is_background: true,
-        ..Default::default()
-    };
-    let options = SvrdmOptions {
-        params,
-        unlabelled_is_background: true,
-    };
-    let (model, report) = train_svrdm(&clips, &labelling, &options, &()).unwrap();
-    (model.into(), report)
-}
-
-pub fn index_of(model: Model) -> MotionIndex {
-    MotionIndex {
-        model,
-        roles: BTreeMap::new(),
-        provenance: Provenance::default(),
-    }
-}
+use crate::thesis_people::{CLASSES, classes, clips, index_of, takes, trained};
 
 #[test]
 fn both_settings_come_back_from_their_file_and_recognise_what_they_learned() {
@@ -195,60 +131,4 @@ fn one_class_or_none_is_refused() {
     );
     let first = [vec!["fly".to_owned()], classes()].concat();
     assert_eq!(train(&first, &samples).unwrap().0, model);
-}
-
-#[test]
-fn the_evaluation_counts_every_sample_and_draws_every_branch() {
-    let (clips, samples) = clips(takes());
-    let classes = classes();
-    let settings = [
-        (
-            Setting::Faithful,
-            SvrdmOptions {
-                params: SvrdmTrainParams::faithful(),
-                ..Default::default()
-            },
-        ),
-        (Setting::Tuned, SvrdmOptions::default()),
-    ];
-    let study = Study {
-        clips: &clips,
-        samples: &samples,
-        classes: &classes,
-        unknown: &[],
-        seeds: &[3],
-        settings: &settings,
-    };
-    let result = reproduce(&study, &()).unwrap();
-    assert_eq!(result.segmentation.len(), clips.len());
-    for c in &result.clustering {
-        assert_eq!(c.samples, samples.len());
-        assert_eq!(
-            c.pairs.total(),
-            (samples.len() * (samples.len() - 1) / 2) as u64
-        );
-    }
-    for c in &result.classification {
-        assert_eq!(c.all.samples, samples.len());
-        assert_eq!(c.unseen.samples + c.taught, samples.len());
-        assert_eq!(c.confusion.iter().flatten().sum::<usize>(), samples.len());
-        for rates in [c.all, c.unseen, c.alike[0], c.alike[1]] {
-            assert!((rates.p_c + rates.p_e + rates.p_r - 1.0).abs() < 1e-12);
-        }
-        let drawn = result
-            .pictures
-            .iter()
-            .filter(|p| p.name.starts_with(&format!("{}_branch", c.setting.name())));
-        assert_eq!(drawn.count(), CLASSES.len() - 1);
-    }
-    assert_eq!(result.streams.len(), 2);
-    let page = page(&result, &[("clips".to_owned(), "a <b> & c".to_owned())]);
-    assert!(page.contains("a &lt;b&gt; &amp; c") && page.ends_with("</html>\n"));
-    assert_eq!(page.matches("<svg").count(), page.matches("</svg>").count());
-    for picture in &result.pictures {
-        assert!(!picture.svg.contains("NaN"), "{}", picture.name);
-        assert_eq!(picture.table.is_some(), picture.name.contains("_map_"));
-        let mut lines = picture.table.iter().flat_map(|table| table.lines());
-        assert!(lines.all(|line| line.split('\t').count() == 4));
-    }
 }

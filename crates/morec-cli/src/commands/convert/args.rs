@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use morec::tables::Content;
+use morec_measure::tables::Content;
 
 use super::form::ClipForm;
 use crate::files::{self, ReadArgs};

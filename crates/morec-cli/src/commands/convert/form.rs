@@ -6,7 +6,7 @@ use anyhow::{Result, bail};
 use morec::clip::Clip;
 use morec::formats::{bvh, c3d, gltf, jsonl, trc};
 use morec::import::{ImportOptions, Take, normalize, points_by_role};
-use morec::tables::{Content, write_csv, write_npz};
+use morec_measure::tables::{Content, write_csv, write_npz};
 
 use super::wanted::Wanted;
 use crate::output;

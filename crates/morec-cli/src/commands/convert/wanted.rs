@@ -4,7 +4,7 @@ use anyhow::{Context, Result};
 use morec::clip::Clip;
 use morec::fitting::fit_skeleton;
 use morec::import::{ImportOptions, Stated, normalize};
-use morec::tables::Content;
+use morec_measure::tables::Content;
 
 /// Options of writing clips.
 #[derive(Clone)]

@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::Path;
 
 use anyhow::Context;
-use morec::plot::Chart;
+use morec_measure::plot::Chart;
 use morec_ops::{CurveFigures, CurvePoint, LearningCurve};
 
 use crate::json::write_json;

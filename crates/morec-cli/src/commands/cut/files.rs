@@ -9,6 +9,7 @@ use morec::discover::{DiscoverParams, discover};
 use morec::features::{BoneSet, FeatureParams, RowLayout, Rows, rows_of_clip};
 use morec::segment::{KernelParams, PpcaParams, Segmentation, kernel_cuts, segment};
 use morec_db::Cutter;
+use morec_measure::report::pictures::misfit_chart;
 use serde::Serialize;
 
 use super::args::Args;
@@ -122,9 +123,8 @@ fn by_ppca(reader: &PoseReader<'_>, params: &PpcaParams, args: &Args) -> Result<
         let segmentation =
             segment(&clip.rows, reader.rate_hz(), params).context(clip.name.clone())?;
         if let Some(path) = &args.plot {
-            let svg = segmentation
-                .chart(&format!("{}: misfit and cuts", clip.name), &[])
-                .svg();
+            let title = format!("{}: misfit and cuts", clip.name);
+            let svg = misfit_chart(&segmentation, &title, &[]).svg();
             output::check_picture(path)?;
             output::write_whole(path, |out| out.write_all(svg.as_bytes()))
                 .with_context(|| path.display().to_string())?;

@@ -5,8 +5,8 @@ use std::path::Path;
 
 use anyhow::{Context, Result};
 use morec::TimeSpan;
-use morec::player::{PlayedClip, Reel};
 use morec_db::{ClipId, MotionDb, StoredClip};
+use morec_measure::player::{PlayedClip, Reel};
 
 use super::strip::strip;
 use crate::output;

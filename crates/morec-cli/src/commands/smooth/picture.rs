@@ -5,8 +5,8 @@ use std::path::Path;
 use anyhow::{Context, Result, anyhow, bail};
 use morec::clip::{Clip, Skeleton};
 use morec::labels::some_of;
-use morec::report::pictures::channel_chart;
 use morec::smooth::{ChannelKind, CompressedClip};
+use morec_measure::report::pictures::channel_chart;
 
 use crate::output::{check_picture, write_whole};
 

@@ -54,7 +54,7 @@ fn events_are_paired_by_class_and_their_ends_compared() {
 
 #[test]
 fn annotators_agree_with_themselves_and_random_ones_with_nobody() {
-    let mut rng = crate::rng::Rng::new(3);
+    let mut rng = morec::rng::Rng::new(3);
     let mut random = || {
         let label = |_| {
             let class = ["walk", "jump"][rng.below(2)];

@@ -177,7 +177,7 @@ proptest! {
         let mut sorted: Vec<TimeSpan> =
             stretches.iter().map(|(_, start, stop)| TimeSpan::new(*start, *stop)).collect();
         sorted.sort_by(|a, b| a.order(*b));
-        let covered = spans::union(sorted.iter().copied());
+        let covered = TimeSpan::union(sorted.iter().copied());
         let left = spans::gaps(&covered, 12.0, 0.0);
         // On the grid, cell by cell: labelled by some stretch, or in a gap, never both.
         for cell in 0..240 {

@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 
 use super::*;
-use crate::labels::{ClipLength, Labels, read_detections};
+use morec::labels::{ClipLength, Labels, read_detections};
 
 /// Frames and rate as the clip's own header has them.
 fn length(bvh: &str) -> ClipLength {

@@ -1,8 +1,8 @@
 //! The map of confidences over starts and ends of segments (thesis, Fig. 4.3).
 
-use crate::classes::ClassInfo;
 use crate::plot::HeatMap;
-use crate::svrdm::{ConfidenceMap, SvrdmParams};
+use morec::classes::ClassInfo;
+use morec::svrdm::{ConfidenceMap, SvrdmParams};
 
 /// The map as a picture: start across, length upwards (Fig. 4.3 has the end there; the map is a narrow band
 /// along its diagonal), coloured by class.

@@ -1,8 +1,8 @@
 //! A channel with its curves and keyframes, drawn.
 
-use crate::clip::Clip;
 use crate::plot::Chart;
-use crate::smooth::{Bezier, ChannelKind, ChannelValue, CompressedClip, Curve};
+use morec::clip::Clip;
+use morec::smooth::{Bezier, ChannelKind, ChannelValue, CompressedClip, Curve};
 
 /// Points drawn for each frame of the source.
 const POINTS_A_FRAME: f64 = 4.0;
@@ -110,7 +110,7 @@ fn samples(source: &Clip, curve: &Curve) -> Vec<ChannelValue> {
         .iter()
         .skip(curve.joint())
         .step_by(source.skeleton.len());
-    let signed = |q: &crate::math::Quat| {
+    let signed = |q: &morec::math::Quat| {
         last = if last.dot(&q.coords) < 0.0 {
             -q.coords
         } else {
@@ -124,8 +124,8 @@ fn samples(source: &Clip, curve: &Curve) -> Vec<ChannelValue> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::smooth::{SmoothParams, compress};
     use mocap::testing::pushing;
+    use morec::smooth::{SmoothParams, compress};
 
     #[test]
     fn every_channel_can_be_drawn() {

@@ -1,9 +1,9 @@
 //! Pictures of a tree and of its branches.
 
 use crate::plot::{Chart, Regions, TreeBox, tree_svg};
-use crate::svrdm::{Branch, Node, PathStep, Tree};
+use morec::svrdm::{Branch, Node, PathStep, Tree};
 
-use morec_svrdm::train_tree::FeatureSample;
+use morec::train::svrdm::FeatureSample;
 
 /// Cells along each axis.
 const CELLS: usize = 120;
@@ -62,7 +62,7 @@ pub fn branch_picture(
     )
 }
 
-fn classes(branch: &Branch) -> impl Iterator<Item = crate::classes::ClassId> {
+fn classes(branch: &Branch) -> impl Iterator<Item = morec::classes::ClassId> {
     branch.classes.iter().flatten().copied()
 }
 
@@ -71,7 +71,7 @@ fn planar(
     tree: &Tree,
     branch: &Branch,
     samples: &[FeatureSample],
-    class: crate::classes::ClassId,
+    class: morec::classes::ClassId,
 ) -> Vec<(f64, f64)> {
     let shown = samples
         .iter()
@@ -111,7 +111,7 @@ fn widened(values: impl Iterator<Item = f64>) -> (f64, f64) {
     (from - more, to + more)
 }
 
-fn name(class: crate::classes::ClassId, names: &[String]) -> String {
+fn name(class: morec::classes::ClassId, names: &[String]) -> String {
     names
         .get(class.index())
         .cloned()
@@ -119,7 +119,7 @@ fn name(class: crate::classes::ClassId, names: &[String]) -> String {
 }
 
 /// Some names of a side; how many more there are.
-fn listed(classes: &[crate::classes::ClassId], names: &[String]) -> String {
+fn listed(classes: &[morec::classes::ClassId], names: &[String]) -> String {
     let shown: Vec<String> = classes.iter().take(3).map(|c| name(*c, names)).collect();
     let more = classes.len().saturating_sub(3);
     if more > 0 {
@@ -130,7 +130,7 @@ fn listed(classes: &[crate::classes::ClassId], names: &[String]) -> String {
 }
 
 /// The classes of a side in the width of a box.
-fn short(classes: &[crate::classes::ClassId], names: &[String]) -> String {
+fn short(classes: &[morec::classes::ClassId], names: &[String]) -> String {
     let all: Vec<String> = classes.iter().map(|c| name(*c, names)).collect();
     let mut shown = all.len();
     loop {
@@ -148,7 +148,7 @@ fn short(classes: &[crate::classes::ClassId], names: &[String]) -> String {
 
 /// A sample's way down a tree in words, a line for each branch (thesis, Fig. 5.2).
 pub fn path_text(tree: &Tree, names: &[String], path: &[PathStep]) -> Vec<String> {
-    let all = |classes: &[crate::classes::ClassId]| {
+    let all = |classes: &[morec::classes::ClassId]| {
         let names: Vec<String> = classes.iter().map(|c| name(*c, names)).collect();
         names.join(", ")
     };

@@ -11,5 +11,6 @@ mod tests;
 
 pub use confidence_map::confidence_picture;
 pub use curves::channel_chart;
+pub use cuts::misfit_chart;
 pub use machines::{branch_picture, path_text, tree_picture};
 pub use quality::quality_chart;

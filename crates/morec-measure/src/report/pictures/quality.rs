@@ -1,7 +1,7 @@
 //! Share of the variance by number of principal components.
 
-use crate::pca::QualityRow;
 use crate::plot::Chart;
+use morec::pca::QualityRow;
 
 /// The quality table as a curve, with the dimensions kept (`dims`) marked.
 pub fn quality_chart(table: &[QualityRow], dims: usize, title: &str) -> Chart {

@@ -1,11 +1,12 @@
-use morec_svrdm::train_tree::{FeatureSample, SigmaRule, TreeParams, grow};
+use morec::train::svrdm::{FeatureSample, SigmaRule, TreeParams, grow};
 
-use super::{branch_picture, path_text, quality_chart, tree_picture};
-use crate::classes::ClassId;
-use crate::features::Rows;
-use crate::pca::{ComponentCount, Moments, Pca};
-use crate::rng::Rng;
-use crate::svrdm::{Acceptance, Node};
+use super::{branch_picture, misfit_chart, path_text, quality_chart, tree_picture};
+use morec::classes::ClassId;
+use morec::features::Rows;
+use morec::pca::{ComponentCount, Moments, Pca};
+use morec::rng::Rng;
+use morec::segment::{MisfitSample, Segmentation};
+use morec::svrdm::{Acceptance, Node};
 
 /// `count` vectors around a centre, by chance.
 fn cloud(rng: &mut Rng, count: usize, centre: &[f64], spread: f64) -> Vec<Vec<f64>> {
@@ -91,4 +92,24 @@ fn pictures_show_every_class_by_name_and_where_machines_accept() {
         "a leaf has no plane"
     );
     assert!(branch_picture(&tree, 99, &samples, &names, [0.4, 1.0]).is_none());
+}
+
+#[test]
+fn the_chart_of_misfit_shows_both_directions_and_cuts() {
+    let samples = |scale: f64| {
+        (0..9).map(move |i| MisfitSample {
+            secs: f64::from(i),
+            value: scale,
+        })
+    };
+    let found = Segmentation {
+        forward: samples(2.0).collect(),
+        backward: samples(3.0).collect(),
+        cuts: Vec::new(),
+    };
+    let svg = misfit_chart(&found, "two behaviours", &[4.0]).svg();
+    for part in ["two behaviours", "forward", "backward", "cuts", "known"] {
+        assert!(svg.contains(part), "{part}");
+    }
+    assert!(!misfit_chart(&found, "t", &[]).svg().contains("known"));
 }

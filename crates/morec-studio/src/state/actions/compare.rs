@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use morec::eval::ClipDetection;
-use morec::explain::MotionDeviation;
+use morec::labels::ClipDetection;
 use morec::math::Vec3;
+use morec_measure::explain::MotionDeviation;
 
 use crate::body::Aligned;
 use crate::jobs::JobOutcome;
