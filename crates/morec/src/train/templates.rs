@@ -5,13 +5,12 @@ use std::collections::{BTreeMap, BTreeSet};
 use rayon::prelude::*;
 
 use crate::classes::ClassInfo;
-use crate::decode::{FAR, TYPICAL_SPREAD};
-use crate::features::{BoneSet, Profile, Rows};
-use crate::math::portable;
+use crate::decode::TYPICAL_SPREAD;
+use crate::features::{BoneSet, Profile};
 use crate::progress::Progress;
 use crate::templates::{
-    ALARM_RATES, Calibration, Match, MatchGate, Metric, OperatingPoint, PackedSymmetric,
-    PerformerKind, StrangerGate, TemplateModel, TemplateSample, Verifier, mean_and_spread,
+    Activities, Calibration, HeldPoses, Metric, PackedSymmetric, TemplateModel, TemplateSample,
+    Verifier, mean_and_spread,
 };
 
 use super::activities;
@@ -20,16 +19,14 @@ use super::comparison::{StreamMatches, TrainingContext};
 use super::error::TrainError;
 use super::examples::{self, CandidateFinder, NearStream, VerifierExample};
 use super::held;
-use super::mining::{NearMiss, NearestByGate, TrainGates, hard_negatives, smallest};
-use super::operating::{AlarmCurve, CAP_EXPONENT};
+use super::mining::{NearMiss, NearestByGate};
 use super::params::TrainParams;
+use super::plan::Plan;
 use super::refused;
 use super::representatives::representatives;
 use super::scatter::{covariance, ridged, within_class};
 use super::second_look::{self, HeldOutAlarms, LearnedLook, OwnSample};
-use super::set::{StreamKind, TrainSample, TrainSet, TrainStream};
-use super::thresholds;
-use super::trim::motion_span;
+use super::set::{TrainSample, TrainSet};
 use super::verifier;
 
 /// A model and how it came about.
@@ -103,99 +100,40 @@ pub fn train(
     let (ridged, total) = metric_of(set, &samples, params);
     let metric = Metric::new(&ridged, &total);
     let classes = class_infos(set, &samples);
-    let held = held::learn(set, &samples, bones, params);
-    let activities = activities::learn(set, &samples, bones, params);
-    let has_templates = |sample: &TrainSample| {
-        let held = held.as_ref();
-        let is_held = held.is_some_and(|held| held.poses.classes.contains(&sample.class));
-        let activities = activities.as_ref();
-        !is_held && !activities.is_some_and(|a| a.holds(sample.class))
-    };
-    let goes_on =
-        |sample: &&TrainSample| activities.as_ref().is_some_and(|a| a.holds(sample.class));
-    let going_on: Vec<TrainSample> = samples.iter().filter(goes_on).cloned().collect();
-    let samples = samples.into_iter().filter(has_templates).collect();
-    let (samples, quiet) = moving(samples, &metric, params);
-    let mut samples = templates_of(samples, set.classes.len(), params.max_templates);
-    let params = &of_profile(params, bones, &samples, &metric);
+    let sorted = SortedSamples::new(set, samples, bones, params, &metric);
+    let params = &of_profile(params, bones, &sorted.gestures, &metric);
     let step = TrainingContext {
         set,
         metric: &metric,
         params,
         progress,
     };
-    let plain = MatchGate::plain(params.decode.rest_gate);
-    let verified = verified_gate(&classes, &samples, params);
-    let verified = verified.filter(|_| params.verify);
-    let verifies = verified.is_some() && verifier::has_background(set, params);
-    let judges_whole = params.judge_whole
-        && Profile::of(bones) == Profile::Body
-        && second_look::are_apart(set, &samples, bones, params);
-    // The second look compares activities too; their windows report them.
-    let judged = match judges_whole {
-        true => [samples.as_slice(), &going_on].concat(),
-        false => Vec::new(),
-    };
-    let learn = || second_look::learn(set, &judged, bones, params);
-    let mut learned = (judges_whole && !verifies).then(learn).flatten();
-    match &learned {
+    let plan = Plan::new(&step, bones, &classes, (&sorted.gestures, &sorted.going_on));
+    let learn = || second_look::learn(set, &plan.judged, bones, params);
+    let mut learned = plan.decides_by_look().then(learn).flatten();
+    let samples = match &learned {
         // Templates only find candidates, which the second look then compares with all samples.
-        Some(learned) => samples = step.representatives(learned, samples),
-        None => samples.extend(step.faster_copies(&samples, bones, plain)?),
-    }
-    // The second look needs no gate of its own for strangers.
-    let wide = wide_gate(set, &samples, params).filter(|_| !verifies && !judges_whole);
-    let gates = TrainGates { plain, wide };
-    let gate_of_verifier = verified.filter(|_| verifies).map(MatchGate::plain);
-    let most = step.largest_threshold();
-    let farthest = if most > 0.0 { most as f32 } else { FAR };
-    let matches = step.templates(&samples, gates, (gate_of_verifier, farthest))?;
-    let near: Vec<&NearestByGate> = matches.iter().map(|m| &m.all).collect();
-    let near_enough = step.operating(&near, None, |near| &near.plain);
-    // The second look refuses background that comes near, so no negatives are needed.
-    let negatives = match &learned {
-        Some(_) => Vec::new(),
+        Some(learned) => step.representatives(learned, sorted.gestures),
         None => {
-            let threshold = near_enough.threshold;
-            negatives_of(set, bones, (&samples, &matches), threshold, params)
+            let copies = step.faster_copies(&sorted.gestures, bones, plan.gates.plain)?;
+            [sorted.gestures, copies].concat()
         }
     };
-    let rows: Vec<Rows> = negatives.iter().map(|n| negative_rows(set, n)).collect();
-    let all = TrainGates {
-        plain: MatchGate::plain(0.0),
-        wide: wide.map(|gate| MatchGate {
-            rest_share: 0.0,
-            ..gate
-        }),
+    let matches = step.templates(&samples, plan.gates, plan.reach(step.largest_threshold()))?;
+    let limits = step.limits(&plan, bones, (&samples, &matches), learned.is_some())?;
+    let threshold = limits.operating.threshold;
+    let verifier = match plan.verifies {
+        true => step.verifier(&matches, &limits.near_negatives, threshold),
+        false => None,
     };
-    let rule = (verifies, most);
-    let near_negatives = step.negatives((&negatives, &rows), &matches, all, rule)?;
-    let seen: Vec<&NearestByGate> = near_negatives.iter().collect();
-    let stranger = wide.map(|gate| {
-        let operating = step.operating(&near, Some(&seen), |near| &near.wide);
-        step.stranger_gate(gate, operating)
-    });
-    let operating = step.operating(&near, Some(&seen), |near| &near.plain);
-    let threshold = operating.threshold;
-    let mut decode = params.decode.clone();
-    let mut verifier = None;
-    if let Some(gate) = verified {
-        decode.rest_gate_verified = gate;
-        if verifies {
-            verifier = step.verifier(&matches, &near_negatives, threshold);
-        }
-    }
-    if verifies && verifier.is_none() && judges_whole {
-        learned = learn();
+    if plan.verifies && verifier.is_none() {
+        learned = plan.judges_whole.then(learn).flatten();
     }
     let (look, own) = learned.map_or((None, Vec::new()), |l| (Some(l.look), l.own));
     let alike = match verifier.is_none() && look.is_none() {
-        true => step.alike(&samples, plain, threshold)?,
+        true => step.alike(&samples, plan.gates.plain, threshold)?,
         false => Vec::new(),
     };
-    if look.is_some() {
-        decode.rest_gate = CANDIDATE_REST_GATE;
-    }
     let calibration = match (&verifier, &look) {
         (Some(_), _) => Calibration::VERIFIED,
         (None, Some(_)) => Calibration::OF_LOOKS,
@@ -204,27 +142,21 @@ pub fn train(
     let model = TemplateModel {
         features: params.features.clone(),
         bones,
-        decode,
+        decode: plan.decode(&params.decode, look.is_some()),
         classes,
-        samples: samples
-            .into_iter()
-            .map(|s| TemplateSample {
-                class: s.class,
-                rows: s.rows,
-            })
-            .collect(),
-        negatives: rows,
+        samples: samples.into_iter().map(template).collect(),
+        negatives: limits.rows,
         ridged,
         total,
         threshold,
         class_thresholds: Vec::new(),
-        operating: operating.points,
+        operating: limits.operating.points,
         calibration: params.calibrate.then_some(calibration),
-        stranger: stranger.filter(|_| verifier.is_none()),
+        stranger: limits.stranger.filter(|_| verifier.is_none()),
         verifier,
-        held,
+        held: sorted.held,
         look,
-        activities,
+        activities: sorted.activities,
         step: None,
     };
     let mut model = if params.compact {
@@ -237,37 +169,62 @@ pub fn train(
     model.check()?;
     Ok(TrainedTemplates {
         model,
-        negatives,
-        threshold_from: operating.from,
-        quiet,
+        negatives: limits.negatives,
+        threshold_from: limits.operating.from,
+        quiet: sorted.quiet,
         alike,
         own,
         held_out,
     })
 }
 
-/// The wider gate of matches, if so few people teach that a stranger is likely to be unlike them. Who is not named is one person.
-fn wide_gate(set: &TrainSet, samples: &[TrainSample], params: &TrainParams) -> Option<MatchGate> {
-    let people: BTreeSet<Option<&str>> = samples
-        .iter()
-        .map(|s| set.streams[s.stream].person.as_deref())
-        .collect();
-    let few = people.len() < params.verify_people && params.alarms_per_minute > 0.0;
-    (few && params.stranger.rest_gate > 0.0).then_some(MatchGate {
-        discount: params.stranger.discount,
-        rest_share: params.stranger.rest_gate,
-    })
+fn template(sample: TrainSample) -> TemplateSample {
+    TemplateSample {
+        class: sample.class,
+        rows: sample.rows,
+    }
 }
 
-/// Share of a body's distance at rest below which a match is a candidate of the second look: a body at rest never matches.
-const CANDIDATE_REST_GATE: f32 = 0.85;
+/// Samples by what will recognise their classes.
+struct SortedSamples {
+    held: Option<HeldPoses>,
+    activities: Option<Activities>,
+    /// Of classes that are activities.
+    going_on: Vec<TrainSample>,
+    /// Those that become templates, up to a limit for each class.
+    gestures: Vec<TrainSample>,
+    /// Those of gestures that hardly move.
+    quiet: Vec<TrainSample>,
+}
 
-/// The threshold and its origin.
-struct Operating {
-    threshold: f32,
-    from: String,
-    /// For other rates of false alarms.
-    points: Vec<OperatingPoint>,
+impl SortedSamples {
+    fn new(
+        set: &TrainSet,
+        samples: Vec<TrainSample>,
+        bones: BoneSet,
+        params: &TrainParams,
+        metric: &Metric,
+    ) -> Self {
+        let held = held::learn(set, &samples, bones, params);
+        let activities = activities::learn(set, &samples, bones, params);
+        let is_held = |sample: &TrainSample| {
+            held.as_ref()
+                .is_some_and(|held| held.poses.classes.contains(&sample.class))
+        };
+        let goes_on =
+            |sample: &TrainSample| activities.as_ref().is_some_and(|a| a.holds(sample.class));
+        let (going_on, others): (Vec<_>, Vec<_>) = samples.into_iter().partition(goes_on);
+        let gestures = others.into_iter().filter(|s| !is_held(s)).collect();
+        let (gestures, quiet) = moving(gestures, metric, params);
+        let gestures = templates_of(gestures, set.classes.len(), params.max_templates);
+        Self {
+            held,
+            activities,
+            going_on,
+            gestures,
+            quiet,
+        }
+    }
 }
 
 impl TrainingContext<'_> {
@@ -286,83 +243,6 @@ impl TrainingContext<'_> {
         let segments = &learned.segments[..samples.len()];
         let chosen = representatives(&learned.look, segments, &groups, most);
         chosen.into_iter().map(|k| samples[k].clone()).collect()
-    }
-
-    /// Bound of the threshold at a rate of false alarms. It moves with the rate, or it would be all there is where no
-    /// background comes near.
-    fn most_at(&self, rate: f64) -> f64 {
-        let params = self.params;
-        params.max_threshold * portable::powf(rate / params.alarms_per_minute, CAP_EXPONENT)
-    }
-
-    /// Bound of all thresholds; 0 where none comes from a rate of false alarms.
-    fn largest_threshold(&self) -> f64 {
-        let usual = self.params.alarms_per_minute;
-        if usual <= 0.0 {
-            return 0.0;
-        }
-        let rates = ALARM_RATES.into_iter().chain([usual]);
-        rates.map(|rate| self.most_at(rate)).fold(0.0, f64::max)
-    }
-
-    /// The threshold under the gate that `of` chooses; `negatives` add what near misses of other people and clips keep out.
-    fn operating(
-        &self,
-        near: &[&NearestByGate],
-        negatives: Option<&[&NearestByGate]>,
-        of: impl Fn(&NearestByGate) -> &[Match],
-    ) -> Operating {
-        let params = self.params;
-        let near: Vec<&[Match]> = near.iter().map(|near| of(near)).collect();
-        if params.alarms_per_minute <= 0.0 {
-            let (threshold, from) = thresholds::global_threshold(self.set, &near, params);
-            let points = Vec::new();
-            return Operating {
-                threshold,
-                from,
-                points,
-            };
-        }
-        let negatives = negatives.map(|near| near.iter().map(|near| of(near)).collect::<Vec<_>>());
-        let curve = AlarmCurve::of(self.set, &near, negatives.as_deref(), params);
-        let at = |rate: f64| {
-            let most = self.most_at(rate);
-            let set_by = curve.distance_at(rate);
-            set_by
-                .filter(|(distance, _)| f64::from(*distance) < most)
-                .map_or((most as f32, None), |(distance, stream)| {
-                    (distance, Some(stream))
-                })
-        };
-        let (threshold, stream) = at(params.alarms_per_minute);
-        let point = |alarms_per_minute: f64| OperatingPoint {
-            alarms_per_minute,
-            threshold: at(alarms_per_minute).0,
-        };
-        Operating {
-            threshold,
-            from: stream.map_or_else(
-                || "its upper bound, because no background comes near".to_owned(),
-                |stream| format!("background clip {}", self.set.streams[stream].name),
-            ),
-            points: ALARM_RATES.map(point).to_vec(),
-        }
-    }
-
-    /// The wider gate, with the thresholds that background motion sets when it is matched as under that gate.
-    fn stranger_gate(&self, gate: MatchGate, operating: Operating) -> StrangerGate {
-        let params = &self.params.stranger;
-        StrangerGate {
-            performer: PerformerKind::Auto,
-            discount: gate.discount,
-            rest_gate: gate.rest_share,
-            rival_share: params.rival_share,
-            threshold: operating.threshold,
-            operating: operating.points,
-            open_at: params.open_at,
-            close_at: params.close_at,
-            calibration: self.params.calibrate.then_some(Calibration::OF_STRANGERS),
-        }
     }
 
     /// Candidates of all streams, each seen without its own person, and what a verifier learns from them.
@@ -428,25 +308,6 @@ fn moving(
     (teach, aside)
 }
 
-/// The gate against a body at rest under a verifier, if enough people showed enough samples that a verifier is better
-/// than the plain rule. With few samples the gate has to do what the verifier could not learn.
-fn verified_gate(
-    classes: &[ClassInfo],
-    samples: &[TrainSample],
-    params: &TrainParams,
-) -> Option<f32> {
-    let mut counts: Vec<usize> = classes.iter().map(|c| c.samples).collect();
-    counts.sort_unstable();
-    let people: BTreeSet<&str> = samples.iter().map(|s| s.group.as_str()).collect();
-    let median = counts.get(counts.len() / 2).copied().unwrap_or(0);
-    let enough = median >= params.verify_samples && people.len() >= params.verify_people;
-    enough.then_some(if median >= params.many_samples {
-        params.decode.rest_gate_verified
-    } else {
-        params.rest_gate_few
-    })
-}
-
 /// At most `most` samples of each class, from its groups in turn, in the order of the set.
 fn templates_of(samples: Vec<TrainSample>, classes: usize, most: usize) -> Vec<TrainSample> {
     let mut kept = BTreeSet::new();
@@ -504,51 +365,6 @@ fn metric_of(
         ridged(&within, &total, params.rho),
         PackedSymmetric::pack(&total),
     )
-}
-
-/// Short background clips as a whole, and the nearest misses in everything else that is background.
-fn negatives_of(
-    set: &TrainSet,
-    bones: BoneSet,
-    (samples, matches): (&[TrainSample], &[StreamMatches]),
-    threshold: f32,
-    params: &TrainParams,
-) -> Vec<NearMiss> {
-    if !params.mine_negatives {
-        return Vec::new();
-    }
-    let longest = samples.iter().map(|s| s.rows.len()).max().unwrap_or(0) as f64;
-    let short = |s: &TrainStream| {
-        s.source == StreamKind::Background
-            && s.rows.len() as f64 <= params.whole_background * longest
-    };
-    let (whole, long): (Vec<_>, Vec<_>) = set
-        .streams
-        .iter()
-        .enumerate()
-        .filter(|(_, s)| s.rest_is_background)
-        .partition(|(_, s)| short(s));
-    let mut found: Vec<NearMiss> = long
-        .into_iter()
-        .flat_map(|(i, s)| {
-            let near = [&matches[i].all.plain, &matches[i].others].map(Vec::as_slice);
-            hard_negatives(near, (i, s), threshold, params)
-        })
-        .collect();
-    found.sort_by(|a, b| a.distance.total_cmp(&b.distance));
-    found.truncate(params.max_negatives);
-    found.extend(whole.into_iter().map(|(stream, s)| NearMiss {
-        distance: smallest(&matches[stream].all.plain),
-        stream,
-        ticks: motion_span(&s.rows, bones),
-    }));
-    found
-}
-
-/// The rows of a near miss, and at least the eight before its end: a shorter template would match anything.
-fn negative_rows(set: &TrainSet, miss: &NearMiss) -> Rows {
-    let start = miss.ticks.start.min(miss.ticks.end.saturating_sub(8));
-    set.streams[miss.stream].rows.slice(start..miss.ticks.end)
 }
 
 fn class_infos(set: &TrainSet, samples: &[TrainSample]) -> Vec<ClassInfo> {
