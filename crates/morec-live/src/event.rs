@@ -37,7 +37,7 @@ impl NamedEvent<'_> {
             "source": self.source,
             "actor": e.actor.0,
             "motion": e.motion,
-            "seq": e.sequence,
+            "sequence": e.sequence,
         });
         if let Some(repeated) = e.repetitions {
             line["repetitions"] = repeated.count.into();

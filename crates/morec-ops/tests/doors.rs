@@ -295,7 +295,7 @@ const EVENT_DOORS: [EventDoor; 6] = [
         "crates/morec-live/src/event.rs",
         ("pub fn json(&self)", "line.to_string()"),
         |field| format!("\"{field}\""),
-        &[("wall_secs", "stop_wall"), ("sequence", "seq")],
+        &[("wall_secs", "stop_wall")],
     ),
     (
         "Python",

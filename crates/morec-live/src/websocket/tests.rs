@@ -53,7 +53,7 @@ fn a_listener_hears_every_event_and_the_end() {
         let text = socket.read().unwrap().into_text().unwrap();
         let told: serde_json::Value = serde_json::from_str(&text).unwrap();
         assert_eq!(
-            (told["class"].as_str(), told["seq"].as_u64()),
+            (told["class"].as_str(), told["sequence"].as_u64()),
             (Some("wave"), Some(sequence))
         );
     }
