@@ -2,6 +2,8 @@
 
 use morec::index::IndexError;
 use morec::live::OptionError;
+use morec::pca::PcaError;
+use morec::pivots::NoPivots;
 use morec::train::{DataError, TrainError};
 #[cfg(feature = "db")]
 use morec_db::DbError;
@@ -35,6 +37,17 @@ pub enum OperationError {
     /// What was recognised cannot be measured.
     #[error(transparent)]
     Measure(#[from] EvalError),
+    /// A clip has no rotations that poses of the method of 2009 could be made of.
+    #[error("{clip}: {source}")]
+    NoPivots {
+        /// Name of the clip.
+        clip: String,
+        /// What it lacks.
+        source: NoPivots,
+    },
+    /// Poses have no such principal components.
+    #[error(transparent)]
+    Pca(#[from] PcaError),
     /// The index cannot be written.
     #[error(transparent)]
     Index(#[from] IndexError),

@@ -43,6 +43,8 @@ mod params;
 mod propose;
 mod recognize;
 #[cfg(feature = "db")]
+mod reduce;
+#[cfg(feature = "db")]
 mod search;
 #[cfg(feature = "db")]
 mod shapes;
@@ -84,6 +86,8 @@ pub use propose::ProposeSettings;
 pub use recognize::RecognizeSettings;
 #[cfg(feature = "clap")]
 pub use recognize::StreamSettings;
+#[cfg(feature = "db")]
+pub use reduce::rebuilt_from;
 #[cfg(feature = "db")]
 pub use search::{SearchSettings, example_of_clip, example_of_database};
 #[cfg(feature = "db")]

@@ -7,16 +7,14 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail};
 use morec::clip::Clip;
-use morec::features::Rows;
 use morec::import::{ImportOptions, Take};
 use morec::index::MotionIndex;
 use morec::labels::ClipLength;
 use morec::labels::Mark;
 use morec::live::Detection;
 use morec::live::recognize_clip;
-use morec::pca::{ComponentCount, Moments, Pca};
-use morec::pivots::{PivotMap, PivotSet, PoseParams, clip_of_pose_rows, pose_rows_of_clip};
 use morec_measure::player::{PlayedClip, page};
+use morec_ops::rebuilt_from;
 
 use super::recognize::open_index;
 use crate::files::{self, ReadArgs};
@@ -176,24 +174,11 @@ fn in_terminal(
     Ok(())
 }
 
-/// The clips as so many dimensions of their poses have them (thesis, Eq. 3.10).
+/// The clips rebuilt from so many dimensions.
 fn reduced(takes: &[Take], dims: usize) -> Result<Vec<Clip>> {
-    let (set, params) = (PivotSet::thesis(), PoseParams::default());
-    let mut moments = Moments::new(set.row_dim());
-    let mut posed = Vec::with_capacity(takes.len());
-    for take in takes {
-        let map = PivotMap::of_clip(&set, &take.clip, &take.roles)
-            .with_context(|| take.name().to_owned())?;
-        let rows = pose_rows_of_clip(&take.clip, &set, &map, take.rest(), &params);
-        moments.push_rows(&rows);
-        posed.push((map, rows));
-    }
-    let pca = Pca::fit(&moments, ComponentCount::Dims(dims)).context("--reduced")?;
-    let rebuilt = |(take, (map, rows)): (&Take, (PivotMap, Rows))| {
-        let rows = pca.reconstruct(&pca.project(&rows));
-        clip_of_pose_rows(&take.clip, &set, &map, &rows, &params)
-    };
-    Ok(takes.iter().zip(posed).map(rebuilt).collect())
+    let clips = takes.iter().map(|take| (&take.clip, &take.roles, take.rest().clone()));
+    let clips: Vec<_> = clips.collect();
+    rebuilt_from(&clips, dims).context("--reduced")
 }
 
 fn write_page(

@@ -13,7 +13,7 @@ use super::progress::{JobError, JobProgress};
 use super::{nearest, similar};
 use crate::body::{Aligned, ClipMotion};
 use crate::stretch::Stretch;
-use morec_ops::Unlearned;
+use morec_ops::{OperationError, Unlearned, rebuilt_from};
 
 /// The table of the alignment has this many cells at most; longer stretches are compared at the same pace.
 const CELLS: usize = 4_000_000;
@@ -50,6 +50,32 @@ pub fn align(
         Ok(None) => Err(JobError::Failed(none)),
         Err(error) => Err(JobError::of("Nothing was compared", error)),
     }
+}
+
+/// A stretch beside itself, its clip rebuilt from `dims` principal components of its poses (Bucur 2009, Eq. 3.10).
+pub fn reduced(path: &Path, of: Stretch, dims: usize) -> Result<Arc<Aligned>, JobError> {
+    let failed = |error: OperationError| JobError::of("Nothing was compared", error);
+    let db = MotionDb::open(path).map_err(|error| failed(error.into()))?;
+    let mut stored = db.clip(of.clip).map_err(|error| failed(error.into()))?;
+    let whole = [(&stored.clip, &stored.roles, stored.rest.clone())];
+    for rebuilt in rebuilt_from(&whole, dims).map_err(failed)? {
+        stored.clip = rebuilt;
+    }
+    stored.clip.name = match dims {
+        1 => "1 component".to_owned(),
+        _ => format!("{dims} components"),
+    };
+    let hz = FeatureParams::default().tick_hz();
+    let ticks = (of.span.duration_secs() * hz).ceil() as usize + 1;
+    Ok(Arc::new(Aligned {
+        of,
+        with: of,
+        mirrored: false,
+        motion: Arc::new(ClipMotion::of(of.clip, stored)),
+        path: (0..ticks).map(|t| of.span.start_secs + t as f64 / hz).collect(),
+        tick_hz: hz,
+        deviation: None,
+    }))
 }
 
 fn aligned(

@@ -382,9 +382,12 @@ pub(super) fn stretch(ui: &mut Ui, state: &State, out: Out) {
     like_this(ui, out);
 }
 
+/// Numbers of principal components to compare a motion with.
+const COMPONENTS: [usize; 5] = [1, 2, 4, 8, 16];
+
 /// Buttons that search for what is like the selection and compare it with the nearest.
 pub(super) fn like_this(ui: &mut Ui, out: Out) {
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         if ui
             .button("More like this  F")
             .on_hover_text("Search all clips for similar motions, mirrored ones too if chosen")
@@ -399,6 +402,16 @@ pub(super) fn like_this(ui: &mut Ui, out: Out) {
         {
             out.push(Command::Compare(CompareCommand::Nearest));
         }
+        let reduced = ui.menu_button("Reduced", |ui| {
+            for dims in COMPONENTS {
+                let text = format!("{dims} component{}", if dims == 1 { "" } else { "s" });
+                if ui.button(text).clicked() {
+                    out.push(Command::Compare(CompareCommand::Reduced(dims)));
+                }
+            }
+        });
+        let hint = "Show the motion rebuilt from a few principal components of its poses beside the performer";
+        reduced.response.on_hover_text(hint);
     });
 }
 

@@ -38,6 +38,8 @@ pub enum CompareCommand {
     },
     /// The chosen moment of a cross-validation with the nearest label of a class; `None` of the class that was recognised.
     Moment(Option<String>),
+    /// The selected stretch with itself, rebuilt from so many principal components of its clip's poses.
+    Reduced(usize),
     Place(Placement),
     /// Nobody but the performer.
     Clear,

@@ -3,6 +3,7 @@
 use egui::Key;
 
 use super::{Person, made, takes};
+use crate::body::Aligned;
 use crate::state::compare::Placement;
 use crate::state::{Command, Panel, TimelineCommand};
 
@@ -105,6 +106,30 @@ fn the_nearest_stands_beside_the_performer_and_on_top_along_the_warping_path() {
     person.click("Alone");
     assert!(person.state().companions.all.is_empty());
     assert!(!person.sees_part("Seen: "));
+}
+
+#[test]
+fn a_motion_stands_beside_what_components_keep_of_it() {
+    let (_folder, mut person) = with_a_wave();
+    let pose = |person: &Person, aligned: &Aligned| {
+        let motion = person.state().player.motion.clone().unwrap();
+        let secs = aligned.of.span.middle_secs();
+        assert!((aligned.at(secs) - secs).abs() < 1e-6);
+        let (own, rebuilt) = (motion.pose(secs), aligned.motion.pose(secs));
+        let pairs = own.positions.iter().zip(&rebuilt.positions);
+        pairs.map(|(a, b)| (a - b).norm()).fold(0.0, f64::max)
+    };
+    person.click("Reduced");
+    person.click("1 component");
+    person.settle();
+    assert!(person.sees_part("Seen: 1 component"));
+    let rough = pose(&person, &person.state().companions.all[0].clone());
+    person.click("Alone");
+    person.click("Reduced");
+    person.click("16 components");
+    person.settle();
+    let fine = pose(&person, &person.state().companions.all[0].clone());
+    assert!(rough > 0.02 && fine < 0.5 * rough, "{rough} {fine}");
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! Comparing: a stretch beside the one most like it.
 
+use std::path::Path;
 use std::sync::Arc;
 
 use morec::labels::ClipDetection;
@@ -7,8 +8,8 @@ use morec::math::Vec3;
 use morec_measure::explain::MotionDeviation;
 
 use crate::body::Aligned;
-use crate::jobs::JobOutcome;
 use crate::jobs::align::{self, Partner};
+use crate::jobs::{JobError, JobOutcome, JobProgress};
 use crate::state::compare::Placement;
 use crate::state::{CompareCommand, State};
 use crate::stretch::Stretch;
@@ -39,6 +40,10 @@ impl State {
                 self.compare_with_nearest(of, class, Unlearned::default());
             }
             CompareCommand::Moment(class) => self.compare_moment(class),
+            CompareCommand::Reduced(dims) => match self.selected_stretch() {
+                Some((of, _)) => self.align(move |db, _| align::reduced(db, of, dims)),
+                None => self.say("select a label or a stretch first"),
+            },
             CompareCommand::Place(placement) => self.companions.placement = placement,
             CompareCommand::Clear => self.companions.all.clear(),
         }
@@ -52,15 +57,18 @@ impl State {
     }
 
     fn compare(&mut self, of: Stretch, with: Partner) {
+        self.align(move |db, progress| align::align(db, of, with, progress));
+    }
+
+    fn align(
+        &mut self,
+        job: impl FnOnce(&Path, &JobProgress) -> Result<Arc<Aligned>, JobError> + Send + 'static,
+    ) {
         let Some(store) = &self.store else { return };
         let db = store.path().to_owned();
-        self.jobs.start(
-            ALIGNING,
-            true,
-            &self.wake,
-            JobOutcome::Aligned,
-            move |progress| align::align(&db, of, with, progress),
-        );
+        let job = move |progress: &JobProgress| job(&db, progress);
+        self.jobs
+            .start(ALIGNING, true, &self.wake, JobOutcome::Aligned, job);
     }
 
     /// Shows what was aligned.
