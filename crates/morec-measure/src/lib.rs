@@ -27,8 +27,3 @@ pub mod report;
 pub mod reproduce;
 #[cfg(feature = "report")]
 pub mod tables;
-
-/// The Rust of README, so that it compiles.
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-mod readme {}

@@ -176,7 +176,9 @@ fn in_terminal(
 
 /// The clips rebuilt from so many dimensions.
 fn reduced(takes: &[Take], dims: usize) -> Result<Vec<Clip>> {
-    let clips = takes.iter().map(|take| (&take.clip, &take.roles, take.rest().clone()));
+    let clips = takes
+        .iter()
+        .map(|take| (&take.clip, &take.roles, take.rest().clone()));
     let clips: Vec<_> = clips.collect();
     rebuilt_from(&clips, dims).context("--reduced")
 }

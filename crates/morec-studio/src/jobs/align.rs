@@ -72,7 +72,9 @@ pub fn reduced(path: &Path, of: Stretch, dims: usize) -> Result<Arc<Aligned>, Jo
         with: of,
         mirrored: false,
         motion: Arc::new(ClipMotion::of(of.clip, stored)),
-        path: (0..ticks).map(|t| of.span.start_secs + t as f64 / hz).collect(),
+        path: (0..ticks)
+            .map(|t| of.span.start_secs + t as f64 / hz)
+            .collect(),
         tick_hz: hz,
         deviation: None,
     }))

@@ -3,8 +3,8 @@
 use crate::decode::{Candidate, Decoder, TickDetection};
 use crate::templates::second_look::LookDecoder;
 
+use super::adaptation::PerformerAdaptation;
 use super::class_matches::MatchReplay;
-use super::performer::PerformerAdaptation;
 use super::recent_rows::RecentRows;
 use super::verifier::{CandidateScorer, Evidence};
 use super::{Calibration, ClassMatcher, Metric, TemplateModel};
@@ -13,7 +13,7 @@ use super::{Calibration, ClassMatcher, Metric, TemplateModel};
 #[derive(Debug, Clone)]
 pub(super) struct GestureDetector {
     matches: Matches,
-    decision: Decision,
+    decision: MatchDecision,
 }
 
 /// Source of the classes' nearest matches.
@@ -26,7 +26,7 @@ pub(super) enum Matches {
 
 /// What becomes of a match.
 #[derive(Debug, Clone)]
-enum Decision {
+enum MatchDecision {
     /// The whole motion around it is compared with all samples.
     SecondLook(Box<LookDecoder>),
     /// Its distance passes gates and a threshold, and a verifier if there is one.
@@ -44,8 +44,8 @@ impl GestureDetector {
         // Matches from elsewhere have passed the narrow gate.
         let computed = matches!(matches, Matches::Computed(_));
         let decision = match LookDecoder::new(model, 2 * longest) {
-            Some(looks) => Decision::SecondLook(Box::new(looks)),
-            None => Decision::ByDistance(Box::new(DistanceDecision::new(
+            Some(looks) => MatchDecision::SecondLook(Box::new(looks)),
+            None => MatchDecision::ByDistance(Box::new(DistanceDecision::new(
                 model, longest, metric, computed,
             ))),
         };
@@ -72,8 +72,8 @@ impl GestureDetector {
     /// True while the wider gate is open.
     pub(super) fn is_open(&self) -> bool {
         match &self.decision {
-            Decision::SecondLook(_) => false,
-            Decision::ByDistance(decision) => decision.is_open(),
+            MatchDecision::SecondLook(_) => false,
+            MatchDecision::ByDistance(decision) => decision.is_open(),
         }
     }
 
@@ -83,16 +83,16 @@ impl GestureDetector {
             matcher.reset();
         }
         match &mut self.decision {
-            Decision::SecondLook(looks) => looks.reset(),
-            Decision::ByDistance(decision) => decision.reset(),
+            MatchDecision::SecondLook(looks) => looks.reset(),
+            MatchDecision::ByDistance(decision) => decision.reset(),
         }
     }
 
     /// Forgets how the performer moves.
     pub(super) fn forget_performer(&mut self) {
         match &mut self.decision {
-            Decision::SecondLook(looks) => looks.forget_performer(),
-            Decision::ByDistance(decision) => decision.forget_performer(),
+            MatchDecision::SecondLook(looks) => looks.forget_performer(),
+            MatchDecision::ByDistance(decision) => decision.forget_performer(),
         }
         self.apply_rules();
     }
@@ -120,8 +120,8 @@ impl GestureDetector {
             Matches::Given(replay) => replay.step(),
         };
         match &mut self.decision {
-            Decision::SecondLook(looks) => looks.push(row, near),
-            Decision::ByDistance(decision) => {
+            MatchDecision::SecondLook(looks) => looks.push(row, near),
+            MatchDecision::ByDistance(decision) => {
                 decision.recent.push(row);
                 decision.decoder.push(near, negative);
                 if decision.decode(false) {
@@ -134,8 +134,8 @@ impl GestureDetector {
     /// Decides all that the stretch still holds.
     pub(super) fn finish(&mut self) {
         match &mut self.decision {
-            Decision::SecondLook(looks) => looks.finish(),
-            Decision::ByDistance(decision) => {
+            MatchDecision::SecondLook(looks) => looks.finish(),
+            MatchDecision::ByDistance(decision) => {
                 if decision.decode(true) {
                     self.apply_rules();
                 }
@@ -146,14 +146,14 @@ impl GestureDetector {
     /// What the last row, or the end, made certain.
     pub(super) fn found(&self) -> &[TickDetection] {
         match &self.decision {
-            Decision::SecondLook(looks) => looks.found(),
-            Decision::ByDistance(decision) => decision.decoder.found(),
+            MatchDecision::SecondLook(looks) => looks.found(),
+            MatchDecision::ByDistance(decision) => decision.decoder.found(),
         }
     }
 
     /// Lets the rules hold that fit the performer.
     fn apply_rules(&mut self) {
-        let (Matches::Computed(matcher), Decision::ByDistance(decision)) =
+        let (Matches::Computed(matcher), MatchDecision::ByDistance(decision)) =
             (&mut self.matches, &mut self.decision)
         else {
             return;

@@ -1,6 +1,7 @@
 //! Matching a stream against labelled samples, elastically in time.
 
 mod activities;
+mod adaptation;
 pub(crate) mod align;
 mod bank;
 mod bytes;

@@ -11,13 +11,13 @@ use super::error::TrainError;
 use super::mining::{NearMiss, NearestByGate, TrainGates, hard_negatives, smallest};
 use super::operating::{AlarmCurve, CAP_EXPONENT};
 use super::params::TrainParams;
-use super::plan::Plan;
+use super::plan::DecisionPlan;
 use super::set::{StreamKind, TrainSample, TrainSet, TrainStream};
 use super::thresholds;
 use super::trim::motion_span;
 
 /// What keeps background motion from being reported.
-pub struct Limits {
+pub struct MatchLimits {
     /// The threshold of matches that pass the plain gate.
     pub operating: Operating,
     /// The wider gate, where so few teach.
@@ -46,11 +46,11 @@ impl TrainingContext<'_> {
     /// `progress` cancels.
     pub fn limits(
         &self,
-        plan: &Plan,
+        plan: &DecisionPlan,
         bones: BoneSet,
         (samples, matches): (&[TrainSample], &[StreamMatches]),
         has_look: bool,
-    ) -> Result<Limits, TrainError> {
+    ) -> Result<MatchLimits, TrainError> {
         let (set, params) = (self.set, self.params);
         let near: Vec<&NearestByGate> = matches.iter().map(|m| &m.all).collect();
         let negatives = match has_look {
@@ -77,7 +77,7 @@ impl TrainingContext<'_> {
             self.stranger_gate(gate, operating)
         });
         let operating = self.operating(&near, Some(&seen), |near| &near.plain);
-        Ok(Limits {
+        Ok(MatchLimits {
             operating,
             stranger,
             negatives,

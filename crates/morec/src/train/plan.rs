@@ -18,7 +18,7 @@ use super::verifier;
 const CANDIDATE_REST_GATE: f32 = 0.85;
 
 /// What will decide about matches, as far as it is known before they are computed.
-pub struct Plan {
+pub struct DecisionPlan {
     /// The gate against a body at rest under a verifier, if enough people showed enough samples for one.
     verified_gate: Option<f32>,
     /// A verifier is learned from the matches.
@@ -31,7 +31,7 @@ pub struct Plan {
     pub gates: TrainGates,
 }
 
-impl Plan {
+impl DecisionPlan {
     pub fn new(
         step: &TrainingContext<'_>,
         bones: BoneSet,

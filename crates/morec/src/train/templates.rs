@@ -21,7 +21,7 @@ use super::examples::{self, CandidateFinder, NearStream, VerifierExample};
 use super::held;
 use super::mining::{NearMiss, NearestByGate};
 use super::params::TrainParams;
-use super::plan::Plan;
+use super::plan::DecisionPlan;
 use super::refused;
 use super::representatives::representatives;
 use super::scatter::{covariance, ridged, within_class};
@@ -108,7 +108,7 @@ pub fn train(
         params,
         progress,
     };
-    let plan = Plan::new(&step, bones, &classes, (&sorted.gestures, &sorted.going_on));
+    let plan = DecisionPlan::new(&step, bones, &classes, (&sorted.gestures, &sorted.going_on));
     let learn = || second_look::learn(set, &plan.judged, bones, params);
     let mut learned = plan.decides_by_look().then(learn).flatten();
     let samples = match &learned {
