@@ -1,15 +1,16 @@
 //! Time budgets and annotators: what is shown, compared, decided, and each decision undone.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use egui::Key;
 use morec_db::MotionDb;
 use morec_db::labels::{DbSample, LabelOptions, NewSample, SampleState as Judged};
-use morec_ops::time_budget;
+use morec_ops::{CurveFigures, CurvePoint, LearningCurve, time_budget};
 
 use super::{Person, made, takes};
 use crate::state::study::{AGREED, StudyView};
-use crate::state::{Command, Panel, PlayCommand, TimelineCommand, TrainCommand};
+use crate::state::{Command, Panel, PlayCommand, TimelineCommand};
 
 fn accepted(person: &Person) -> Vec<DbSample> {
     let store = person.state().store.as_ref().unwrap();
@@ -216,22 +217,43 @@ fn without_two_annotators_there_is_nothing_to_compare() {
 }
 
 #[test]
-fn the_learning_curve_is_drawn_with_what_more_labels_are_worth() {
+fn the_learning_curve_is_measured_until_it_is_stopped_and_drawn_with_what_it_says() {
     let folder = tempfile::tempdir().unwrap();
     let mut person = Person::before(&[made(folder.path(), 2)]);
     person.goes_to(Panel::Train);
-    let class = "bow".to_owned();
-    let without = TrainCommand::Choose { class, on: false };
-    person.command(Command::Train(without));
     person.click("Learning curve");
-    person.settle();
+    person.frames(2);
+    assert!(person.state().is_measuring_curve());
     assert!(person.state().command_line.contains("--curve"));
-    let curve = person.state().train.curve.as_ref().unwrap();
-    let [_, mean, _] = curve.points.last().unwrap().spread(|d| d.f1).unwrap();
-    let (all, advice) = (format!("all: F1 {mean:.3}"), curve.advice[0].clone());
-    assert!(person.sees(&all));
-    assert!(person.sees_part(&crate::store::sentence(&advice)));
+    person.click("Stop");
+    person.settle();
+    assert!(!person.state().is_measuring_curve() && person.offers("Learning curve"));
+    // One that is measured takes minutes here: what is drawn is of these figures.
+    let point = |samples, f1s: &[f64]| CurvePoint {
+        samples,
+        people: None,
+        draws: f1s.iter().map(|f1| figures(*f1)).collect(),
+    };
+    person.window.state_mut().state.train.curve = Some(LearningCurve {
+        divided: "each person in turn".to_owned(),
+        points: vec![point(Some(1), &[0.5, 0.6, 0.7]), point(None, &[0.9])],
+        advice: vec!["from at most 1 sample to all, F1 goes up".to_owned()],
+    });
+    person.frames(2);
+    assert!(person.sees("1 sample: F1 0.600 (0.500 to 0.700)"));
+    assert!(person.sees("all: F1 0.900"));
+    assert!(person.sees("From at most 1 sample to all, F1 goes up"));
     person.click("Close the curve");
     person.frames(2);
-    assert!(!person.sees(&all));
+    assert!(!person.sees("all: F1 0.900"));
+}
+
+fn figures(f1: f64) -> CurveFigures {
+    CurveFigures {
+        f1: Some(f1),
+        recall: Some(f1),
+        alarms_per_minute: None,
+        delay_secs: None,
+        recall_of_classes: BTreeMap::new(),
+    }
 }
