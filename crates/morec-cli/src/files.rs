@@ -108,7 +108,21 @@ fn listed(paths: &[PathBuf], planar: bool) -> Result<Listing> {
 
 /// The takes in a file; `-` is standard input. Errors begin with the path.
 pub fn takes(path: &Path, args: &ReadArgs, options: &ImportOptions) -> Result<Vec<Take>> {
-    let takes = open_with(path, args, options.mapping.as_ref())?.into_takes(options);
+    takes_as(path, args, options, false)
+}
+
+/// [`takes`]; with `planar`, of points in two dimensions too.
+pub fn takes_as(
+    path: &Path,
+    args: &ReadArgs,
+    options: &ImportOptions,
+    planar: bool,
+) -> Result<Vec<Take>> {
+    let opened = match planar && options.mapping.is_none() {
+        true => open_planar(path, args)?,
+        false => open_with(path, args, options.mapping.as_ref())?,
+    };
+    let takes = opened.into_takes(options);
     let takes = takes.with_context(|| path.display().to_string())?;
     say_doubts(path, &takes);
     Ok(takes)

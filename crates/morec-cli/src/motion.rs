@@ -94,6 +94,7 @@ impl<'a> ReportMotion<'a> {
             detections: founds
                 .map(|(found, _)| Mark::new(found.class.as_str(), found.span))
                 .collect(),
+            video: None,
         };
         self.reel.add(&played, FRAMES);
     }

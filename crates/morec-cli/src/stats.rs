@@ -8,7 +8,7 @@ use anyhow::Result;
 use morec::features::rows_of_clip;
 use morec::import::Take;
 use morec::kinematics::for_each_world_pose;
-use morec::live::Model;
+use morec::live::{EventOptions, Frame, Model, Performer, PerformerId, Rig};
 use morec::pivots::{PivotMap, pose_rows_of_clip};
 use morec::svrdm::{Stage, SvrdmEngine, SvrdmModel};
 use morec::templates::{AT_ONCE, ClassMatcher, Metric, TemplateEngine, TemplateModel};
@@ -26,6 +26,8 @@ pub struct Stats {
     /// Rows matched against templates; nothing with the method of 2009, which has stages of its own.
     matching: Duration,
     recognising: Duration,
+    /// Frame by frame from poses to events, without and with the progress of every class; nothing with the method of 2009.
+    live: [Duration; 2],
     /// Of these, what each stage of the method of 2009 takes, and its bytes.
     stages: Option<StageTimes>,
     size: String,
@@ -58,8 +60,46 @@ impl Stats {
             });
         });
         match model {
-            Model::Templates(model) => self.template_stages(model, imported),
+            Model::Templates(templates) => {
+                self.stream(model, imported);
+                self.template_stages(templates, imported)
+            }
             Model::Svrdm(model) => self.svrdm_stages(model, imported),
+        }
+    }
+
+    /// Streams a clip frame by frame, without and with the progress of every class.
+    fn stream(&mut self, model: &Model, imported: &Take) {
+        let Take { clip, roles, .. } = imported;
+        let rig = Arc::new(Rig {
+            skeleton: clip.skeleton.clone(),
+            roles: roles.clone(),
+        });
+        let mut frames = Vec::with_capacity(clip.frames);
+        for_each_world_pose(clip, imported.rest(), |time_secs, world| {
+            frames.push(Frame {
+                time_secs,
+                wall_secs: time_secs,
+                actor: PerformerId(0),
+                pose: world.clone(),
+            });
+        });
+        for (progress, total) in [false, true].into_iter().zip(&mut self.live) {
+            let options = EventOptions {
+                progress,
+                ..EventOptions::default()
+            };
+            let mut performer = Performer::new(model, PerformerId(0), &options);
+            performer.set_rig(&rig);
+            // The first frame makes the recogniser.
+            let mut left = frames.iter();
+            left.next().map(|first| performer.push(first).len());
+            timed(total, || {
+                for frame in left {
+                    std::hint::black_box(performer.push(frame));
+                }
+                std::hint::black_box(performer.finish());
+            });
         }
     }
 
@@ -213,6 +253,13 @@ impl fmt::Display for Stats {
         for (name, time, bytes) in self.times() {
             let share = format!("{:.1} %", 100.0 * time.as_secs_f64() / whole);
             line(&name, time, &share, bytes)?;
+        }
+        let [live, progress] = self.live;
+        if !live.is_zero() {
+            line("live, frame by frame", live, "", None)?;
+            let times = progress.as_secs_f64() / live.as_secs_f64();
+            let name = "the same, progress of every class";
+            line(name, progress, &format!("× {times:.2}"), None)?;
         }
         if self.stages.is_some() {
             f.write_str(THESIS)?;

@@ -18,6 +18,7 @@
 //! | cuts where behaviour changes | [`MotionDb::cut`] |
 //! | rows, search by example, near copies | [`rows`], [`search`] |
 //! | search by words | [`WordIndex`] |
+//! | videos beside clips | [`ClipVideo`] |
 //! | the other samples of classes that a few are labelled of | [`MotionDb::propose`], [`most_informative`] |
 //!
 //! ```no_run
@@ -81,6 +82,7 @@ mod testing;
 mod tests;
 mod time;
 mod tracked;
+mod videos;
 mod words;
 
 pub use background::BackgroundClips;
@@ -100,4 +102,5 @@ pub use reports::{REPORTS_KEPT, ReportInfo, ReportKind};
 pub use rows::bones_of_bits;
 pub use schema::{APPLICATION_ID, SCHEMA};
 pub use segments::{Segment, SegmentKind};
+pub use videos::ClipVideo;
 pub use words::{WordHit, WordHits, WordIndex, WordPlace};

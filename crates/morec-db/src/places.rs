@@ -52,7 +52,7 @@ mod tests {
             class: Some("wave".to_owned()),
             subject: None,
         };
-        db.label_clips(&[whole], "test").unwrap();
+        db.label_clips(&[whole], "test", None).unwrap();
         let steps = db.history().unwrap().len();
         db.place_classes(&[("wave".to_owned(), 4)].into()).unwrap();
         assert_eq!(db.history().unwrap().len(), steps, "no step to take back");

@@ -13,12 +13,13 @@ use crate::digest;
 pub const APPLICATION_ID: i32 = 0x6d72_6563;
 
 /// Step `i` brings schema `i` to schema `i + 1`. Steps are only ever added.
-const MIGRATIONS: [&str; 5] = [
+const MIGRATIONS: [&str; 6] = [
     include_str!("migrations/0001.sql"),
     include_str!("migrations/0002.sql"),
     include_str!("migrations/0003.sql"),
     include_str!("migrations/0004.sql"),
     include_str!("migrations/0005.sql"),
+    include_str!("migrations/0006.sql"),
 ];
 
 /// The newest schema that this version knows.

@@ -15,7 +15,7 @@ pub struct Tracked {
 }
 
 /// All of them.
-pub const TRACKED: [Tracked; 10] = [
+pub const TRACKED: [Tracked; 11] = [
     Tracked {
         name: "files",
         keys: 1,
@@ -71,6 +71,12 @@ pub const TRACKED: [Tracked; 10] = [
         name: "tags",
         keys: 2,
         columns: &["clip", "tag"],
+        large: None,
+    },
+    Tracked {
+        name: "videos",
+        keys: 1,
+        columns: &["clip", "path", "offset_secs"],
         large: None,
     },
     Tracked {

@@ -78,6 +78,9 @@ pub struct WordHit {
     pub text: String,
     /// Where words of the query were found.
     pub places: BTreeSet<WordPlace>,
+    /// True if every word of the query was found.
+    #[serde(skip)]
+    pub has_all: bool,
 }
 
 /// What was found of a query.
@@ -116,16 +119,26 @@ impl WordIndex {
     /// The database cannot be read.
     pub fn of(db: &MotionDb, captions: &[Caption]) -> Result<Self, DbError> {
         let clips = db.clips(&ClipFilter::default())?;
+        let samples = db.samples(&SampleFilter::default())?;
+        Ok(Self::new(clips, &samples, captions))
+    }
+
+    /// Of clips, their samples and captions; samples that are rejected say nothing. O(words).
+    pub fn new<'s>(
+        clips: Vec<ClipInfo>,
+        samples: impl IntoIterator<Item = &'s DbSample>,
+        captions: &[Caption],
+    ) -> Self {
         let mut index = Self {
             described: clips.iter().enumerate().map(of_clip).collect(),
             clips,
             absent: 0,
         };
         let by_id: BTreeMap<ClipId, usize> = index.clips.iter().map(|c| c.id).zip(0..).collect();
-        for sample in db.samples(&SampleFilter::default())? {
+        for sample in samples {
             let known = by_id.get(&sample.clip);
             if let Some(clip) = known.filter(|_| sample.state != SampleState::Rejected) {
-                index.add_sample(*clip, sample);
+                index.add(*clip, sample.span(), &sample.class, WordPlace::Class);
             }
         }
         let by_name: BTreeMap<String, usize> = index
@@ -140,7 +153,7 @@ impl WordIndex {
                 None => index.absent += 1,
             }
         }
-        Ok(index)
+        index
     }
 
     /// Captions of clips that the database does not have.
@@ -148,32 +161,27 @@ impl WordIndex {
         self.absent
     }
 
-    fn add_sample(&mut self, clip: usize, sample: DbSample) {
-        let span = sample.span();
-        self.add(clip, span, sample.class, WordPlace::Class);
-    }
-
     fn add_caption(&mut self, clip: usize, caption: &Caption) {
         let whole = TimeSpan::new(0.0, self.clips[clip].duration_secs());
         let span = caption.span.unwrap_or(whole);
-        self.add(clip, span, caption.text.clone(), WordPlace::Caption);
+        self.add(clip, span, &caption.text, WordPlace::Caption);
     }
 
     /// A stretch with its own words, and with those of its clip.
-    fn add(&mut self, clip: usize, span: TimeSpan, text: String, place: WordPlace) {
+    fn add(&mut self, clip: usize, span: TimeSpan, text: &str, place: WordPlace) {
         let mut described = Described {
             clip,
             whole: false,
             span,
             stems: BTreeMap::new(),
-            text: text.clone(),
+            text: text.to_owned(),
         };
         // Clips come first, in their order.
         for (stem, (weight, place)) in &self.described[clip].stems {
             let weight = OF_THE_CLIP * weight;
             described.stems.insert(stem.clone(), (weight, *place));
         }
-        described.say(&text, place);
+        described.say(text, place);
         self.described.push(described);
     }
 
@@ -205,6 +213,7 @@ impl WordIndex {
                     score: score.sum::<f64>() / sum,
                     text: described.text.clone(),
                     places: row.iter().flatten().map(|(_, place)| *place).collect(),
+                    has_all: row.iter().all(Option::is_some),
                 };
                 (described.whole, hit)
             })

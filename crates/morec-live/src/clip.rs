@@ -71,7 +71,7 @@ impl ClipSource {
     }
 
     /// Opens `clip://FILE` with the options speed (0: as fast as it goes), loop (this many laps), loss (a share),
-    /// jitter (milliseconds).
+    /// jitter (milliseconds), rate (frames a second, of a file that does not say it).
     ///
     /// # Errors
     /// An option that it does not have, a clip that cannot be read.
@@ -80,9 +80,14 @@ impl ClipSource {
         index: Option<&MotionIndex>,
         reader: &FileReader,
     ) -> Result<Self, LiveError> {
-        address.allow(&["speed", "loop", "loss", "jitter"])?;
+        address.allow(&["speed", "loop", "loss", "jitter", "rate"])?;
         let path = PathBuf::from(&address.place);
-        let clips = load(&[path], reader, index, None)?;
+        let rate_hz = address.number("rate", 0.0)?.filter(|rate| *rate > 0.0);
+        let reader = FileReader {
+            rate_hz: rate_hz.or(reader.rate_hz),
+            ..reader.clone()
+        };
+        let clips = load(&[path], &reader, index, None)?;
         let speed = address.number("speed", 1.0)?.unwrap_or(1.0);
         let mut source = Self::new(Arc::new(clips));
         source.speed = if speed > 0.0 { speed } else { f64::INFINITY };

@@ -124,6 +124,7 @@ pub fn open_source(
                     mapping: options.roles.clone(),
                     ..ImportOptions::default()
                 },
+                planar: options.index.is_some_and(MotionIndex::has_custom_roles),
                 ..FileReader::default()
             };
             let source = ClipSource::open(address, options.index, &reader)?;

@@ -20,6 +20,8 @@
 #[cfg(feature = "db")]
 mod arguments;
 #[cfg(feature = "db")]
+mod captions;
+#[cfg(feature = "db")]
 mod crossval;
 #[cfg(feature = "db")]
 mod curve;
@@ -48,6 +50,8 @@ mod reduce;
 mod search;
 #[cfg(feature = "db")]
 mod shapes;
+#[cfg(feature = "db")]
+mod study;
 mod text;
 mod train;
 #[cfg(feature = "db")]
@@ -57,6 +61,8 @@ mod words;
 
 #[cfg(feature = "db")]
 pub use arguments::arguments;
+#[cfg(feature = "db")]
+pub use captions::captions_of;
 #[cfg(feature = "db")]
 pub use crossval::{CrossvalMeasures, CrossvalSettings, LeftOut};
 #[cfg(feature = "db")]
@@ -92,6 +98,8 @@ pub use reduce::rebuilt_from;
 pub use search::{SearchSettings, example_of_clip, example_of_database};
 #[cfg(feature = "db")]
 pub use shapes::Shapes;
+#[cfg(feature = "db")]
+pub use study::{ComparedAnnotators, time_budget};
 pub use train::{Method, TrainSettings, Unlabelled};
 #[cfg(feature = "db")]
 pub use unlearned::Unlearned;

@@ -148,6 +148,8 @@ pub fn command(ask: &Ask, paths: Vec<PathBuf>) -> Option<FileCommand> {
         Ask::New => FileCommand::New(first),
         Ask::Import | Ask::ImportFolder => FileCommand::Import(paths),
         Ask::ImportLabels => FileCommand::ImportLabels(paths),
+        Ask::Video(clip) => FileCommand::Video(clip.clone(), first),
+        Ask::Captions => FileCommand::Captions(paths),
         Ask::Save => FileCommand::Save(first),
         Ask::ExportIndex => FileCommand::ExportIndex(first),
         Ask::ExportReport(id) => FileCommand::ExportReport(*id, first),
@@ -155,6 +157,7 @@ pub fn command(ask: &Ask, paths: Vec<PathBuf>) -> Option<FileCommand> {
         Ask::ExportClip(_) => FileCommand::ExportClip(first),
         Ask::ExportStretch(_) => FileCommand::ExportStretch(first),
         Ask::ExportClass(class) => FileCommand::ExportClass(class.clone(), first),
+        Ask::ExportBudget => FileCommand::ExportBudget(first),
         Ask::ExportPage(_) => FileCommand::ExportPage(first),
     })
 }

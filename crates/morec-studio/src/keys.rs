@@ -6,6 +6,7 @@ mod typing;
 use egui::{Key, Modifiers};
 
 use crate::lists;
+use crate::state::study::{LabelDecision, StudyCommand, StudyView};
 use crate::state::{
     ClassCommand, Command, CompareCommand, CutCommand, FileCommand, Grip, LibraryCommand,
     LiveCommand, Panel, PlayCommand, SimilarCommand, State, TimelineCommand, TrainCommand,
@@ -71,7 +72,12 @@ pub fn read(ctx: &egui::Context, state: &State, asks_a_file: bool, out: &mut Vec
                 labels(i, state, out);
                 timeline(i, state, out);
             }
-            Panel::Classes => labels(i, state, out),
+            Panel::Classes => {
+                if state.study.view == Some(StudyView::Annotators) {
+                    decisions(i, out);
+                }
+                labels(i, state, out);
+            }
             Panel::Train => {
                 for (key, by) in STEPS {
                     if i.consume_key(Modifiers::NONE, key) {
@@ -280,6 +286,19 @@ fn labels(i: &mut egui::InputState, state: &State, out: &mut Vec<Command>) {
         }
         if i.consume_key(Modifiers::NONE, Key::R) {
             out.push(Command::Classes(ClassCommand::Reject(sample.id)));
+        }
+    }
+}
+
+/// Keys of the difference of two annotators that was gone to.
+fn decisions(i: &mut egui::InputState, out: &mut Vec<Command>) {
+    for (key, decision) in [
+        (Key::A, LabelDecision::A),
+        (Key::B, LabelDecision::B),
+        (Key::E, LabelDecision::Both),
+    ] {
+        if i.consume_key(Modifiers::NONE, key) {
+            out.push(Command::Study(StudyCommand::Decide(None, decision)));
         }
     }
 }

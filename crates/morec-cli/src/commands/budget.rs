@@ -5,10 +5,11 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail};
-use morec::TimeSpan;
-use morec::labels::{ClassBudget, ClassTransitions, Sample, TimeBudget, read_people};
-use morec_db::labels::{DbSample, SampleFilter, SampleState};
+use morec::labels::{ClassBudget, ClassTransitions, TimeBudget, read_people};
+use morec_db::ClipFilter;
+use morec_db::labels::SampleFilter;
 use morec_measure::plot::HeatMap;
+use morec_ops::time_budget;
 
 use crate::commands::db::page::Page;
 use crate::database;
@@ -48,6 +49,9 @@ pub struct Args {
     /// Draw each person's share of time by class as SVG
     #[arg(long, value_name = "SVG")]
     plot: Option<PathBuf>,
+    /// Write a table of classes, people and transitions as TSV
+    #[arg(short, long, value_name = "TSV")]
+    output: Option<PathBuf>,
     /// Print one JSON object instead of tables
     #[arg(long)]
     json: bool,
@@ -68,6 +72,9 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     if let Some(path) = &args.report {
         output::check_page(path)?;
     }
+    if let Some(path) = &args.output {
+        output::check_ending(path, "a table", &["tsv"])?;
+    }
     let budget = match database::only(std::slice::from_ref(&args.labels))? {
         Some(path) => of_database(path)?,
         None => of_labels(args)?,
@@ -78,6 +85,11 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     if let Some(path) = &args.plot {
         let svg = picture(&budget).svg();
         output::write_whole(path, |out| out.write_all(svg.as_bytes()))
+            .with_context(|| path.display().to_string())?;
+    }
+    if let Some(path) = &args.output {
+        let table = budget.tsv();
+        output::write_whole(path, |out| out.write_all(table.as_bytes()))
             .with_context(|| path.display().to_string())?;
     }
     let tables = BudgetTables::of(&budget);
@@ -95,20 +107,9 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 
 fn of_database(path: &Path) -> Result<TimeBudget> {
     let db = database::open_read_only(path)?;
-    let accepted = SampleFilter {
-        state: Some(SampleState::Accepted),
-        ..SampleFilter::default()
-    };
-    let sample = |s: DbSample| Sample {
-        span: TimeSpan::new(s.start_secs, s.stop_secs),
-        clip: s.clip_name,
-        class: s.class,
-        whole_clip: s.whole_clip,
-        person: s.subject,
-        line: 0,
-    };
-    let samples: Vec<Sample> = db.samples(&accepted)?.into_iter().map(sample).collect();
-    Ok(TimeBudget::of(&samples, &database::lengths(&db)?))
+    let samples = db.samples(&SampleFilter::default())?;
+    let clips = db.clips(&ClipFilter::default())?;
+    Ok(time_budget(&samples, &clips))
 }
 
 fn of_labels(args: &Args) -> Result<TimeBudget> {

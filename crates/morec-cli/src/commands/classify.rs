@@ -12,7 +12,7 @@ use morec::labels::some_of;
 use morec::live::Model;
 
 use super::recognize::{OutputFormat, adapt, open_index, write_rows};
-use crate::files::{ReadArgs, expand, mapping, takes};
+use crate::files::{ReadArgs, expand_as, mapping, takes_as};
 use crate::progress::SlowProgress;
 
 /// Name the class of whole clips, each cut around one motion.
@@ -51,7 +51,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let index = open_index(&args.index)?;
     let shown = || args.index.display().to_string();
     let classifier = Classifier::new(&index.model).with_context(shown)?;
-    let paths = expand(&args.clips)?;
+    let paths = expand_as(&args.clips, index.has_custom_roles())?;
     let form = (args.form, "a table of classes (--form)");
     let failed = write_rows(args.output.as_deref(), form, |out| {
         classify_all(out, &paths, &index, &classifier, args)
@@ -118,7 +118,7 @@ fn classify_file(
         let shown = || format!("{} ({})", path.display(), take.clip.name);
         Ok((take.clip.name.clone(), found.with_context(shown)?))
     };
-    let takes = takes(path, &args.read, options)?;
+    let takes = takes_as(path, &args.read, options, index.has_custom_roles())?;
     takes.into_iter().map(classify).collect()
 }
 

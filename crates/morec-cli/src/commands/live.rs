@@ -48,7 +48,8 @@ Sources (--listen):
   webcam                     this machine's camera, by a page in the browser
                              (webcam://127.0.0.1:8000 does not open the page)
   clip://FILE                a clip; ?speed=4 (0: as fast as possible),
-                             ?loop, ?loss=0.05, ?jitter=20
+                             ?loop, ?loss=0.05, ?jitter=20,
+                             ?rate=30 of a table
 
 Sinks (--emit):
   terminal:-                 a line for each motion (the default)

@@ -13,7 +13,8 @@ use morec::labels::ClipLength;
 use morec::labels::Mark;
 use morec::live::Detection;
 use morec::live::recognize_clip;
-use morec_measure::player::{PlayedClip, page};
+use morec::roles::mapping::Mapping;
+use morec_measure::player::{PlayedClip, PlayedVideo, page};
 use morec_ops::rebuilt_from;
 
 use super::recognize::open_index;
@@ -32,6 +33,7 @@ Examples:
   morec play walk.bvh
   morec play new/signals_3.bvh --index signs.index --speed 2
   morec play clips/ --labels labels.tsv -o clips.html
+  morec play walk.bvh --video walk.mp4 --video-offset 1.2 -o walk.html
   morec play walk.bvh --reduced 4 -o reduced.html")]
 pub struct Args {
     /// Clips, or folders of clips
@@ -48,6 +50,20 @@ pub struct Args {
     /// The dimensions are principal components of the poses of all these clips, as in `morec reduce`.
     #[arg(long, value_name = "N", requires = "output")]
     reduced: Option<usize>,
+    /// Video of the clip, which the page plays in step
+    ///
+    /// The page names the file and does not hold it: keep them together.
+    #[arg(long, value_name = "VIDEO", requires = "output")]
+    video: Option<PathBuf>,
+    /// Time of the video at which the clip begins, seconds
+    #[arg(
+        long,
+        value_name = "SECS",
+        default_value_t = 0.0,
+        allow_hyphen_values = true,
+        requires = "video"
+    )]
+    video_offset: f64,
     /// Speed in the terminal; 1: as performed
     #[arg(long, value_name = "TIMES", default_value_t = 1.0, value_parser = speed)]
     speed: f64,
@@ -81,8 +97,11 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     };
     let index = args.index.as_deref().map(open_index).transpose()?;
     let mut takes = Vec::new();
-    for path in files::expand(&args.clips)? {
-        takes.extend(files::takes(&path, &args.read, &options)?);
+    let of_index = index.as_ref().is_some_and(MotionIndex::has_custom_roles);
+    let of_roles = options.mapping.as_ref().is_some_and(Mapping::is_custom);
+    let planar = of_index || of_roles;
+    for path in files::expand_as(&args.clips, planar)? {
+        takes.extend(files::takes_as(&path, &args.read, &options, planar)?);
     }
     takes.retain(|take| take.clip.frames > 0);
     if takes.is_empty() {
@@ -103,10 +122,31 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         None => vec![None; takes.len()],
     };
     match &args.output {
-        Some(path) => write_page(path, &takes, &beside, played)?,
+        Some(path) => {
+            let video = video(args, path, takes.len())?;
+            write_page(path, &takes, &beside, played, video.as_ref())?;
+        }
         None => in_terminal(&takes, &played, args.speed)?,
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// The video as seen from the page, if one is given.
+fn video(args: &Args, page: &Path, clips: usize) -> Result<Option<PlayedVideo>> {
+    let Some(file) = &args.video else {
+        return Ok(None);
+    };
+    if clips != 1 {
+        bail!("--video: expected one clip, found {clips}");
+    }
+    let absolute = |path: &Path| {
+        path.canonicalize()
+            .with_context(|| path.display().to_string())
+    };
+    let folder = page.parent().filter(|folder| *folder != Path::new(""));
+    let folder = absolute(folder.unwrap_or(Path::new(".")))?;
+    let file = absolute(file)?;
+    Ok(Some(PlayedVideo::of(&folder, &file, args.video_offset)))
 }
 
 /// The labels of each clip by its name.
@@ -188,6 +228,7 @@ fn write_page(
     takes: &[Take],
     beside: &[Option<Clip>],
     played: Vec<(Vec<Mark>, Vec<Detection<String>>)>,
+    video: Option<&PlayedVideo>,
 ) -> Result<()> {
     let clips: Vec<PlayedClip> = takes
         .iter()
@@ -203,6 +244,7 @@ fn write_page(
                 .into_iter()
                 .map(|s| Mark::new(s.class, s.span))
                 .collect(),
+            video: video.cloned(),
         })
         .collect();
     let title = match takes {

@@ -104,7 +104,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         mapping,
         ..ImportOptions::default()
     };
-    let paths = expand_as(&args.clips, is_custom(&index))?;
+    let paths = expand_as(&args.clips, index.has_custom_roles())?;
     let form = (args.form, "a table of detections (--form)");
     let failed = write_rows(args.output.as_deref(), form, |out| {
         recognize_all(out, &paths, &index, &options, args)
@@ -213,11 +213,6 @@ fn has_activities(index: &MotionIndex) -> bool {
     matches!(&index.model, Model::Templates(model) if model.activities.is_some())
 }
 
-/// True of an index of a skeleton that is no person's.
-fn is_custom(index: &MotionIndex) -> bool {
-    index.roles.keys().any(|role| role.is_custom())
-}
-
 fn recognize_file(
     path: &Path,
     index: &MotionIndex,
@@ -227,7 +222,7 @@ fn recognize_file(
     stats: &mut Stats,
 ) -> Result<Vec<FoundInClip>> {
     let shown = || path.display().to_string();
-    let opened = stats.reading(|| match is_custom(index) {
+    let opened = stats.reading(|| match index.has_custom_roles() {
         true => open_planar(path, &args.read),
         false => open_with(path, &args.read, options.mapping.as_ref()),
     })?;

@@ -168,4 +168,22 @@ fn two_mice_teach_what_a_third_does_and_no_height_is_asked_for() {
     let events = &figures["events"];
     assert_eq!(events["matched"], 10, "{events}\n{found}");
     assert_eq!(events["spurious"], 0, "{events}\n{found}");
+    // The index knows the points: whole clips, a page and a stream need no --roles either.
+    let named = folder.morec(&[&["classify", "mouse.index", "new"], &read[2..]].concat());
+    assert!(named.ok().contains("\nmouse_3\t"));
+    let play = [
+        "play",
+        "new/mouse_3.csv",
+        "--index",
+        "mouse.index",
+        "-o",
+        "mouse.html",
+    ];
+    folder.morec(&[&play[..], &read[2..]].concat()).ok();
+    let stream = "clip://new/mouse_3.csv?speed=0&rate=30";
+    let live = folder.morec(&["live", "mouse.index", "--listen", stream]);
+    assert_eq!(live.code, Some(0), "{live:?}");
+    assert!(live.err.contains("10 motions"), "{}", live.err);
+    // Pixels are no centimetres.
+    assert!(!live.err.contains("jitter by"), "{}", live.err);
 }

@@ -7,7 +7,7 @@ use super::read::{find, list};
 use super::sample::{
     Added, DbSample, JudgedCounts, NewSample, SampleFilter, SampleId, SampleState,
 };
-use super::write::{add, alter};
+use super::write::{add, alter, annotate, annotate_sample};
 use crate::history::counted;
 use crate::time::now_secs;
 use crate::{DbError, MotionDb};
@@ -47,7 +47,8 @@ impl MotionDb {
     /// # Errors
     /// The database cannot be read.
     pub fn samples_of_step(&self, step: i64) -> Result<Vec<SampleId>, DbError> {
-        let sql = "SELECT DISTINCT c0 FROM was WHERE edit = ?1 AND tab = 'samples'";
+        let sql =
+            "SELECT DISTINCT c0 FROM was WHERE edit = ?1 AND tab IN ('samples', 'annotators')";
         let mut statement = self.conn.prepare_cached(sql)?;
         let samples = statement.query_map(params![step], |row| Ok(SampleId(row.get(0)?)))?;
         Ok(samples.collect::<Result<_, _>>()?)
@@ -88,8 +89,8 @@ impl MotionDb {
         )
     }
 
-    /// Puts samples in place of others, as one step called `what`: how a label is split or several become one. New
-    /// samples are as in [`MotionDb::label`].
+    /// Puts samples in place of others, as one step called `what`: how a label is split, several become one, and one of two
+    /// annotators' labels is taken. New samples are as in [`MotionDb::label`], each with its annotators.
     ///
     /// # Errors
     /// As [`MotionDb::label`]; an old sample that is not there, or of another clip, class, extent or state than was seen.
@@ -97,7 +98,7 @@ impl MotionDb {
         &mut self,
         what: &str,
         old: &[DbSample],
-        new: &[NewSample],
+        new: &[(NewSample, Vec<String>)],
         by: &str,
     ) -> Result<(), DbError> {
         self.edit(what, |conn| {
@@ -106,8 +107,13 @@ impl MotionDb {
                 conn.prepare_cached("DELETE FROM samples WHERE id = ?1")?
                     .execute(params![sample.id.0])?;
             }
-            new.iter()
-                .try_for_each(|sample| add(conn, sample, by).map(drop))
+            for (sample, annotators) in new {
+                add(conn, sample, by)?;
+                for annotator in annotators {
+                    annotate(conn, sample, annotator)?;
+                }
+            }
+            Ok(())
         })
     }
 
@@ -124,6 +130,26 @@ impl MotionDb {
     ) -> Result<usize, DbError> {
         let what = format!("{} {}", state.name(), counted(samples.len(), "sample"));
         self.edit(&what, |conn| judge(conn, samples, state, by))
+    }
+
+    /// Accepts samples and notes `annotator` as their annotator, as one step. Returns the number of samples accepted.
+    ///
+    /// # Errors
+    /// No annotator's name; the database cannot be written.
+    pub fn accept_as(
+        &mut self,
+        samples: &[SampleId],
+        annotator: &str,
+        by: &str,
+    ) -> Result<usize, DbError> {
+        let accepted = SampleState::Accepted;
+        let what = format!("{} {}", accepted.name(), counted(samples.len(), "sample"));
+        self.edit(&what, |conn| {
+            for id in samples {
+                annotate_sample(conn, *id, annotator)?;
+            }
+            judge(conn, samples, accepted, by)
+        })
     }
 
     /// Accepts the proposals of `classes` (of all, if none is named) with at least the score `accept`, and rejects the others below

@@ -432,3 +432,43 @@ fn annotators_who_say_the_same_share_a_sample_and_undo_takes_them_back() {
     let error = db.label(&[two], &options).unwrap_err().to_string();
     assert!(error.contains("control characters"), "{error}");
 }
+
+#[test]
+fn samples_in_place_of_others_have_their_annotators_and_accepting_names_one() {
+    let (_folder, mut db) = database_of_waves(1);
+    let long = sample("walk", 1, SampleState::Accepted);
+    let options = LabelOptions {
+        annotators: vec![Some("ann".to_owned())],
+        ..LabelOptions::default()
+    };
+    db.label(std::slice::from_ref(&long), &options).unwrap();
+    let old = db.samples(&SampleFilter::default()).unwrap();
+    let middle = 0.5 * (long.start_secs + long.stop_secs);
+    let part = |start_secs, stop_secs| {
+        let part = NewSample {
+            start_secs,
+            stop_secs,
+            ..long.clone()
+        };
+        (part, old[0].annotators.clone())
+    };
+    let new = [part(long.start_secs, middle), part(middle, long.stop_secs)];
+    db.change_samples("split", &old, &new, "test").unwrap();
+    let said = |db: &MotionDb| -> Vec<Vec<String>> {
+        let samples = db.samples(&SampleFilter::default()).unwrap();
+        samples.into_iter().map(|s| s.annotators).collect()
+    };
+    assert_eq!(said(&db), [["ann"], ["ann"]]);
+    db.undo(None).unwrap();
+    assert_eq!(said(&db), [["ann"]]);
+    let proposal = sample("wave", 9, SampleState::Proposed);
+    db.add_samples(&[proposal], "test").unwrap();
+    let last = db.samples(&SampleFilter::default()).unwrap()[1].id;
+    assert_eq!(db.accept_as(&[last], "ben", "test").unwrap(), 1);
+    assert_eq!(said(&db), [["ann"], ["ben"]]);
+    let step = db.history_since(&[]).unwrap()[0].id;
+    assert_eq!(db.samples_of_step(step).unwrap(), [last]);
+    db.undo(None).unwrap();
+    assert_eq!(said(&db)[1], [""; 0]);
+    assert!(db.accept_as(&[last], " ", "test").is_err());
+}

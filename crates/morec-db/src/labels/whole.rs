@@ -4,7 +4,7 @@ use rusqlite::{Connection, params};
 
 use super::classes;
 use super::sample::{Added, NewSample, SampleState};
-use super::write::{Change, add};
+use super::write::{Change, add, annotate};
 use crate::clips::describe;
 use crate::history::counted;
 use crate::{ClipId, ClipUpdate, DbError, MotionDb};
@@ -38,8 +38,13 @@ impl MotionDb {
     /// of another class; samples of parts of the clip stay.
     ///
     /// # Errors
-    /// A class name or a person's that cannot be, no such clip.
-    pub fn label_clips(&mut self, clips: &[WholeClip], by: &str) -> Result<Added, DbError> {
+    /// A class name, a person's or an annotator's that cannot be, no such clip.
+    pub fn label_clips(
+        &mut self,
+        clips: &[WholeClip],
+        by: &str,
+        annotator: Option<&str>,
+    ) -> Result<Added, DbError> {
         let mut subjects = clips.iter().filter_map(|c| c.subject.as_ref());
         if let Some(text) = subjects.find(|text| text.chars().any(char::is_control)) {
             return Err(DbError::Invalid(format!(
@@ -50,7 +55,7 @@ impl MotionDb {
             let mut counts = Added::default();
             for clip in clips {
                 if let Some(class) = &clip.class {
-                    label(conn, clip.clip, class, by, &mut counts)?;
+                    label(conn, clip.clip, class, (by, annotator), &mut counts)?;
                 }
                 let subject = clip.subject.clone();
                 let update = ClipUpdate {
@@ -68,7 +73,7 @@ fn label(
     conn: &Connection,
     clip: ClipId,
     class: &str,
-    by: &str,
+    (by, annotator): (&str, Option<&str>),
     counts: &mut Added,
 ) -> Result<(), DbError> {
     let sql = "SELECT frames / rate_hz FROM clips WHERE id = ?1";
@@ -90,6 +95,9 @@ fn label(
         "DELETE FROM samples WHERE clip = ?1 AND whole_clip AND state = 'accepted' AND class <> ?2";
     let others = conn.prepare_cached(sql)?.execute(params![clip.0, class])?;
     let (change, rejected) = add(conn, &sample, by)?;
+    if let Some(annotator) = annotator {
+        counts.annotated += annotate(conn, &sample, annotator)?;
+    }
     counts.rejected += rejected.rejected;
     counts.withdrawn += rejected.withdrawn;
     match change {

@@ -120,6 +120,27 @@ pub(super) fn annotate(
     label: &NewSample,
     annotator: &str,
 ) -> Result<usize, DbError> {
+    let sql = "SELECT s.id FROM samples s JOIN classes n ON n.id = s.class \
+         WHERE s.clip = ?1 AND n.name = ?2 AND s.start_secs = ?3 AND s.stop_secs = ?4";
+    let said = params![
+        label.clip.0,
+        label.class.trim(),
+        label.start_secs,
+        label.stop_secs
+    ];
+    let there = conn.prepare_cached(sql)?.query_row(said, |row| row.get(0));
+    match there.optional()? {
+        Some(id) => annotate_sample(conn, SampleId(id), annotator),
+        None => Ok(0),
+    }
+}
+
+/// Notes who says a sample; the number of samples of which that is news.
+pub(super) fn annotate_sample(
+    conn: &Connection,
+    sample: SampleId,
+    annotator: &str,
+) -> Result<usize, DbError> {
     let annotator = annotator.trim();
     if annotator.is_empty() || annotator.chars().any(char::is_control) {
         let expected = "a name of an annotator without control characters";
@@ -127,15 +148,8 @@ pub(super) fn annotate(
             "expected {expected}, found {annotator:?}"
         )));
     }
-    let sql = "INSERT OR IGNORE INTO annotators (sample, annotator) SELECT s.id, ?5 FROM samples s JOIN classes n ON n.id = s.class \
-         WHERE s.clip = ?1 AND n.name = ?2 AND s.start_secs = ?3 AND s.stop_secs = ?4";
-    let said = params![
-        label.clip.0,
-        label.class.trim(),
-        label.start_secs,
-        label.stop_secs,
-        annotator
-    ];
+    let sql = "INSERT OR IGNORE INTO annotators (sample, annotator) SELECT id, ?2 FROM samples WHERE id = ?1";
+    let said = params![sample.0, annotator];
     Ok(conn.prepare_cached(sql)?.execute(said)?)
 }
 

@@ -42,6 +42,7 @@ mod agreement;
 mod alarms;
 mod confusion;
 mod decisions;
+mod difference;
 mod evaluation;
 mod events;
 mod figures;
@@ -64,6 +65,7 @@ pub use agreement::{ClassAgreement, EventAgreement, Kappa, LabelAgreement, UnitC
 pub use alarms::{FalseAlarms, UnknownFigures};
 pub use confusion::{Confusion, Mistake};
 pub use decisions::{Classification, ThesisAccuracy};
+pub use difference::{LabelDifference, label_differences};
 pub use evaluation::{ClassFigures, Evaluation, Totals};
 pub use events::{EVENT_TOLERANCE_SECS, EventScore, event_pairs};
 pub use frames::FrameScore;

@@ -4,6 +4,8 @@
 //! Positions are stored as 16-bit differences from the clip's middle, in millimetres or, where somebody goes further than 32 m, in
 //! as coarse a unit as that needs, at most 30 frames a second, and drawn on a canvas by a script in the page; nothing is fetched from anywhere.
 
+use std::path::Path;
+
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::json;
@@ -31,6 +33,43 @@ pub struct PlayedClip<'a> {
     pub labels: Vec<Mark>,
     /// Detections in the clip.
     pub detections: Vec<Mark>,
+    /// A video of the same motion, which the page plays in step.
+    pub video: Option<PlayedVideo>,
+}
+
+/// A video beside a clip. The page names its file and does not hold it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlayedVideo {
+    /// Address of the file, as seen from the page.
+    pub address: String,
+    /// Time of the video at which the clip begins, seconds; negative if the clip begins first.
+    pub offset_secs: f64,
+}
+
+impl PlayedVideo {
+    /// The video `file`, as seen from a page in `folder`; both are absolute paths.
+    pub fn of(folder: &Path, file: &Path, offset_secs: f64) -> Self {
+        let from: Vec<_> = folder.components().collect();
+        let to: Vec<_> = file.components().collect();
+        let shared = from.iter().zip(&to).take_while(|(a, b)| a == b).count();
+        let up = from[shared..].iter().map(|_| "..".to_owned());
+        let down = to[shared..].iter();
+        let down = down.map(|part| percent_encoded(&part.as_os_str().to_string_lossy()));
+        Self {
+            address: up.chain(down).collect::<Vec<_>>().join("/"),
+            offset_secs,
+        }
+    }
+}
+
+/// A part of a path as a part of an address.
+fn percent_encoded(text: &str) -> String {
+    let plain = |b: u8| b.is_ascii_alphanumeric() || b"-._~".contains(&b);
+    let encoded = text.bytes().map(|b| match plain(b) {
+        true => char::from(b).to_string(),
+        false => format!("%{b:02X}"),
+    });
+    encoded.collect()
 }
 
 /// Motions of one skeleton stand this far apart.
@@ -96,9 +135,10 @@ impl Reel {
         let data = self.clips.join(",");
         format!(
             "<style>\n{STYLE}</style>\n<canvas id=\"stage\" tabindex=\"0\" aria-label=\"The body; drag to turn, wheel to \
-             zoom\"></canvas>\n<p id=\"bar\"><button id=\"play\">Pause</button> <input id=\"time\" type=\"range\" min=\"0\" \
+             zoom\"></canvas>\n<video id=\"film\" hidden muted playsinline preload=\"auto\" aria-label=\"Video\"></video>\n<p id=\"bar\"><button id=\"play\">Pause</button> <input id=\"time\" type=\"range\" min=\"0\" \
              step=\"any\" aria-label=\"Time\"> <output id=\"now\"></output> <label>speed <select id=\"speed\">\
-             <option>0.25</option><option>0.5</option><option selected>1</option><option>2</option></select></label></p>\n\
+             <option>0.25</option><option>0.5</option><option selected>1</option><option>2</option></select></label> \
+             <label id=\"sound\" hidden><input type=\"checkbox\"> sound</label></p>\n<p id=\"film-note\" role=\"status\"></p>\n\
              <canvas id=\"lanes\" aria-label=\"Labels above, detections below\"></canvas>\n\
              <p id=\"legend\">Labels above, detections below. Left limbs are blue, right limbs red.</p>\n<ul id=\"marks\"></ul>\n\
              <noscript>Clips are played by a script, which is switched off.</noscript>\n\
@@ -197,7 +237,12 @@ fn clip(played: &PlayedClip, most: usize) -> serde_json::Value {
         Some(span) => format!("{} {span:.2}", clip.name),
         None => clip.name.clone(),
     };
+    let video = played
+        .video
+        .as_ref()
+        .map(|video| json!({"address": video.address, "offset": video.offset_secs + start}));
     json!({
+        "video": video,
         "name": name,
         "rate": clip.rate_hz / step,
         "frames": frames,
@@ -278,6 +323,33 @@ mod tests {
     use morec::import::Take;
     use morec::synth::{Person, Script};
 
+    /// The page names the file, and knows at which of its moments the stretch begins.
+    #[test]
+    fn a_video_begins_where_the_stretch_does() {
+        let script = Script::new(3, Person::draw(31, 2)).rest(0.3).play("wave");
+        let take = Take::new(script.film("wave", 30.0).unwrap().clip).unwrap();
+        let played = PlayedClip {
+            span: Some(TimeSpan::new(0.5, 1.0)),
+            video: Some(PlayedVideo {
+                address: "film%20of%20it.webm".to_owned(),
+                offset_secs: -0.25,
+            }),
+            ..whole(&take)
+        };
+        let expected = json!({"address": "film%20of%20it.webm", "offset": 0.25});
+        assert_eq!(clip(&played, 100)["video"], expected);
+        assert!(clip(&whole(&take), 100)["video"].is_null());
+    }
+
+    #[test]
+    fn videos_are_named_as_seen_from_the_page() {
+        let of =
+            |folder: &str, file: &str| PlayedVideo::of(folder.as_ref(), file.as_ref(), 0.0).address;
+        assert_eq!(of("/a/b", "/a/b/film 1.mp4"), "film%201.mp4");
+        assert_eq!(of("/a/b", "/a/films/é#.mp4"), "../films/%C3%A9%23.mp4");
+        assert_eq!(of("/a/b/c", "/d.mp4"), "../../../d.mp4");
+    }
+
     #[test]
     fn a_page_stands_alone_and_holds_every_clip() {
         let script = Script::new(3, Person::draw(31, 2)).rest(0.3).play("wave");
@@ -290,6 +362,7 @@ mod tests {
             span: None,
             labels: vec![mark("wave")],
             detections: vec![mark("wave"), mark("<b>")],
+            video: None,
         };
         let page = page("A & B", &[played.clone(), played]);
         assert_eq!(
@@ -352,6 +425,7 @@ mod tests {
             span: None,
             labels: Vec::new(),
             detections: Vec::new(),
+            video: None,
         }
     }
 
@@ -402,6 +476,7 @@ mod tests {
             span: Some(TimeSpan::new(0.3, 1.3)),
             labels: vec![Mark::new("wave", TimeSpan::new(0.5, 1.0))],
             detections: Vec::new(),
+            video: None,
         };
         for (most, frames, rate) in [(100, 30, 30.0), (20, 15, 15.0), (8, 7, 7.5)] {
             let clip = clip(&played, most);

@@ -1,6 +1,6 @@
 "use strict";
 const at = (id) => document.getElementById(id);
-const player = at("player"), stage = at("stage"), lanes = at("lanes"), list = at("clips");
+const player = at("player"), stage = at("stage"), lanes = at("lanes"), list = at("clips"), film = at("film");
 const view = { yaw: 0.6, tilt: 0.25, zoom: 1 };
 let clip = null, secs = 0, playing = true, last = 0;
 
@@ -16,6 +16,8 @@ function open(number) {
     for (let i = 1; i < clip.xyz.length; i += 3) clip.height = Math.max(clip.height, clip.xyz[i]);
   }
   secs = 0;
+  at("film-note").textContent = "";
+  if (clip.video && film.getAttribute("src") !== clip.video.address) film.src = clip.video.address;
   at("time").max = Math.max(0.01, (clip.frames - 1) / clip.rate);
   for (const [i, button] of [...(list?.children ?? [])].entries()) {
     if (i === number) button.setAttribute("aria-current", "true"); else button.removeAttribute("aria-current");
@@ -102,7 +104,27 @@ function draw() {
   const names = [...new Set(under.map(([name]) => name))].join(", ");
   at("now").textContent = `${secs.toFixed(2)} of ${(clip.frames / clip.rate).toFixed(2)} s  ${names}`;
   drawLanes();
+  follow();
 }
+
+/** The video at the moment of the clip: it plays by itself, and is put right where it is off. */
+function follow() {
+  const of = clip.video;
+  film.hidden = at("sound").hidden = !of;
+  if (!of) return film.pause();
+  const wanted = secs + of.offset, within = wanted >= 0 && !(wanted >= film.duration), runs = playing && within;
+  film.style.opacity = within ? 1 : 0.2;
+  film.playbackRate = Number(at("speed").value);
+  if (runs && film.paused) film.play().catch(() => {});
+  if (!runs && !film.paused) film.pause();
+  if (within && !film.seeking && Math.abs(film.currentTime - wanted) > (runs ? 0.1 : 0.01)) film.currentTime = wanted;
+}
+
+film.onerror = () => {
+  if (clip?.video) at("film-note").textContent = `The video ${clip.video.address} is not where this page looks for it, or this browser cannot play it.`;
+};
+film.onloadeddata = () => { at("film-note").textContent = ""; };
+at("sound").onchange = (event) => { film.muted = !event.target.checked; };
 
 function hue(name) {
   let sum = 0;
@@ -145,6 +167,7 @@ function tick(now) {
 function toggle() {
   playing = !playing;
   at("play").textContent = playing ? "Pause" : "Play";
+  if (clip) draw();
 }
 
 if (list) {
@@ -163,7 +186,7 @@ if (list) {
     element.onclick = () => show(number);
     element.onkeydown = (event) => { if (event.key === "Enter") show(number); };
   }
-  at("close").onclick = () => { player.hidden = true; clip = null; };
+  at("close").onclick = () => { player.hidden = true; clip = null; film.pause(); };
 }
 at("play").onclick = toggle;
 at("time").oninput = () => { secs = Number(at("time").value); draw(); };

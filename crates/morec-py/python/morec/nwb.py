@@ -18,6 +18,7 @@ from ndx_pose import PoseEstimation, PoseEstimationSeries, Skeleton, Skeletons
 from ._files import Roles, roles_text
 from ._labels import Labels, spans_in
 from ._morec import Clip, __version__
+from ._points import in_space
 
 __all__ = ["add_bouts", "add_poses", "read_bouts", "read_poses"]
 
@@ -192,10 +193,7 @@ def read_poses(
 def _clip(poses: Any, least_confidence: float, up: str | None, roles: Roles) -> Clip:
     series = list(poses.pose_estimation_series.values())
     points = [_points(one, least_confidence) for one in series]
-    if points and points[0].shape[1] == 2:
-        if roles is None:
-            raise ValueError(f"{poses.name}: points in two dimensions: say with roles which points of the animal they are")
-        points = [np.column_stack([point, np.where(np.isnan(point[:, 0]), np.nan, 0.0)]) for point in points]
+    points = [in_space(point, str(poses.name), roles) for point in points]
     lengths = {len(point) for point in points}
     if len(lengths) != 1:
         raise ValueError(f"{poses.name}: expected points with as many frames each, found {sorted(lengths)}")

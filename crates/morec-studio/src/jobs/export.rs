@@ -10,6 +10,7 @@ use morec::labels::Mark;
 use morec_db::exchange::{self, Annotation, LabelFormat};
 use morec_db::labels::{DbSample, SampleFilter, SampleState};
 use morec_db::{ClipFilter, ClipId, MotionDb};
+use morec_measure::player::{PlayedClip, PlayedVideo, page};
 use morec_measure::player::{PlayedClip, page};
 
 use super::progress::JobError;
@@ -61,9 +62,15 @@ fn written(db: &Path, what: &Export, path: &Path) -> Result<String, String> {
         }
         Export::Class(class) => samples(&db, class, path),
         Export::Page(clip, detections) => {
-            let html = played(&db, *clip, detections.clone()).map_err(|e| e.to_string())?;
+            let video = video(&db, *clip, path).map_err(|e| e.to_string())?;
+            let (video, said) = match video {
+                Some(Ok(video)) => (Some(video), ", with its video".to_owned()),
+                Some(Err(why)) => (None, format!(", without its video: {why}")),
+                None => (None, String::new()),
+            };
+            let html = played(&db, *clip, detections.clone(), video).map_err(|e| e.to_string())?;
             write_whole(path, html.as_bytes())?;
-            Ok("a page that plays the clip in any browser".to_owned())
+            Ok(format!("a page that plays the clip in any browser{said}"))
         }
     }
 }
@@ -164,7 +171,27 @@ fn part(clip: &Clip, span: TimeSpan, name: &str) -> Result<Clip, String> {
     })
 }
 
-fn played(db: &MotionDb, clip: ClipId, detections: Vec<Mark>) -> Result<String, Box<dyn Error>> {
+/// The video of a clip as seen from a page, or why it cannot be seen; `None` if there is none.
+fn video(db: &MotionDb, clip: ClipId, page: &Path) -> Result<SeenVideo, Box<dyn Error>> {
+    let folder = page.parent().filter(|folder| *folder != Path::new(""));
+    let folder = folder.unwrap_or(Path::new(".")).canonicalize()?;
+    let videos = db.videos()?;
+    let seen = videos.get(&clip).map(|video| {
+        let file = Path::new(&video.path).canonicalize();
+        let file = file.map_err(|why| format!("{}: {why}", video.path))?;
+        Ok(PlayedVideo::of(&folder, &file, video.offset_secs))
+    });
+    Ok(seen)
+}
+
+type SeenVideo = Option<Result<PlayedVideo, String>>;
+
+fn played(
+    db: &MotionDb,
+    clip: ClipId,
+    detections: Vec<Mark>,
+    video: Option<PlayedVideo>,
+) -> Result<String, Box<dyn Error>> {
     let stored = db.clip(clip)?;
     let filter = SampleFilter {
         clip: Some(clip),
@@ -183,6 +210,7 @@ fn played(db: &MotionDb, clip: ClipId, detections: Vec<Mark>) -> Result<String, 
         span: None,
         labels: labels.collect(),
         detections,
+        video,
     };
     Ok(page(&title, &[played]))
 }

@@ -10,6 +10,7 @@ pub mod group;
 pub mod import;
 pub mod judge;
 pub mod label_files;
+pub mod learning_curve;
 pub mod load;
 pub mod nearest;
 mod progress;
@@ -19,6 +20,7 @@ pub mod similar;
 pub mod teach;
 pub mod thesis;
 pub mod train;
+pub mod words;
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -42,12 +44,17 @@ pub enum JobOutcome {
     Proposed(usize),
     Trained(Box<train::TrainedIndex>),
     Judged(Box<judge::CrossvalResult>),
+    Curve(morec_ops::LearningCurve),
     Taught(teach::Taught),
     /// Detections of an index in a clip.
     Recognised((morec_db::ClipId, Vec<morec::labels::ClipDetection>)),
     /// Detections at another sensitivity.
     Resensed(Vec<morec::live::Detection>),
     Similar(similar::Similar),
+    /// What the text of the search field describes.
+    Words(words::FoundWords),
+    ComparedAnnotators(Box<morec_ops::ComparedAnnotators>),
+    Captions(Vec<morec_db::exchange::Caption>),
     Aligned(Arc<crate::body::Aligned>),
     Channel(channel::ChannelCurve),
     /// The method of 2009, trained, and its index.

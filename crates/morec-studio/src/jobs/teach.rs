@@ -57,6 +57,8 @@ pub struct Lesson {
     pub extent: TimeSpan,
     /// Beginning of the new clip's name.
     pub name: String,
+    /// Who labels it.
+    pub annotator: Option<String>,
 }
 
 /// Keeps a lesson in the database at `db`; its file lies in `folder` for as long as that takes.
@@ -107,6 +109,7 @@ fn taught(place: &DbPlace, folder: &Path, lesson: &Lesson) -> Result<Taught, Str
         };
         let options = LabelOptions {
             by: BY.to_owned(),
+            annotators: vec![lesson.annotator.clone()],
             ..LabelOptions::default()
         };
         db.label(&[sample], &options).map_err(|e| e.to_string())?;

@@ -101,10 +101,14 @@ pub const HELP: &[(&str, &str, &str)] = &[
     ("Labels", "Tab, Enter", "move to the next label, select it"),
     (
         "Proposals",
-        "A, R",
-        "accept, reject; then the next doubtful proposal is shown",
+        "A, R, N",
+        "accept, reject, then the next doubtful one is shown; the next",
     ),
-    ("Proposals", "N", "the next doubtful proposal"),
+    (
+        "Annotators",
+        "A, B, E",
+        "take the label of A, of B, keep both; the next is shown",
+    ),
     (
         "Searching",
         "F, C",

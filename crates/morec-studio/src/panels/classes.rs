@@ -8,9 +8,13 @@ use morec_db::labels::{DbSample, SampleState as Judged};
 use morec_ops::GroupMethod;
 
 use super::widgets::Clipped;
-use super::{Out, card, carried, groups, label, padded, proposals, shelf, similar, view, widgets};
+use super::{
+    Out, annotators, budget, card, carried, groups, label, padded, proposals, shelf, similar, view,
+    widgets,
+};
 use crate::format;
 use crate::lists::List;
+use crate::state::study::StudyView;
 use crate::state::{ClassCommand, Command, State};
 use crate::theme::Colours;
 
@@ -38,7 +42,11 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
                 (None, None) if state.shelf.open => shelf::show(ui, state, out),
                 (Some(found), _) => similar::show(ui, state, found, out),
                 (None, Some(_)) => groups_and_columns(ui, state, out),
-                (None, None) => columns(ui, state, out),
+                (None, None) => match state.study.view {
+                    Some(StudyView::Budget) => budget::show(ui, state, out),
+                    Some(StudyView::Annotators) => annotators::show(ui, state, out),
+                    None => columns(ui, state, out),
+                },
             }
         });
 }
@@ -53,11 +61,16 @@ fn tools(ui: &mut Ui, state: &State, out: Out) {
         if state.shelf.open && state.classes.groups.is_none() {
             return shelf::tools(ui, state, out);
         }
-        let mut class = |command| out.push(Command::Classes(command));
         if let Some(groups) = &state.classes.groups {
             groups::tools(ui, state, groups, out);
             return;
         }
+        match state.study.view {
+            Some(StudyView::Budget) => return budget::tools(ui, state, out),
+            Some(StudyView::Annotators) => return annotators::tools(ui, state, out),
+            None => {}
+        }
+        let mut class = |command| out.push(Command::Classes(command));
         if ui
             .button("Propose more")
             .on_hover_text("Search all clips for more samples of the labelled classes")
@@ -90,6 +103,8 @@ fn tools(ui: &mut Ui, state: &State, out: Out) {
         {
             class(group(true));
         }
+        ui.separator();
+        budget::buttons(ui, out);
         ui.colored_label(
             c.muted,
             "Drag a strip to another class; double click opens it.",

@@ -3,7 +3,7 @@
 use egui::{Grid, Ui};
 use morec_db::{ClipInfo, ClipUpdate};
 
-use super::{Out, background, roles, whole, widgets};
+use super::{Out, background, roles, video, whole, widgets};
 use crate::format;
 use crate::state::{Command, State};
 use crate::store::Edit;
@@ -27,6 +27,7 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
     if ui.button("Remove this clip").clicked() {
         out.push(Command::Edit(Edit::RemoveClips(vec![clip.id])));
     }
+    video::show(ui, state, clip, out);
     widgets::section(ui, "PARTS OF THE BODY");
     roles::show(ui, state, out);
 }

@@ -344,6 +344,10 @@ fn selection(ui: &mut Ui, state: &State, out: Out) {
         format::secs(stop),
         stop - start
     ));
+    if !sample.annotators.is_empty() {
+        let names = sample.annotators.join(", ");
+        ui.colored_label(c.muted, format!("By {names}"));
+    }
     like_this(ui, out);
     if sample.state == Judged::Proposed {
         let score = sample

@@ -7,7 +7,7 @@ use egui::{
 use morec_db::{BACKGROUND, ClipInfo};
 
 use super::widgets::Clipped;
-use super::{Out, background, details, import_report, padded, strips, view, whole, widgets};
+use super::{Out, background, details, import_report, padded, strips, view, whole, widgets, words};
 use crate::format;
 use crate::lists::List;
 use crate::state::{Column, Command, FileCommand, LibraryCommand, State};
@@ -33,6 +33,7 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
         .frame(padded())
         .show_clipped(ui, |ui| {
             tools(ui, state, out);
+            words::summary(ui, state, out);
             import_report::show(ui, state, out);
             table(ui, state, out);
         });
@@ -56,7 +57,7 @@ pub(super) fn search(ui: &mut Ui, state: &State, width: f32, out: Out) {
     let mut text = state.library.filter.clone();
     let edit = widgets::line(&mut text)
         .id(crate::keys::search_field())
-        .hint_text("Search names, people, tags …")
+        .hint_text("Search names, classes, tags …")
         .desired_width(width);
     let response = ui.add(edit);
     response.widget_info(|| {
@@ -113,10 +114,26 @@ const COLUMNS: [(Column, &str, f32, bool); 5] = [
     (Column::Format, "Format", 0.12, true),
 ];
 
-fn cells(rect: Rect) -> [Rect; 5] {
+/// The columns while clips are searched by words: the reason takes the place of the format.
+const FOUND_COLUMNS: [(Column, &str, f32, bool); 5] = [
+    (Column::Name, "Clip", 0.28, false),
+    (Column::Found, "Found in", 0.34, false),
+    (Column::Subject, "Person", 0.14, false),
+    (Column::Length, "Length", 0.12, true),
+    (Column::Labels, "Labels", 0.12, true),
+];
+
+fn columns(state: &State) -> [(Column, &'static str, f32, bool); 5] {
+    match words::found(state).is_some() {
+        true => FOUND_COLUMNS,
+        false => COLUMNS,
+    }
+}
+
+fn cells(rect: Rect, state: &State) -> [Rect; 5] {
     let inner = rect.shrink2(Vec2::new(8.0, 0.0));
     let mut x = inner.left();
-    COLUMNS.map(|(_, _, share, _)| {
+    columns(state).map(|(_, _, share, _)| {
         let width = inner.width() * share;
         let cell = Rect::from_min_size(
             egui::pos2(x, inner.top()),
@@ -254,7 +271,10 @@ fn strip(ui: &mut Ui, state: &State, clip: &ClipInfo, out: Out) -> Response {
     let length = format!("{}{labels}", format::duration(clip.duration_secs()));
     let person = clip.subject.as_deref().unwrap_or_default();
     widgets::text_in(ui, line(0.0), &clip.name, 13.0, c.text, false);
-    widgets::text_in(ui, line(1.0), person, 11.5, c.muted, false);
+    match words::found(state).is_some() {
+        true => words::reason(ui, state, clip, line(1.0)),
+        false => widgets::text_in(ui, line(1.0), person, 11.5, c.muted, false),
+    }
     widgets::text_in(ui, line(2.0), &length, 11.5, c.muted, false);
     let picture = rect.with_min_x(rect.left() + names).shrink(3.0);
     let whole = Stretch::new(clip.id, 0.0..clip.duration_secs());
@@ -265,7 +285,7 @@ fn strip(ui: &mut Ui, state: &State, clip: &ClipInfo, out: Out) -> Response {
 fn header(ui: &mut Ui, state: &State, out: Out) {
     let c = Colours::now(ui);
     let (rect, _) = ui.allocate_exact_size(Vec2::new(ui.available_width(), ROW), Sense::hover());
-    for ((column, name, _, right), cell) in COLUMNS.into_iter().zip(cells(rect)) {
+    for ((column, name, _, right), cell) in columns(state).into_iter().zip(cells(rect, state)) {
         let response = ui.interact(cell, ui.id().with(name), Sense::click());
         widgets::named(
             &response,
@@ -309,16 +329,19 @@ fn row(ui: &mut Ui, state: &State, clip: &ClipInfo, out: Out) -> Response {
         0 => String::new(),
         n => n.to_string(),
     };
-    let texts = [
-        clip.name.clone(),
-        clip.subject.clone().unwrap_or_default(),
-        format::duration(clip.duration_secs()),
-        labels,
-        clip.format.clone(),
-    ];
-    for (at, (text, cell)) in texts.iter().zip(cells(rect)).enumerate() {
-        let colour = if at == 0 || at == 3 { c.text } else { c.muted };
-        widgets::text_in(ui, cell, text, 13.0, colour, COLUMNS[at].3);
+    for ((column, _, _, right), cell) in columns(state).into_iter().zip(cells(rect, state)) {
+        let (text, colour) = match column {
+            Column::Name => (clip.name.clone(), c.text),
+            Column::Subject => (clip.subject.clone().unwrap_or_default(), c.muted),
+            Column::Length => (format::duration(clip.duration_secs()), c.muted),
+            Column::Labels => (labels.clone(), c.text),
+            Column::Format => (clip.format.clone(), c.muted),
+            Column::Found => {
+                words::reason(ui, state, clip, cell);
+                continue;
+            }
+        };
+        widgets::text_in(ui, cell, &text, 13.0, colour, right);
     }
     response
 }

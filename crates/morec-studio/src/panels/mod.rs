@@ -1,7 +1,9 @@
 //! The panels: functions of the state that draw and emit commands.
 
+mod annotators;
 mod background;
 mod bars;
+mod budget;
 mod card;
 mod carried;
 mod channel;
@@ -22,6 +24,7 @@ mod import_report;
 mod kinds;
 mod label;
 mod label_files;
+mod learning_curve;
 mod leave;
 mod library;
 mod live;
@@ -47,9 +50,11 @@ mod timeline;
 mod tracks;
 mod train;
 mod undo;
+mod video;
 mod view;
 mod whole;
 mod widgets;
+mod words;
 
 use egui::scroll_area::{ScrollBarVisibility, ScrollSource};
 use egui::{CentralPanel, Context, Frame, ScrollArea, Sense, Ui, UiBuilder, Vec2};

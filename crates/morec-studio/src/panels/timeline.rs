@@ -5,7 +5,7 @@ use egui::{Rect, RichText, ScrollArea, Sense, Ui, Vec2, WidgetType, pos2};
 use morec_ops::CutMethod;
 
 use super::scale::{NAMES, Scale};
-use super::{Out, channel, curves, cuts, tracks, widgets};
+use super::{Out, annotators, channel, curves, cuts, tracks, widgets};
 use crate::format;
 use crate::state::{Command, PlayCommand, State, TimelineCommand};
 use crate::theme::Colours;
@@ -106,6 +106,7 @@ fn tools(ui: &mut Ui, state: &State, out: Out) {
             }
         });
         channel::menu(ui, state, out);
+        annotators::menu(ui, state, out);
         if let Some((start, stop)) = state.timeline.range {
             ui.separator();
             let text = format!("{:.2} s selected", stop - start);

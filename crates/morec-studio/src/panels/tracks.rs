@@ -157,7 +157,8 @@ pub(super) fn are_many(state: &State) -> bool {
 /// True if a class has a track: of many, those that the clip shows, and the one whose key is held.
 fn has_track(state: &State, place: usize, class: &str) -> bool {
     let held = state.classes.held.as_ref().is_some_and(|h| h.slot == place);
-    let shows = |s: &DbSample| s.class == class && s.state != Judged::Rejected;
+    let shows =
+        |s: &DbSample| s.class == class && s.state != Judged::Rejected && state.study.shows(s);
     !are_many(state)
         || state.timeline.all_classes
         || held
@@ -206,7 +207,7 @@ fn label(
     c: &Colours,
     out: Out,
 ) {
-    if sample.state == Judged::Rejected {
+    if sample.state == Judged::Rejected || !state.study.shows(sample) {
         return;
     }
     let (start, stop) = state.timeline.extent(sample);

@@ -5,7 +5,9 @@ use egui::{
 };
 
 use super::widgets::Clipped;
-use super::{Out, background, kinds, matrix, moments, padded, reports, thesis, view, widgets};
+use super::{
+    Out, background, kinds, learning_curve, matrix, moments, padded, reports, thesis, view, widgets,
+};
 use crate::lists::List;
 use morec::features::BoneSet;
 use morec_ops::training_in_words;
@@ -50,9 +52,15 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
                     thesis::show(ui, state, out);
                     ui.add_space(14.0);
                 }
+                learning_curve::show(ui, state, out);
                 reports::opened(ui, state, out);
-                let nothing = state.train.index.is_none() && state.train.judged.is_none();
-                if nothing && state.train.thesis.is_none() && state.train.opened.is_none() {
+                let train = &state.train;
+                let nothing = train.index.is_none() && train.judged.is_none();
+                if nothing
+                    && train.curve.is_none()
+                    && state.train.thesis.is_none()
+                    && state.train.opened.is_none()
+                {
                     widgets::nothing(ui, "No index yet", "Choose classes at the left and train.");
                 } else {
                     trained(ui, state, out);
@@ -93,6 +101,7 @@ fn buttons(ui: &mut Ui, state: &State, out: Out) {
     {
         out.push(Command::Train(TrainCommand::Judge));
     }
+    learning_curve::button(ui, state, out);
     ui.add_space(4.0);
 }
 

@@ -19,6 +19,7 @@ use super::live::LiveCommand;
 use super::player::PlayCommand;
 use super::shelf::ShelfCommand;
 use super::similar::SimilarCommand;
+use super::study::StudyCommand;
 use crate::body::Camera;
 use crate::store::Edit;
 use crate::stretch::Stretch;
@@ -81,6 +82,7 @@ pub enum Command {
     Similar(SimilarCommand),
     Shelf(ShelfCommand),
     Compare(CompareCommand),
+    Study(StudyCommand),
     /// Cancels the job of this place.
     Cancel(usize),
 }
@@ -99,6 +101,12 @@ pub enum FileCommand {
     New(PathBuf),
     Import(Vec<PathBuf>),
     AskImportLabels,
+    /// A video beside the clip that is shown.
+    AskVideo,
+    Video(String, PathBuf),
+    /// Files of captions, which are searched beside the database.
+    AskCaptions,
+    Captions(Vec<PathBuf>),
     /// Reads files of labels for a look at what they would change; the next three say what becomes of them.
     ImportLabels(Vec<PathBuf>),
     ReplaceLabels(bool),
@@ -118,6 +126,9 @@ pub enum FileCommand {
     AskExportClass(String),
     /// A page that plays the clip that is shown.
     AskExportPage,
+    /// The time budget, as a table.
+    AskExportBudget,
+    ExportBudget(PathBuf),
     ExportLabels(LabelFormat, PathBuf),
     ExportClip(PathBuf),
     ExportStretch(PathBuf),
@@ -206,6 +217,8 @@ pub enum Column {
     Subject,
     Labels,
     Format,
+    /// What was found of the words that are searched for.
+    Found,
 }
 
 /// The view of the performer.
@@ -350,6 +363,9 @@ pub enum TrainCommand {
     Parts(BoneSet),
     Train,
     Judge,
+    /// Measures the learning curve.
+    Curve,
+    CloseCurve,
     /// Lists the moments of a cell of the confusion matrix and goes to the first; `None` lists the mistakes.
     Cell(Option<(usize, usize)>),
     /// Goes to the moment of this place in the cross-validation.
@@ -381,6 +397,8 @@ pub enum Ask {
     Import,
     ImportFolder,
     ImportLabels,
+    Captions,
+    Video(String),
     Save,
     ExportIndex,
     ExportReport(i64),
@@ -389,4 +407,5 @@ pub enum Ask {
     ExportStretch(String),
     ExportClass(String),
     ExportPage(String),
+    ExportBudget,
 }

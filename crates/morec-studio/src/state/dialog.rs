@@ -45,6 +45,8 @@ pub fn dialog(ask: &Ask) -> Dialog {
         Ask::Import => open(DialogKind::Files, "Import clips", None),
         Ask::ImportFolder => open(DialogKind::Folders, "Import folders of clips", None),
         Ask::ImportLabels => open(DialogKind::Files, "Import labels", None),
+        Ask::Video(_) => open(DialogKind::File, "A video of the clip", None),
+        Ask::Captions => open(DialogKind::Files, "Captions of clips", None),
         Ask::Save => save("Save a copy of the database", DATABASES, "motions.mdb"),
         Ask::ExportIndex => save("Export the index", ("indexes", "index"), "studio.index"),
         Ask::ExportReport(id) => save(
@@ -76,6 +78,7 @@ pub fn dialog(ask: &Ask) -> Dialog {
             "A folder for a clip of each label",
             None,
         ),
+        Ask::ExportBudget => save("Export the time budget", ("tables", "tsv"), "budget.tsv"),
         Ask::ExportPage(name) => save(
             "Web page of the clip",
             ("pages", "html"),

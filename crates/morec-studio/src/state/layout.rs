@@ -28,6 +28,8 @@ pub struct Layout {
     /// The channel whose curve is shown.
     pub channel: Option<ChannelLayout>,
     pub mirror: bool,
+    /// The annotator of new labels.
+    pub annotator: Option<String>,
     /// The database that was open, unless it lay in a temporary folder.
     pub database: Option<PathBuf>,
     /// The clip that was shown.
@@ -120,6 +122,7 @@ impl Default for Layout {
             trail: None,
             channel: None,
             mirror: false,
+            annotator: None,
             database: None,
             clip: None,
         }
@@ -141,6 +144,7 @@ impl State {
             trail: self.trail.map(|role| role.name().to_owned()),
             channel: self.channel_wanted.as_ref().map(ChannelLayout::from),
             mirror: self.classes.mirror,
+            annotator: self.study.annotator.clone(),
             database: store.map(|s| s.path().to_owned()),
             clip: self.shown_clip().map(|c| c.name.clone()),
         }
@@ -163,6 +167,7 @@ impl State {
         self.trail = layout.trail.as_deref().and_then(Role::from_name);
         self.want_channel(layout.channel.as_ref().and_then(ChannelLayout::channel));
         self.classes.mirror = layout.mirror;
+        self.study.annotator.clone_from(&layout.annotator);
     }
 
     /// Shows the clip that was shown, if the database that was open is open again.

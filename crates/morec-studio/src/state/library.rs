@@ -6,14 +6,18 @@ use morec::roles::Role;
 use morec_db::{ClipId, ClipInfo};
 
 use super::Column;
+use super::words::WordSearch;
+use crate::jobs::words::SearchedState;
 
-/// Key of the list of shown clips: snapshot, filter, order.
-type Order = (u64, String, Option<(Column, bool)>);
+/// Key of the list of shown clips: snapshot, filter, order, the search by words that it shows.
+type Order = (u64, String, Option<(Column, bool)>, Option<SearchedState>);
 
 /// The library's own state.
 #[derive(Default)]
 pub struct Library {
     pub filter: String,
+    /// What is known of the words of the filter.
+    pub words: WordSearch,
     pub sort: Option<(Column, bool)>,
     /// The clips that are selected, all of them in the list.
     pub selected: Vec<ClipId>,
@@ -47,7 +51,9 @@ impl Library {
 
     /// Filters and sorts anew if the clips, the filter or the order have changed.
     pub(super) fn refresh(&mut self, clips: &[ClipInfo], version: u64) {
-        let wanted = (version, self.filter.clone(), self.sort);
+        let found = self.words.of(self.filter.trim());
+        let searched = found.map(|found| found.words.0);
+        let wanted = (version, self.filter.clone(), self.sort, searched);
         if self.computed_for.as_ref() == Some(&wanted) {
             return;
         }
@@ -56,9 +62,13 @@ impl Library {
             .split_whitespace()
             .map(str::to_lowercase)
             .collect();
-        self.shown = (0..clips.len())
-            .filter(|&at| words.iter().all(|word| matches(&clips[at], word)))
-            .collect();
+        let rank = |at: &usize| Some(*found?.ranks.get(&clips[*at].id)?);
+        let is_wanted =
+            |at: &usize| words.iter().all(|word| matches(&clips[*at], word)) || rank(at).is_some();
+        self.shown = (0..clips.len()).filter(is_wanted).collect();
+        if found.is_some() {
+            self.shown.sort_by_key(|at| rank(at).unwrap_or(usize::MAX));
+        }
         if let Some((column, down)) = self.sort {
             let key = |at: &usize| &clips[*at];
             match column {
@@ -72,6 +82,7 @@ impl Library {
                 Column::Labels => self
                     .shown
                     .sort_by_key(|a| (key(a).samples, key(a).is_background())),
+                Column::Found => {}
                 Column::Format => self.shown.sort_by(|a, b| key(a).format.cmp(&key(b).format)),
             }
             if down {

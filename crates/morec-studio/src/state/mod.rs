@@ -15,8 +15,10 @@ pub mod live;
 pub mod player;
 pub mod shelf;
 pub mod similar;
+pub mod study;
 pub mod timeline;
 mod train;
+pub mod words;
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -107,6 +109,8 @@ pub struct State {
     pub classes: Classes,
     /// Sets that were found without labels.
     pub shelf: shelf::Shelf,
+    /// Time budgets and annotators.
+    pub study: study::StudyState,
     pub train: Train,
     pub live: Live,
     pub import_report: Option<import::ImportSummary>,
@@ -234,6 +238,7 @@ impl State {
             detections: None,
             classes: Classes::default(),
             shelf: shelf::Shelf::default(),
+            study: study::StudyState::default(),
             train: Train::default(),
             live: Live::default(),
             import_report: None,
@@ -319,6 +324,7 @@ impl State {
             Command::Similar(command) => self.apply_similar(command),
             Command::Shelf(command) => self.apply_shelf(command),
             Command::Compare(command) => self.apply_compare(command),
+            Command::Study(command) => self.apply_study(command),
             Command::Cancel(at) => {
                 if let Some(job) = self.jobs.running.get(at) {
                     job.cancel();

@@ -7,7 +7,7 @@ use morec::index::MotionIndex;
 use morec::train::thesis::SvrdmTrainParams;
 use morec::train::{ClassKind, TrainingReport};
 use morec_db::ReportInfo;
-use morec_ops::{KeptTraining, TrainSettings};
+use morec_ops::{KeptTraining, LearningCurve, TrainSettings};
 
 use super::crossval::CrossvalView;
 use crate::jobs::thesis::{Map, Thesis};
@@ -29,6 +29,7 @@ pub struct Train {
     pub(super) taught: u64,
     pub(super) now: u64,
     pub judged: Option<CrossvalView>,
+    pub curve: Option<LearningCurve>,
     /// A report that the database kept, which was opened: the one that is judged by, or a training.
     pub opened: Option<OpenedReport>,
     /// The cell of the confusion matrix whose moments are listed; `None` lists the mistakes.

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use morec::roles::RoleMap;
 use morec_db::labels::{DbSample, LabelOptions, NewSample, SampleId, SampleState, WholeClip};
-use morec_db::{BACKGROUND, ClipId, ClipInfo, ClipUpdate, DbError, MotionDb};
+use morec_db::{BACKGROUND, ClipId, ClipInfo, ClipUpdate, ClipVideo, DbError, MotionDb};
 
 /// Author of the studio's labels in the database.
 pub const BY: &str = "studio";
@@ -34,7 +34,8 @@ pub enum Edit {
     Replace {
         what: String,
         old: Vec<DbSample>,
-        new: Vec<NewSample>,
+        /// Each with its annotators.
+        new: Vec<(NewSample, Vec<String>)>,
     },
     /// Samples of another class.
     Reclass {
@@ -74,6 +75,11 @@ pub enum Edit {
         to: String,
     },
     RemoveClips(Vec<ClipId>),
+    /// The video beside a clip of this name.
+    Video {
+        clip: String,
+        video: Option<ClipVideo>,
+    },
     /// Roles of the joints of clips.
     Roles(Vec<(ClipId, RoleMap)>),
     /// Cuts of a clip by hand, seconds.
@@ -106,17 +112,19 @@ pub fn background(on: bool) -> ClipUpdate {
 }
 
 impl Edit {
-    /// Makes the change. Gives a sentence for the status line.
-    pub fn apply(&self, db: &mut MotionDb) -> Result<String, DbError> {
+    /// Makes the change; `annotator` is who says what is new. Gives a sentence for the status line.
+    pub fn apply(&self, db: &mut MotionDb, annotator: Option<&str>) -> Result<String, DbError> {
         match self {
             Edit::Label(samples) => {
                 let options = LabelOptions {
                     by: BY.to_owned(),
+                    annotators: vec![annotator.map(str::to_owned); samples.len()],
                     ..LabelOptions::default()
                 };
                 let counts = db.label(samples, &options)?.counts;
                 let class = samples.first().map_or("", |s| s.class.as_str());
                 Ok(match counts.added + counts.changed {
+                    0 if counts.annotated > 0 => format!("this label of {class} is yours, too"),
                     0 => "this label exists already".to_owned(),
                     1 => format!("labelled {class}"),
                     n => format!("{n} labels of {class}"),
@@ -140,7 +148,7 @@ impl Edit {
                 Ok(crate::format::changed_labels(&counts))
             }
             Edit::WholeClips(clips) => {
-                let counts = db.label_clips(clips, BY)?;
+                let counts = db.label_clips(clips, BY, annotator)?;
                 Ok(crate::format::changed_labels(&counts))
             }
             Edit::Move {
@@ -164,7 +172,10 @@ impl Edit {
                 Ok(format!("{} removed", samples(removed)))
             }
             Edit::Judge { ids, state } => {
-                let changed = db.judge(ids, *state, BY)?;
+                let changed = match (state, annotator) {
+                    (SampleState::Accepted, Some(name)) => db.accept_as(ids, name, BY)?,
+                    _ => db.judge(ids, *state, BY)?,
+                };
                 Ok(format!("{} {}", samples(changed), state.name()))
             }
             Edit::RenameClass { from, to } => {
@@ -206,6 +217,15 @@ impl Edit {
                 Ok(match labels {
                     0 => format!("{gone} removed"),
                     n => format!("{gone} removed, with {}", samples(n)),
+                })
+            }
+            Edit::Video { clip, video } => {
+                db.set_video(clip, video.as_ref())?;
+                Ok(match video {
+                    Some(video) => {
+                        format!("{clip} begins at {:.2} s of its video", video.offset_secs)
+                    }
+                    None => format!("{clip} has no video"),
                 })
             }
             Edit::Roles(clips) => {

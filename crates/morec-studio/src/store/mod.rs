@@ -83,9 +83,10 @@ impl Store {
         self.place.clone()
     }
 
-    /// Sends an edit to the database.
-    pub fn edit(&mut self, edit: Edit) {
-        self.pending += usize::from(self.requests.send(Request::Edit(edit)).is_ok());
+    /// Sends an edit to the database; `annotator` is who says what is new.
+    pub fn edit(&mut self, edit: Edit, annotator: Option<String>) {
+        let request = Request::Edit(edit, annotator);
+        self.pending += usize::from(self.requests.send(request).is_ok());
     }
 
     /// Asks for a new snapshot: a job changed the database.

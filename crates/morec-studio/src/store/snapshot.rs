@@ -9,8 +9,8 @@ use morec::roles::RoleMap;
 use morec::train::ClassLabels;
 use morec_db::labels::{ClassCount, DbSample, SampleFilter, SampleId, SampleState};
 use morec_db::{
-    ClipFilter, ClipId, ClipInfo, DbError, HistoryStep, IndexInfo, MotionDb, ReportInfo, Segment,
-    training_data,
+    ClipFilter, ClipId, ClipInfo, ClipVideo, DbError, HistoryStep, IndexInfo, MotionDb, ReportInfo,
+    Segment, training_data,
 };
 
 /// The database at one moment, without motion. Snapshots that follow each other share what is the same.
@@ -34,6 +34,8 @@ pub struct Snapshot {
     pub cut_methods: Arc<BTreeMap<ClipId, String>>,
     /// Roles of the joints of each clip.
     pub roles: Arc<BTreeMap<ClipId, RoleMap>>,
+    /// Videos beside clips.
+    pub videos: Arc<BTreeMap<ClipId, ClipVideo>>,
     /// Places of classes by name.
     pub places: BTreeMap<String, usize>,
     /// Name of this program in the history.
@@ -84,6 +86,9 @@ impl Snapshot {
             if touched(&["clips"]) {
                 next.roles = Arc::new(db.roles()?);
             }
+            if touched(&["clips", "videos"]) {
+                next.videos = Arc::new(db.videos()?);
+            }
             if touched(&["segments"]) {
                 next.segments = Arc::new(db.segments()?);
                 next.cut_methods = Arc::new(db.cut_methods()?);
@@ -97,7 +102,7 @@ impl Snapshot {
             // Samples carry the names of their clips and classes.
             if touched(&["clips", "classes"]) {
                 next.set_samples(db.samples(&SampleFilter::default())?);
-            } else if touched(&["samples"]) {
+            } else if touched(&["samples", "annotators"]) {
                 let mut ids = BTreeSet::new();
                 for step in steps {
                     ids.extend(db.samples_of_step(step.id)?);

@@ -60,7 +60,7 @@ fn any_edit(rng: &mut Rng, seen: &Snapshot) -> Option<Edit> {
         6 => Edit::Replace {
             what: "split".to_owned(),
             old: vec![(**sample).clone()],
-            new: vec![new],
+            new: vec![(new, vec!["ann".to_owned()])],
         },
         7 => Edit::Reclass { ids, class },
         8 => Edit::Remove(ids),
@@ -143,9 +143,9 @@ fn a_snapshot_that_follows_any_edits_is_the_one_that_is_read() {
             };
             if rng.chance(0.1) {
                 // Where both change the same, the later finds what the earlier left.
-                _ = any_edit(&mut rng, &seen).map(|edit| edit.apply(&mut other));
+                _ = any_edit(&mut rng, &seen).map(|edit| edit.apply(&mut other, Some("ben")));
             }
-            let done = edit.apply(&mut db);
+            let done = edit.apply(&mut db, Some("ann"));
             if rng.chance(0.1) {
                 let places = BTreeMap::from([("wave".to_owned(), turn)]);
                 db.place_classes(&places).unwrap();
@@ -174,7 +174,7 @@ fn a_move_reads_no_table_anew() {
         start_secs: 0.75,
         stop_secs: 1.25,
     };
-    edit.apply(&mut db).unwrap();
+    edit.apply(&mut db, None).unwrap();
     let after = before.follow(&db).unwrap();
 
     assert!(Arc::ptr_eq(&before.clips, &after.clips));
@@ -201,7 +201,7 @@ fn changed_meanwhile(
         true => other.remove_samples(&[id]).unwrap(),
         false => other.split_class(&[id], "nod").unwrap(),
     };
-    let done = edit(&seen).apply(&mut db);
+    let done = edit(&seen).apply(&mut db, None);
     let now = seen.follow(&db).unwrap();
     (done, now.sample(id).map(|s| s.class.clone()))
 }
@@ -215,10 +215,13 @@ fn an_edit_leaves_what_another_program_made_of_a_label() {
     };
     let split = |seen: &Snapshot| {
         let old = (*seen.samples[0]).clone();
-        let part = |start_secs, stop_secs| NewSample {
-            start_secs,
-            stop_secs,
-            ..NewSample::from(&old)
+        let part = |start_secs, stop_secs| {
+            let part = NewSample {
+                start_secs,
+                stop_secs,
+                ..NewSample::from(&old)
+            };
+            (part, Vec::new())
         };
         Edit::Replace {
             what: "split".to_owned(),

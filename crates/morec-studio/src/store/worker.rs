@@ -16,7 +16,8 @@ const LOOK: Duration = Duration::from_secs(1);
 const LAST_INDEX: &str = "last";
 
 pub enum Request {
-    Edit(Edit),
+    /// An edit, and who says what is new.
+    Edit(Edit, Option<String>),
     Reload,
     Places(BTreeMap<String, usize>),
     LastIndex(Vec<u8>),
@@ -91,8 +92,8 @@ impl StoreWorker {
     fn run(&mut self, incoming: &Receiver<Request>) {
         loop {
             let (said, answers) = match incoming.recv_timeout(LOOK) {
-                Ok(Request::Edit(edit)) => {
-                    let said = match edit.apply(&mut self.db) {
+                Ok(Request::Edit(edit, annotator)) => {
+                    let said = match edit.apply(&mut self.db, annotator.as_deref()) {
                         Ok(done) => StoreMessage::Done(done),
                         Err(error) => StoreMessage::Failed(sentence(&error.to_string())),
                     };

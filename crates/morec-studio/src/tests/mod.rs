@@ -28,12 +28,15 @@ mod rooms;
 mod selection;
 mod several;
 mod shelf;
+mod study;
 mod train;
 mod undo;
 mod unsaved;
 mod unseen;
+mod video;
 mod view;
 mod whole;
+mod words;
 
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;

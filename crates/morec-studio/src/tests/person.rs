@@ -203,6 +203,13 @@ impl Person {
             .is_some()
     }
 
+    /// The name of the first widget whose name contains a text.
+    pub fn named_part(&self, part: &str) -> String {
+        let mut found = self.window.query_all_by_label_contains(part);
+        let found = found.next().and_then(|node| node.accesskit_node().label());
+        found.unwrap_or_else(|| panic!("nothing is called …{part:?}…"))
+    }
+
     /// True if the fonts have a shape for every letter.
     pub fn can_draw(&self, text: &str) -> bool {
         let font = egui::FontId::proportional(13.0);

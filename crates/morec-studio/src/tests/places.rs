@@ -15,7 +15,7 @@ fn label(path: &std::path::Path, class: &str) {
         class: Some(class.to_owned()),
         subject: None,
     };
-    db.label_clips(&[whole], "test").unwrap();
+    db.label_clips(&[whole], "test", None).unwrap();
 }
 
 fn places(person: &Person) -> Vec<(usize, String)> {

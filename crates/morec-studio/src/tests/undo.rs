@@ -16,7 +16,7 @@ fn elsewhere(path: &std::path::Path) {
         class: Some("jump".to_owned()),
         subject: None,
     };
-    db.label_clips(&[whole], "user").unwrap();
+    db.label_clips(&[whole], "user", None).unwrap();
 }
 
 /// Before a database with a step of its own and a later one of another program.

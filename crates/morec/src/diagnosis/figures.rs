@@ -111,6 +111,13 @@ pub struct Diagnosis {
     pub turns: Option<bool>,
 }
 
+impl Diagnosis {
+    /// The noise where its unit is known: points of a custom skeleton may be pixels of a picture.
+    pub(super) fn metric_noise(&self) -> Option<f64> {
+        self.noise_m.filter(|_| self.profile != Profile::Custom)
+    }
+}
+
 impl fmt::Display for Diagnosis {
     /// The figures in a line: `body 1.52 m, legs 0.84 m, upright; noise 0.1 cm; 60.0 Hz ± 1 ms`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -136,7 +143,7 @@ impl fmt::Display for Diagnosis {
             Some(tilt) if self.stands => write!(f, ", {tilt:.0}° from upright")?,
             _ => {}
         }
-        if let Some(noise_m) = self.noise_m {
+        if let Some(noise_m) = self.metric_noise() {
             write!(f, "; noise {:.1} cm", 100.0 * noise_m)?;
         }
         if let Some(rate_hz) = self.rate_hz {

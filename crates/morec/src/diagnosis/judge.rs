@@ -218,7 +218,7 @@ impl Diagnosis {
                 secs: self.still_secs,
             },
         ));
-        if let Some(noise_m) = self.noise_m {
+        if let Some(noise_m) = self.metric_noise() {
             found.add(some(noise_m >= 0.006, Finding::Noisy { noise_m }));
         }
         found.add(some(

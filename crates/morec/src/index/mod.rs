@@ -88,6 +88,11 @@ impl MotionIndex {
         )
     }
 
+    /// True of an index of a skeleton that is no person's: of an animal, a thing, or points in a picture.
+    pub fn has_custom_roles(&self) -> bool {
+        self.roles.keys().any(|role| role.is_custom())
+    }
+
     /// Fills roles that `map` left empty with [fingers](RoleMap::for_bones), if the index looks at them, and with the joints that played them in training, where `skeleton` has
     /// joints of those names that play nothing else. Returns the roles that were filled. Where the index is of a custom skeleton and `skeleton` has its
     /// root, roles of a person are taken away.

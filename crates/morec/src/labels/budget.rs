@@ -91,6 +91,38 @@ impl TimeBudget {
     }
 }
 
+impl TimeBudget {
+    /// A table (TSV): a row for each class of all people, then of each person; a column `next_CLASS` for each class counts the labels of
+    /// all people that it follows.
+    pub fn tsv(&self) -> String {
+        let names = &self.transitions.classes;
+        let next: String = names.iter().map(|name| format!("\tnext_{name}")).collect();
+        let header = "class\tperson\tlabels\ttotal_secs\tmean_secs\tshare\tper_minute";
+        let mut table = format!("{header}{next}\n");
+        let mut add = |person: &str, of: &ClassBudget, next: String| {
+            let (class, count) = (&of.class, of.count);
+            let (total, mean) = (of.total_secs, of.mean_secs);
+            let (share, rate) = (of.share, of.per_minute);
+            table += &format!(
+                "{class}\t{person}\t{count}\t{total:.3}\t{mean:.3}\t{share:.5}\t{rate:.4}{next}\n"
+            );
+        };
+        for class in &self.classes {
+            let row = names.iter().position(|name| *name == class.class);
+            let counts = row.map_or(&[][..], |row| &self.transitions.counts[row]);
+            let counts = counts.iter().map(|count| format!("\t{count}"));
+            add("", class, counts.collect());
+            for person in &self.people {
+                let of_person = person.classes.iter().find(|c| c.class == class.class);
+                if let Some(of_person) = of_person {
+                    add(&person.person, of_person, "\t".repeat(names.len()));
+                }
+            }
+        }
+        table
+    }
+}
+
 impl ClassTransitions {
     fn of(samples: &[Sample]) -> Self {
         let names: BTreeSet<&str> = samples.iter().map(|s| s.class.as_str()).collect();
@@ -208,6 +240,16 @@ mod tests {
         let ann = &budget.people[0];
         assert_eq!((ann.person.as_str(), ann.secs), ("ann", 20.0));
         assert_eq!((ann.classes[0].share, ann.classes[1].share), (0.3, 0.1));
+        let table = budget.tsv();
+        let rows: Vec<Vec<&str>> = table.lines().map(|l| l.split('\t').collect()).collect();
+        assert!(rows.iter().all(|row| row.len() == rows[0].len()), "{table}");
+        assert_eq!(rows[0][7..], ["next_walk", "next_wave"]);
+        let walk = [
+            "walk", "", "3", "12.000", "4.667", "0.20000", "3.0000", "1", "0",
+        ];
+        assert_eq!(rows[1], walk);
+        assert_eq!(rows[2][..3], ["walk", "ann", "2"]);
+        assert_eq!(rows.len(), 1 + 2 + 3);
         // wave, walk, walk by ann; what nobody is named for does not follow ben's.
         assert_eq!(budget.transitions.counts, [[1, 0], [1, 0]]);
     }

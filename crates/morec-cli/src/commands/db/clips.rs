@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use anyhow::{Result, bail};
 use morec::roles::Role;
-use morec_db::{ClipFilter, ClipId, ClipInfo, ClipUpdate};
+use morec_db::{ClipFilter, ClipId, ClipInfo, ClipUpdate, ClipVideo};
 
 use crate::database;
 use crate::print;
@@ -57,6 +57,20 @@ pub struct Args {
     /// Set the joint of a role: left_hand=LeftWrist; `left_hand=` for none
     #[arg(long, value_name = "ROLE=JOINT", value_parser = role_and_joint)]
     set_role: Vec<(Role, String)>,
+    /// Set the video beside a clip; empty removes it
+    ///
+    /// Needs --clip with the name of one clip. The file stays where it is.
+    #[arg(long, value_name = "VIDEO", requires = "clip")]
+    set_video: Option<PathBuf>,
+    /// Time of the video at which the clip begins, seconds
+    #[arg(
+        long,
+        value_name = "SECS",
+        default_value_t = 0.0,
+        allow_hyphen_values = true,
+        requires = "set_video"
+    )]
+    video_offset: f64,
     /// Add a tag
     #[arg(long, value_name = "WORD")]
     add_tag: Vec<String>,
@@ -98,6 +112,14 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     }
     if !args.set_role.is_empty() {
         set_roles(args, &filter)?;
+    }
+    if let (Some(path), Some(clip)) = (&args.set_video, &args.clip) {
+        let video = ClipVideo {
+            path: path.display().to_string(),
+            offset_secs: args.video_offset,
+        };
+        let video = Some(video).filter(|video| !video.path.is_empty());
+        database::open(&args.db)?.set_video(clip, video.as_ref())?;
     }
     let mut clips = if update == ClipUpdate::default() {
         database::open_read_only(&args.db)?.find_clips(&filter)?

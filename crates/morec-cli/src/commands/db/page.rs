@@ -120,6 +120,7 @@ impl Page {
                     span: Some(span),
                     labels: Vec::new(),
                     detections: Vec::new(),
+                    video: None,
                 };
                 let number = self.reel.add(&played, FRAMES);
                 format!(" data-motion=\"{number}\"")

@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, bail};
-use morec_db::exchange::{Caption, add_sources, read_captions};
+use anyhow::{Error, Result};
 use morec_db::{MotionDb, WordHit, WordHits, WordIndex};
+use morec_ops::captions_of;
 
 use super::page::Page;
 use crate::files;
@@ -19,7 +19,8 @@ pub fn run(
     limit: usize,
     out: (Option<&Path>, bool),
 ) -> Result<()> {
-    let captions = read(captions)?;
+    let read = |path: &Path| files::read(path).map_err(|why| format!("{why:#}"));
+    let captions = captions_of(captions, &read).map_err(Error::msg)?;
     let index = WordIndex::of(db, &captions)?;
     if index.absent() > 0 {
         let (absent, all) = (index.absent(), captions.len());
@@ -36,48 +37,6 @@ pub fn run(
         true => print::print_json(&found),
         false => print_hits(words, &found),
     }
-}
-
-/// Captions of files, and of folders of HumanML3D: texts, also below `texts`, and `index.csv`.
-fn read(paths: &[PathBuf]) -> Result<Vec<Caption>> {
-    let mut captions = Vec::new();
-    for path in paths {
-        if !path.is_dir() {
-            captions.extend(read_file(path)?);
-            continue;
-        }
-        let texts = Some(path.join("texts")).filter(|texts| texts.is_dir());
-        let folder = texts.as_deref().unwrap_or(path);
-        let entries = folder
-            .read_dir()
-            .with_context(|| folder.display().to_string())?;
-        let mut files = entries
-            .map(|entry| entry.map(|entry| entry.path()))
-            .collect::<Result<Vec<_>, _>>()
-            .with_context(|| folder.display().to_string())?;
-        files.retain(|file| file.extension().is_some_and(|ending| ending == "txt"));
-        files.sort();
-        if files.is_empty() {
-            bail!("{}: expected texts (*.txt), found none", folder.display());
-        }
-        let mut of_folder = Vec::new();
-        for file in &files {
-            of_folder.extend(read_file(file)?);
-        }
-        let table = path.join("index.csv");
-        if table.is_file() {
-            let added = add_sources(&mut of_folder, &files::read(&table)?);
-            added.with_context(|| table.display().to_string())?;
-        }
-        captions.append(&mut of_folder);
-    }
-    Ok(captions)
-}
-
-fn read_file(path: &Path) -> Result<Vec<Caption>> {
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let captions = read_captions(&name, &files::read(path)?);
-    captions.with_context(|| path.display().to_string())
 }
 
 fn print_hits(words: &str, found: &WordHits) -> Result<()> {

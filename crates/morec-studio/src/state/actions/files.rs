@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use morec::labels::Mark;
-use morec_db::{ClipId, DbError};
+use morec_db::{ClipId, ClipVideo, DbError};
 
 use super::lines::ShownCommand;
 use super::train::INDEX;
@@ -11,11 +11,12 @@ use crate::format::file_name;
 use crate::jobs::example::MadeDatabase;
 use crate::jobs::export::{self, Export};
 use crate::jobs::{JobOutcome, Jobs, example, import};
+use crate::state::study::StudyState;
 use crate::state::{
     Ask, Classes, FileCommand, Library, Live, Motions, Player, State, TimelineState, Train,
     TypedPath, dialog,
 };
-use crate::store::{DbPlace, Store};
+use crate::store::{DbPlace, Edit, Store};
 use crate::unsaved::{self, Leftover, OwnFolder};
 
 const MAKING: &str = "Creating an example";
@@ -91,6 +92,11 @@ impl State {
         self.curves = None;
         self.detections = None;
         self.classes = Classes::default();
+        // Who sits before the window stays.
+        self.study = StudyState {
+            annotator: self.study.annotator.take(),
+            ..StudyState::default()
+        };
         self.train = Train::default();
         self.live = Live::default();
         self.import_report = None;
@@ -250,6 +256,17 @@ impl State {
                 }
             }
             FileCommand::AskImportLabels => self.ask = Some(Ask::ImportLabels),
+            FileCommand::AskVideo => self.ask = self.shown_name().map(Ask::Video),
+            FileCommand::Video(clip, path) => {
+                let video = ClipVideo {
+                    path: path.display().to_string(),
+                    offset_secs: 0.0,
+                };
+                let video = Some(video);
+                self.edit(Edit::Video { clip, video });
+            }
+            FileCommand::AskCaptions => self.ask = Some(Ask::Captions),
+            FileCommand::Captions(paths) => self.read_captions(paths),
             FileCommand::ImportLabels(paths) => self.read_labels(paths),
             FileCommand::ReplaceLabels(replace) => self.replace_labels(replace),
             FileCommand::ApplyLabels => self.apply_labels(),
@@ -301,6 +318,8 @@ impl State {
                     self.export(Export::Clip(clip), path);
                 }
             }
+            FileCommand::AskExportBudget => self.ask = Some(Ask::ExportBudget),
+            FileCommand::ExportBudget(path) => self.export_budget(&path),
             FileCommand::ExportPage(path) => self.export_page(path),
         }
     }
@@ -424,6 +443,12 @@ fn export_line(store: &Store, has_index: bool, what: &Export, path: &Path) -> Op
             let play = match has_index {
                 true => play.with("--index", format!("{INDEX}.index")),
                 false => play,
+            };
+            let play = match store.snapshot.videos.get(id) {
+                Some(video) => play
+                    .with("--video", &video.path)
+                    .secs("--video-offset", video.offset_secs),
+                None => play,
             };
             labels.and(play.with("-o", path))
         }

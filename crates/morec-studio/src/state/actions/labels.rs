@@ -1,5 +1,6 @@
 //! Labels on the timeline: selected, dragged, split, merged, nudged.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use morec_db::labels::{DbSample, NewSample, SampleState as Judged};
@@ -18,8 +19,20 @@ impl State {
         // Another action's command would mislead: an action without a command shows none.
         let line = self.line_of(&edit);
         self.show_line(line);
+        let by = self.study.annotator.as_ref();
+        let is_new = matches!(edit, Edit::Label(_) | Edit::WholeClips(_));
+        if is_new
+            && self
+                .study
+                .shown
+                .as_ref()
+                .is_some_and(|shown| Some(shown) != by)
+        {
+            // What is made is seen.
+            self.study.shown = None;
+        }
         if let Some(store) = &mut self.store {
-            store.edit(edit);
+            store.edit(edit, self.study.annotator.clone());
         }
     }
 
@@ -190,16 +203,20 @@ impl State {
         let inside = |s: &&DbSample| s.start_secs < at - 1e-6 && at + 1e-6 < s.stop_secs;
         let selected = self.selected().into_iter();
         let there = self.shown_samples().iter().map(|s| &**s);
+        let there = there.filter(|s| self.study.shows(s));
         let found = selected.chain(there).find(inside);
         let Some(sample) = found else {
             self.say("no label lies under the playhead");
             return;
         };
-        let part = |start_secs, stop_secs| NewSample {
-            start_secs,
-            stop_secs,
-            whole_clip: false,
-            ..NewSample::from(sample)
+        let part = |start_secs, stop_secs| {
+            let part = NewSample {
+                start_secs,
+                stop_secs,
+                whole_clip: false,
+                ..NewSample::from(sample)
+            };
+            (part, sample.annotators.clone())
         };
         let edit = Edit::Replace {
             what: format!("split {} of {}", sample.class, sample.clip_name),
@@ -220,14 +237,16 @@ impl State {
             return;
         }
         let stop_secs = selected.iter().map(|s| s.stop_secs).fold(0.0, f64::max);
+        let annotators: BTreeSet<&String> = selected.iter().flat_map(|s| &s.annotators).collect();
+        let whole = NewSample {
+            stop_secs,
+            whole_clip: false,
+            ..NewSample::from(*first)
+        };
         let edit = Edit::Replace {
             what: format!("merge {} labels of {}", selected.len(), first.class),
             old: selected.iter().map(|s| (*s).clone()).collect(),
-            new: vec![NewSample {
-                stop_secs,
-                whole_clip: false,
-                ..NewSample::from(*first)
-            }],
+            new: vec![(whole, annotators.into_iter().cloned().collect())],
         };
         self.edit(edit);
     }

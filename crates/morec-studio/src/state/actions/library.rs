@@ -20,7 +20,7 @@ impl State {
                         selected.remove(at);
                     }
                     (true, None) => selected.push(clip),
-                    (false, _) => self.open_clip(clip, None),
+                    (false, _) => self.open_found(clip),
                 }
                 self.library.chosen = !self.library.selected.is_empty();
             }
@@ -75,7 +75,7 @@ impl State {
             None => 0,
         };
         if let Some(&clip) = shown.get(to) {
-            self.open_clip(clip, None);
+            self.open_found(clip);
             self.library.chosen = self.panel == Panel::Library;
         }
     }
@@ -117,5 +117,6 @@ impl State {
         if let Some(store) = &self.store {
             self.library.refresh(&store.snapshot.clips, store.version);
         }
+        self.search_words();
     }
 }

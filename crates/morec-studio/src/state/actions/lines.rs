@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use morec::roles::Role;
-use morec_db::labels::{NewSample, SampleId, SampleState, WholeClip};
+use morec_db::labels::{DbSample, NewSample, SampleId, SampleState, WholeClip};
 use morec_db::{ClipId, ClipUpdate};
 use morec_ops::TrainSettings;
 use serde::Serialize;
@@ -117,30 +117,76 @@ fn stretch_line(db: &Path, snapshot: &Snapshot, sample: &NewSample) -> Option<Sh
 }
 
 /// The command that sets a label.
-fn label_line(db: &Path, snapshot: &Snapshot, sample: &NewSample) -> Option<ShownCommand> {
-    let line = stretch_line(db, snapshot, sample)?;
+fn label_line(
+    db: &Path,
+    snapshot: &Snapshot,
+    sample: &NewSample,
+    annotator: Option<&String>,
+) -> Option<ShownCommand> {
+    let line = by(stretch_line(db, snapshot, sample)?, annotator);
     Some(match sample.state {
         SampleState::Accepted => line,
         state => line.with("--state", state.name()),
     })
 }
 
+/// Names the annotator of a label, if there is one.
+fn by(line: ShownCommand, annotator: Option<&String>) -> ShownCommand {
+    annotator
+        .into_iter()
+        .fold(line, |line, name| line.with("--annotator", name))
+}
+
 /// The commands that set labels.
-fn label_lines(db: &Path, snapshot: &Snapshot, samples: &[NewSample]) -> Option<ShownCommand> {
+fn label_lines(
+    db: &Path,
+    snapshot: &Snapshot,
+    samples: &[NewSample],
+    annotator: Option<&String>,
+) -> Option<ShownCommand> {
     let lines: Option<Vec<ShownCommand>> = samples
         .iter()
-        .map(|sample| label_line(db, snapshot, sample))
+        .map(|sample| label_line(db, snapshot, sample, annotator))
         .collect();
     ShownCommand::all(lines?.into_iter())
 }
 
+/// The commands that put labels in place of others: one for each label and annotator.
+fn replace_lines(
+    db: &Path,
+    snapshot: &Snapshot,
+    old: &[DbSample],
+    new: &[(NewSample, Vec<String>)],
+) -> Option<ShownCommand> {
+    let remove = ShownCommand::new("morec db samples").word(db);
+    let remove = remove.list("--remove", &numbers(old.iter().map(|s| s.id)));
+    let mut lines = vec![Some(remove)];
+    for (sample, annotators) in new {
+        let line = |name| label_line(db, snapshot, sample, name);
+        match annotators.is_empty() {
+            true => lines.push(line(None)),
+            false => lines.extend(annotators.iter().map(|name| line(Some(name)))),
+        }
+    }
+    let lines: Option<Vec<ShownCommand>> = lines.into_iter().collect();
+    ShownCommand::all(lines?.into_iter())
+}
+
 /// The commands that say what whole clips show, and who is in them.
-fn whole_lines(db: &Path, snapshot: &Snapshot, clips: &[WholeClip]) -> Option<ShownCommand> {
+fn whole_lines(
+    db: &Path,
+    snapshot: &Snapshot,
+    clips: &[WholeClip],
+    annotator: Option<&String>,
+) -> Option<ShownCommand> {
     let line = |whole: &WholeClip| {
         let name = &snapshot.clip(whole.clip)?.name;
         let of_clip = |command: &str| ShownCommand::new(command).word(db).with("--clip", name);
         let label = whole.class.as_ref();
-        let label = label.map(|class| of_clip("morec db label").with("--class", class));
+        let label = label.map(|class| {
+            let line = of_clip("morec db label").with("--class", class);
+            by(line, annotator)
+        });
         let about = whole.subject.as_ref();
         let about = about.map(|name| of_clip("morec db clips").with("--set-subject", name));
         label.into_iter().chain(about).reduce(ShownCommand::and)
@@ -211,10 +257,11 @@ impl State {
     pub(in crate::state) fn line_of(&self, edit: &Edit) -> Option<ShownCommand> {
         let store = self.store.as_ref()?;
         let (db, snapshot) = (store.path(), &*store.snapshot);
+        let annotator = self.study.annotator.as_ref();
         let morec = |command: &str| ShownCommand::new(&format!("morec {command}")).word(db);
         Some(match edit {
-            Edit::Label(samples) => label_lines(db, snapshot, samples)?,
-            Edit::WholeClips(clips) => whole_lines(db, snapshot, clips)?,
+            Edit::Label(samples) => label_lines(db, snapshot, samples, annotator)?,
+            Edit::WholeClips(clips) => whole_lines(db, snapshot, clips, annotator)?,
             Edit::LabelFiles { paths, replace, .. } => {
                 let line = paths.iter().fold(morec("db label"), ShownCommand::word);
                 line.flag("--replace", *replace)
@@ -227,11 +274,7 @@ impl State {
                 .with("--move", id.0.to_string())
                 .secs("--start", *start_secs)
                 .secs("--stop", *stop_secs),
-            Edit::Replace { old, new, .. } => {
-                let remove =
-                    morec("db samples").list("--remove", &numbers(old.iter().map(|s| s.id)));
-                remove.and(label_lines(db, snapshot, new)?)
-            }
+            Edit::Replace { old, new, .. } => replace_lines(db, snapshot, old, new)?,
             Edit::Cuts { cuts, .. } if cuts.is_empty() => return None,
             Edit::Cuts { clip, cuts, .. } => {
                 let mut cuts = cuts.clone();
@@ -248,9 +291,11 @@ impl State {
                 morec("db samples").list("--remove", &numbers(ids.iter().copied()))
             }
             Edit::Judge { ids, state } => {
+                let accepts = *state == SampleState::Accepted;
                 let line = |id: &SampleId| {
                     let s = snapshot.sample(*id)?;
                     let line = stretch_line(db, snapshot, &NewSample::from(s))?;
+                    let line = by(line, annotator.filter(|_| accepts));
                     Some(line.with("--state", state.name()))
                 };
                 let lines: Option<Vec<ShownCommand>> = ids.iter().map(line).collect();
@@ -269,6 +314,15 @@ impl State {
                 describe_line(db, snapshot, clips, &crate::store::background(*on))?
             }
             Edit::RenameClip { from, to } => morec("db clips").with("--rename", from).word(to),
+            Edit::Video { clip, video } => {
+                let line = morec("db clips").with("--clip", clip);
+                match video {
+                    Some(video) => line
+                        .with("--set-video", &video.path)
+                        .secs("--video-offset", video.offset_secs),
+                    None => line.with("--set-video", ""),
+                }
+            }
             Edit::RemoveClips(clips) => {
                 let remove = |line: ShownCommand| line.flag("--remove", true);
                 each_clip(db, snapshot, clips.iter().copied(), remove)?

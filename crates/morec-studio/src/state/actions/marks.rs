@@ -105,6 +105,7 @@ impl State {
         Some(Lesson {
             recording,
             name: meaning.name().replace(' ', "_"),
+            annotator: self.study.annotator.clone(),
             meaning: Some(meaning.clone()),
             extent: stretch.map(|secs| secs - origin),
         })
@@ -309,6 +310,7 @@ impl State {
             meaning: None,
             extent: TimeSpan::new(0.0, 0.0),
             name: "take".to_owned(),
+            annotator: None,
         };
         let line = self.record_line(&store.path);
         self.show_line(line);

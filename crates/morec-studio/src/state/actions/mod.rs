@@ -21,5 +21,7 @@ mod roles;
 mod shelf;
 mod shown;
 mod similar;
+mod study;
 mod thesis;
 mod train;
+mod words;

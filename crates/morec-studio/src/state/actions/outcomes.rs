@@ -35,6 +35,7 @@ impl State {
             self.want_motion(clip);
         }
         self.refresh_library();
+        self.refresh_study();
     }
 
     /// The database is not what it was.
@@ -57,6 +58,7 @@ impl State {
         self.select_awaited(&snapshot);
         let places = self.classes.follow(&snapshot);
         self.keep_places(places);
+        self.study.follow(&snapshot);
         self.train.follow(&snapshot);
         self.live.marks.retain_mut(|mark| mark.follow(&snapshot));
         let gone = self
@@ -157,6 +159,10 @@ impl State {
                 self.keep_judged(&judged);
                 self.show_judged(*judged);
             }
+            JobOutcome::Curve(curve) => {
+                self.say("learning curve measured");
+                self.train.curve = Some(curve);
+            }
             JobOutcome::Recognised((clip, found)) => self.detections = Some((clip, found)),
             JobOutcome::Resensed(found) => self.take_resensed(found),
             JobOutcome::Silent(reported) => self.silent(&reported),
@@ -165,6 +171,9 @@ impl State {
                 self.reload();
             }
             JobOutcome::Similar(similar) => self.found_similar(similar),
+            JobOutcome::Words(found) => self.found_words(found),
+            JobOutcome::ComparedAnnotators(compared) => self.annotators_compared(*compared),
+            JobOutcome::Captions(captions) => self.captions_read(captions),
             JobOutcome::Aligned(aligned) => self.aligned(aligned),
             JobOutcome::Channel(channel) => self.channel = Some(channel),
             JobOutcome::Thesis((thesis, trained)) => {

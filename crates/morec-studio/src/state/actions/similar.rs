@@ -91,6 +91,7 @@ impl State {
         ));
         self.classes.similar = Some(similar);
         self.classes.groups = None;
+        self.study.view = None;
         self.panel = Panel::Classes;
     }
 

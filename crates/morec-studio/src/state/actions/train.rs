@@ -12,14 +12,15 @@ use morec_ops::{CrossvalSettings, LeftOut, TrainSettings};
 use super::lines::{ShownCommand, train_line};
 use crate::body::ClipMotion;
 use crate::jobs::export::write_whole;
-use crate::jobs::{JobOutcome, judge, recognise, train};
+use crate::jobs::{JobOutcome, judge, learning_curve, recognise, train};
 use crate::state::{Panel, State, TrainCommand};
-use crate::store::Edit;
+use crate::store::{Edit, Snapshot};
 
 /// The name under which an index is kept in the database.
 pub const INDEX: &str = "studio";
 const TRAINING: &str = "Training";
 const JUDGING: &str = "Judging";
+const MEASURING_CURVE: &str = "Measuring the learning curve";
 
 impl State {
     pub(in crate::state) fn apply_train(&mut self, command: TrainCommand) {
@@ -36,6 +37,8 @@ impl State {
             TrainCommand::Parts(bones) => self.train.settings.bones = bones,
             TrainCommand::Train => self.start_training(),
             TrainCommand::Judge => self.start_judging(self.train_settings()),
+            TrainCommand::Curve => self.measure_curve(),
+            TrainCommand::CloseCurve => self.train.curve = None,
             TrainCommand::Cell(cell) => self.show_cell(cell),
             TrainCommand::Moment(at) => self.go_to_moment(at),
             TrainCommand::StepMoment(by) => self.step_moment(by),
@@ -132,18 +135,8 @@ impl State {
         }
         let Some(store) = &self.store else { return };
         let db = store.path().to_owned();
-        let accepted = store.snapshot.accepted();
-        let classes = &settings.classes;
-        let taught: Vec<&DbSample> = accepted
-            .filter(|s| classes.is_empty() || classes.contains(&s.class))
-            .collect();
-        let people: BTreeSet<_> = taught.iter().filter_map(|s| s.subject.as_ref()).collect();
-        let clips: BTreeSet<_> = taught.iter().map(|s| s.clip).collect();
-        let by = LeftOut::usual(people.len(), clips.len());
-        let how = CrossvalSettings {
-            by,
-            ..CrossvalSettings::default()
-        };
+        let how = folds(&store.snapshot, &settings);
+        let by = how.by;
         let line = ShownCommand::new("morec crossval").with("--db", &db);
         self.show_line(line.settings(&how).settings(&settings));
         self.jobs.start(
@@ -153,6 +146,31 @@ impl State {
             JobOutcome::Judged,
             move |progress| judge::judge(&db, &settings, by, progress),
         );
+    }
+
+    /// Cross-validates with ever more samples and people.
+    fn measure_curve(&mut self) {
+        if !self.has_something_to_learn() {
+            return;
+        }
+        let Some(store) = &self.store else { return };
+        let (db, settings) = (store.path().to_owned(), self.train_settings());
+        let how = folds(&store.snapshot, &settings);
+        let line = ShownCommand::new("morec crossval").with("--db", &db);
+        let line = line.settings(&how).settings(&settings);
+        self.show_line(line.flag("--curve", true));
+        let outcome = JobOutcome::Curve;
+        self.jobs.start(
+            MEASURING_CURVE,
+            true,
+            &self.wake,
+            outcome,
+            move |progress| learning_curve::learn(&db, &settings, &how, progress),
+        );
+    }
+
+    pub fn is_measuring_curve(&self) -> bool {
+        self.jobs.is_running(MEASURING_CURVE)
     }
 
     /// True while an index is trained.
@@ -286,5 +304,19 @@ impl State {
             let line = train_line(store.path(), &settings, path);
             self.show_line(line);
         }
+    }
+}
+
+/// What a cross-validation leaves out in turn, by the people and clips of the labels that are learned.
+fn folds(snapshot: &Snapshot, settings: &TrainSettings) -> CrossvalSettings {
+    let classes = &settings.classes;
+    let taught: Vec<&DbSample> = (snapshot.accepted())
+        .filter(|s| classes.is_empty() || classes.contains(&s.class))
+        .collect();
+    let people: BTreeSet<_> = taught.iter().filter_map(|s| s.subject.as_ref()).collect();
+    let clips: BTreeSet<_> = taught.iter().map(|s| s.clip).collect();
+    CrossvalSettings {
+        by: LeftOut::usual(people.len(), clips.len()),
+        ..CrossvalSettings::default()
     }
 }
