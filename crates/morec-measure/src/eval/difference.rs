@@ -108,7 +108,7 @@ fn paired(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rng::Rng;
+    use morec::rng::Rng;
 
     fn label(clip: &str, class: &str, start: f64, stop: f64) -> GroundTruth {
         GroundTruth {

@@ -11,7 +11,6 @@ use morec_db::exchange::{self, Annotation, LabelFormat};
 use morec_db::labels::{DbSample, SampleFilter, SampleState};
 use morec_db::{ClipFilter, ClipId, MotionDb};
 use morec_measure::player::{PlayedClip, PlayedVideo, page};
-use morec_measure::player::{PlayedClip, page};
 
 use super::progress::JobError;
 use crate::format;
