@@ -52,7 +52,7 @@ pub struct Comparison {
     coarse: Box<CoarseRows>,
     sketch: Sketch,
     noise: f32,
-    /// Blocks that may hold a near segment, with the distances of their nearest sketches.
+    /// Room for the blocks that may hold a near segment, with the distances of their nearest sketches.
     ranked: Vec<(f32, usize)>,
 }
 
@@ -73,7 +73,7 @@ impl Comparison {
             typical_spread,
             least_divisor: divisor(0.0),
             sketch: sketch_of(&coarse),
-            ranked: Vec::with_capacity(samples.coarse.len().max(atlas.coarse.len())),
+            ranked: vec![(0.0, 0); samples.coarse.len().max(atlas.coarse.len())],
             atlas: atlas.into(),
             samples: samples.into(),
             scale: model.scale,
@@ -132,7 +132,7 @@ impl Comparison {
         let mut least = self.farthest;
         let limits = (spread, least);
         let mut ranked = std::mem::take(&mut self.ranked);
-        let samples = (&*self.samples, &mut ranked);
+        let samples = (&*self.samples, ranked.as_mut_slice());
         self.search(samples, limits, counts, |sample, distance| {
             if best.is_none() || distance < least {
                 best = Some((distance, self.classes[sample]));
@@ -173,7 +173,7 @@ impl Comparison {
         let refused = nearest * portable::exp(f64::from(least)) as f32;
         let mut ranked = std::mem::take(&mut self.ranked);
         self.search(
-            (&self.atlas, &mut ranked),
+            (&*self.atlas, ranked.as_mut_slice()),
             (spread, f32::MAX),
             |_| true,
             |_, distance| {
@@ -233,13 +233,13 @@ impl Comparison {
     /// the search ends.
     fn search(
         &self,
-        (of, ranked): (&MappedSegments, &mut Vec<(f32, usize)>),
+        (of, ranked): (&MappedSegments, &mut [(f32, usize)]),
         (spread, mut most): (f32, f32),
         counts: impl Fn(usize) -> bool,
         mut take: impl FnMut(usize, f32) -> f32,
     ) {
-        self.rank(of, ranked, spread, most);
-        for (nearest, block) in ranked.iter() {
+        let count = self.rank(of, ranked, spread, most);
+        for (nearest, block) in &ranked[..count] {
             if most < 0.0 || *nearest >= SKETCH_REACH * most {
                 return;
             }
@@ -257,19 +257,27 @@ impl Comparison {
         }
     }
 
-    /// Fills `ranked` with the blocks of `of` whose nearest sketch is within reach of `most`, the nearest first.
-    fn rank(&self, of: &MappedSegments, ranked: &mut Vec<(f32, usize)>, spread: f32, most: f32) {
-        ranked.clear();
+    /// Puts the blocks of `of` whose nearest sketch is within reach of `most` into `ranked`, the nearest first; gives how many there are.
+    fn rank(
+        &self,
+        of: &MappedSegments,
+        ranked: &mut [(f32, usize)],
+        spread: f32,
+        most: f32,
+    ) -> usize {
+        let mut count = 0;
         for (block, sketches) in of.sketches.iter().enumerate() {
             let costs = apart(sketches, &self.sketch);
             let places = (block * TOGETHER..of.spreads.len()).zip(costs);
             let distance = |(place, cost)| self.bounded(of, place, spread, cost);
             let nearest = places.map(distance).fold(f32::INFINITY, smaller);
             if nearest < SKETCH_REACH * most {
-                ranked.push((nearest, block));
+                ranked[count] = (nearest, block);
+                count += 1;
             }
         }
-        ranked.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        ranked[..count].sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        count
     }
 
     /// Of each class but `except` the distance of its nearest sample. O(samples · rows · band).
