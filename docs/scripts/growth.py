@@ -71,7 +71,7 @@ def run(command):
 def rate(morec, index, clips):
     """Frames a second."""
     *_, text = run([morec, "bench", index, *clips])
-    return int(next(line.split()[-1] for line in text.splitlines() if line.startswith("whole path")).replace(",", ""))
+    return int(next(line.split()[-1] for line in text.splitlines() if line.startswith("whole path")))
 
 
 def main():
