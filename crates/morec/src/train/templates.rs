@@ -259,8 +259,6 @@ fn wide_gate(set: &TrainSet, samples: &[TrainSample], params: &TrainParams) -> O
     })
 }
 
-/// Templates of all classes together, where each has several: of many classes, others propose the same motions.
-const MOST_TEMPLATES: usize = 300;
 /// Share of a body's distance at rest below which a match is a candidate of the second look: a body at rest never matches.
 const CANDIDATE_REST_GATE: f32 = 0.85;
 
@@ -279,13 +277,12 @@ impl TrainingContext<'_> {
         learned: &LearnedLook,
         samples: Vec<TrainSample>,
     ) -> Vec<TrainSample> {
-        let group = |s: &TrainSample| (s.class, self.set.streams[s.stream].is_copy);
-        let groups: Vec<_> = samples.iter().map(group).collect();
-        let count = groups.iter().collect::<BTreeSet<_>>().len().max(1);
         let most = match self.params.representatives {
             0 => samples.len(),
-            most => most.min((MOST_TEMPLATES / count).max(1)),
+            most => most,
         };
+        let group = |s: &TrainSample| (s.class, self.set.streams[s.stream].is_copy);
+        let groups: Vec<_> = samples.iter().map(group).collect();
         let segments = &learned.segments[..samples.len()];
         let by = (&learned.look, &learned.comparison);
         let chosen = representatives(by, segments, &groups, most);

@@ -28,12 +28,8 @@ const LEAST_SCORES: usize = 4;
 const PERFORMER_SHARE: f32 = 0.5;
 /// Candidates and looks that are open at once, at most; further ones are dropped.
 const MOST_OPEN: usize = 128;
-/// Classes whose matches at a tick are candidates, at most; of more the nearest. With many classes others match the same motion as well.
-const OPENED: usize = 8;
 /// Extents whose judgement is remembered: different matches grow to the same motion.
-const JUDGED: usize = 128;
-/// Reports that are remembered.
-const REPORTED: usize = 16;
+const REMEMBERED: usize = 16;
 
 /// A motion that was judged, in ticks of the present stretch.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,37 +44,6 @@ struct OpenMatch {
     matched: LookExtent,
     /// The short growth was judged.
     is_judged: bool,
-}
-
-/// The nearest matches at a tick that are within reach and long enough, the nearest first.
-struct NearestMatches {
-    reach: f32,
-    found: [ClassDistance; OPENED],
-}
-
-impl NearestMatches {
-    fn new(reach: f32) -> Self {
-        Self {
-            reach,
-            found: [ClassDistance::NONE; OPENED],
-        }
-    }
-
-    fn take(&mut self, near: ClassDistance) {
-        let farthest = self.reach.min(self.found[OPENED - 1].distance);
-        if near.distance < farthest && near.age >= MIN_AGE_TICKS {
-            let is_nearer = |other: &ClassDistance| other.distance <= near.distance;
-            let at = self.found.partition_point(is_nearer);
-            self.found[at..].rotate_right(1);
-            self.found[at] = near;
-        }
-    }
-
-    fn matches(&self) -> impl Iterator<Item = &ClassDistance> {
-        self.found
-            .iter()
-            .take_while(|near| near.distance < self.reach)
-    }
 }
 
 /// Scores of a performer's last reports.
@@ -127,9 +92,9 @@ pub struct LookDecoder {
     near: [Vec<ClassDistance>; 2],
     open: Vec<OpenMatch>,
     waiting: Vec<Look>,
-    judged: [LookExtent; JUDGED],
+    judged: [Look; REMEMBERED],
     judgements: usize,
-    reported: [LookExtent; REPORTED],
+    reported: [LookExtent; REMEMBERED],
     reports: usize,
     full: Vec<f32>,
     segment: Vec<f32>,
@@ -157,6 +122,13 @@ impl Clone for LookDecoder {
 const NOWHERE: LookExtent = LookExtent {
     start: -1,
     stop: -1,
+};
+const NO_LOOK: Look = Look {
+    extent: NOWHERE,
+    judged: Judged {
+        class: ClassId(0),
+        score: f32::MIN,
+    },
 };
 
 impl LookDecoder {
@@ -189,9 +161,9 @@ impl LookDecoder {
             near: [(); 2].map(|()| vec![ClassDistance::NONE; model.classes.len()]),
             open: Vec::with_capacity(MOST_OPEN),
             waiting: Vec::with_capacity(MOST_OPEN),
-            judged: [NOWHERE; JUDGED],
+            judged: [NO_LOOK; REMEMBERED],
             judgements: 0,
-            reported: [NOWHERE; REPORTED],
+            reported: [NOWHERE; REMEMBERED],
             reports: 0,
             found: Vec::with_capacity(MOST_OPEN),
         })
@@ -211,8 +183,8 @@ impl LookDecoder {
         self.open.clear();
         self.waiting.clear();
         (self.judgements, self.reports) = (0, 0);
-        self.judged = [NOWHERE; JUDGED];
-        self.reported = [NOWHERE; REPORTED];
+        self.judged = [NO_LOOK; REMEMBERED];
+        self.reported = [NOWHERE; REMEMBERED];
     }
 
     /// Reports of the last [`push`](Self::push) or [`finish`](Self::finish).
@@ -224,16 +196,16 @@ impl LookDecoder {
     pub fn push(&mut self, row: &[f32], near: &[ClassDistance]) {
         self.found.clear();
         self.body.push(row);
-        let mut nearest = NearestMatches::new(self.reach);
         for class in 0..near.len() {
             let [before, last] = [0, 1].map(|k| self.near[k][class]);
-            if last.distance <= before.distance && last.distance <= near[class].distance {
-                nearest.take(last);
+            let is_nearest =
+                last.distance <= before.distance && last.distance <= near[class].distance;
+            if is_nearest {
+                self.open_match(last, self.body.ticks() - 2);
             }
             self.near[0][class] = last;
             self.near[1][class] = near[class];
         }
-        self.open(&nearest, self.body.ticks() - 2);
         self.look(false);
         self.report(false);
     }
@@ -241,30 +213,30 @@ impl LookDecoder {
     /// Ends the stretch: what is known must do.
     pub fn finish(&mut self) {
         self.found.clear();
-        let mut nearest = NearestMatches::new(self.reach);
-        let [before, last] = &self.near;
-        let minima = before.iter().zip(last);
-        let minima = minima.filter(|(before, last)| last.distance <= before.distance);
-        minima.for_each(|(_, last)| nearest.take(*last));
-        self.open(&nearest, self.body.ticks() - 1);
+        for class in 0..self.near[1].len() {
+            let [before, last] = [0, 1].map(|k| self.near[k][class]);
+            if last.distance <= before.distance {
+                self.open_match(last, self.body.ticks() - 1);
+            }
+        }
         self.look(true);
         self.report(true);
     }
 
-    /// Takes matches that end with `tick`.
-    fn open(&mut self, nearest: &NearestMatches, tick: i64) {
-        for near in nearest.matches() {
-            let matched = LookExtent {
-                start: (tick - near.age as i64).max(self.body.first()),
-                stop: tick + 1,
-            };
-            let is_new = self.open.iter().all(|open| open.matched != matched);
-            if is_new && self.open.len() < MOST_OPEN {
-                self.open.push(OpenMatch {
-                    matched,
-                    is_judged: false,
-                });
-            }
+    /// Takes a match that ends with `tick`, if it is within `reach` and long enough.
+    fn open_match(&mut self, near: ClassDistance, tick: i64) {
+        if near.distance >= self.reach || near.age < MIN_AGE_TICKS || self.open.len() == MOST_OPEN {
+            return;
+        }
+        let matched = LookExtent {
+            start: (tick - near.age as i64).max(self.body.first()),
+            stop: tick + 1,
+        };
+        if self.open.iter().all(|open| open.matched != matched) {
+            self.open.push(OpenMatch {
+                matched,
+                is_judged: false,
+            });
         }
     }
 
@@ -291,7 +263,7 @@ impl LookDecoder {
     }
 
     fn judge(&mut self, extent: LookExtent) {
-        if self.judged.contains(&extent) {
+        if self.judged.iter().any(|look| look.extent == extent) {
             return;
         }
         write_segment(&self.body, extent, &mut self.full);
@@ -305,7 +277,7 @@ impl LookDecoder {
             extent,
             judged: self.comparison.judge(&self.segment),
         };
-        self.judged[self.judgements % JUDGED] = extent;
+        self.judged[self.judgements % REMEMBERED] = look;
         self.judgements += 1;
         let is_reported = !self.goes_on[look.judged.class.index()];
         if is_reported && look.judged.score > self.bound.max(self.performer.least()) {
@@ -378,7 +350,7 @@ impl LookDecoder {
                 .max()
                 .unwrap_or(0)
                 .max(0);
-            self.reported[self.reports % REPORTED] = extent;
+            self.reported[self.reports % REMEMBERED] = extent;
             self.reports += 1;
             if extent.stop <= last || self.found.len() == MOST_OPEN {
                 continue;
