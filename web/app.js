@@ -2,19 +2,19 @@
 import * as morec from "./vendor/morec/morec.js";
 import { trainInWorker } from "./vendor/morec/worker.js";
 import { keep, place } from "./kept.js";
-import { Nearness } from "./nearness.js";
 import { outlets } from "./outlets.js";
 import { camera, drawLandmarks, film, inTurn, inWords, recorded } from "./sources.js";
 import { Teaching } from "./teaching.js";
+import { Stage } from "./vendor/stage.js";
 
 const MEDIAPIPE = "./vendor/mediapipe";
-const COUNTDOWN_SECS = 2;
+const COUNTDOWN_SECS = 3;
 
 const at = (id) => document.getElementById(id);
 const teaching = new Teaching(morec, trainInWorker);
 const drawing = at("drawing").getContext("2d");
 const turns = inTurn();
-const near = new Nearness();
+const stage = new Stage();
 /** Sources that run or wait for their turn. */
 let running = 0;
 let busy = false;
@@ -23,10 +23,6 @@ let send = () => {};
 const say = (text) => (at("state").textContent = text);
 /** Beside the buttons of sources. */
 const saySource = (text) => (at("source-state").textContent = text);
-/** Over the picture, for somebody who stands away from it. */
-const sayLarge = (text) => {
-  if (at("large").textContent !== text) at("large").textContent = text;
-};
 const wait = (secs) => new Promise((done) => setTimeout(done, 1000 * secs));
 
 /** Runs `job`; what goes wrong is said, in words. */
@@ -44,16 +40,16 @@ const on = (id, type, job, said) => at(id).addEventListener(type, handled(job, s
 async function run(source) {
   running++;
   saySource("");
+  stage.warn([]);
   show();
   try {
     await turns.run(async (signal) => {
       try {
         await source((secs, positions, seen) => {
           const first = !teaching.hasPoses;
-          near.pass(secs);
+          stage.pass(secs);
           teaching.pose(secs, positions);
           if (first) show();
-          showNearness();
           draw(positions, seen);
         }, signal);
       } finally {
@@ -84,27 +80,6 @@ function draw(positions, seen) {
     drawing.arc(canvas.width / 2 + (place[0] - middle[0]) * scale, canvas.height / 2 - (place[1] - middle[1]) * scale, 5, 0, 7);
     drawing.fill();
   }
-}
-
-/** A bar for each motion of the index, and the one that was recognised. */
-function showNearness() {
-  const rows = near.rows;
-  const bars = at("bars");
-  if (bars.children.length !== rows.length) {
-    bars.replaceChildren(...rows.map(() => {
-      const row = document.createElement("li");
-      row.append(document.createElement("meter"), " ", document.createElement("span"));
-      return row;
-    }));
-  }
-  rows.forEach(({ name, share, word }, number) => {
-    const [meter, text] = bars.children[number].children;
-    meter.value = share;
-    meter.setAttribute("aria-label", name);
-    const said = word ? `${name}: ${word}` : name;
-    if (text.textContent !== said) text.textContent = said;
-  });
-  if (!busy) sayLarge(near.recognised);
 }
 
 /** What can be done, and what there is. */
@@ -151,18 +126,18 @@ async function record() {
   try {
     for (let left = COUNTDOWN_SECS; left > 0; left--) {
       say(`${name} in ${left} …`);
-      sayLarge(String(left));
+      stage.say(String(left));
       await wait(1);
     }
     say(`Perform ${name} now.`);
-    sayLarge(name);
+    stage.say(name);
     teaching.record();
     await wait(secs);
     teaching.keep(name);
     say(`Kept: ${teaching.classes().get(name.trim()).length} of ${name}. Two samples of each motion are enough.`);
   } finally {
     busy = false;
-    sayLarge("");
+    stage.say("");
   }
 }
 
@@ -215,21 +190,15 @@ let shownIndex = null;
 teaching.addEventListener("change", () => {
   if (teaching.index !== shownIndex) {
     shownIndex = teaching.index;
-    near.begin(shownIndex?.classes ?? []);
-    showNearness();
+    stage.begin(shownIndex?.classes ?? []);
   }
   listClasses();
   show();
 });
-teaching.addEventListener("diagnosis", ({ detail }) => {
-  const text = detail.join("\n");
-  if (text === at("diagnosis").dataset.said) return;
-  at("diagnosis").dataset.said = text;
-  at("diagnosis").replaceChildren(...detail.map((sentence) => Object.assign(document.createElement("li"), { textContent: sentence })));
-});
+teaching.addEventListener("diagnosis", ({ detail }) => stage.warn(detail));
 teaching.addEventListener("motion", ({ detail }) => {
   send(detail);
-  near.take(detail);
+  stage.take(detail);
   if (detail.phase !== "end") return;
   const row = document.createElement("li");
   row.className = "now";

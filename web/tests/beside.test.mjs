@@ -2,9 +2,9 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
+import { Nearness } from "../../crates/morec-live/src/webcam/nearness.js";
 import { inWords } from "../../crates/morec-live/src/webcam/words.js";
 import { keep } from "../kept.js";
-import { Nearness } from "../nearness.js";
 import { Teaching } from "../teaching.js";
 
 const event = (name, phase, progress, motion = 1) => ({ class: name, phase, progress, motion });

@@ -109,6 +109,53 @@ test("the page teaches, trains, recognises, saves and loads", { skip, timeout: 1
   assert.deepEqual(errors, []);
 });
 
+test("countdown, motion, bars and problems lie large over the picture, each in its place", { skip, timeout: 180_000 }, async () => {
+  const { lines } = performance();
+  await page.evaluate(() => {
+    const said = (globalThis.said = { large: new Set(), bars: new Set() });
+    const note = () => {
+      said.large.add(document.getElementById("large").textContent);
+      for (const text of document.querySelectorAll("#bars span")) said.bars.add(text.textContent);
+    };
+    new MutationObserver(note).observe(document.querySelector(".stage"), { subtree: true, childList: true, characterData: true });
+  });
+  const buffer = Buffer.from(lines.join("\n"));
+  await page.locator("#source-file").setInputFiles({ name: "performance.jsonl", mimeType: "application/json", buffer });
+  await page.locator("#stop:enabled").waitFor();
+  await page.locator("#name").fill("hop");
+  await page.locator("#secs").fill("1");
+  await page.locator("#record").click();
+  await page.getByText("Kept: 1 of hop").waitFor();
+  await page.locator("#stop:disabled").waitFor({ timeout: 90_000 });
+  const said = await page.evaluate(() => ({ large: [...globalThis.said.large], bars: [...globalThis.said.bars] }));
+  for (const text of ["3", "2", "1", "hop"]) assert.ok(said.large.includes(text), said.large.join("; "));
+  for (const motion of ["wave", "bow"]) {
+    assert.ok(said.large.includes(motion), said.large.join("; "));
+    assert.ok(said.bars.includes(`${motion}: recognised`), said.bars.join("; "));
+  }
+  // A person of 40 m: what is wrong lies at the top of the picture, the bars at its bottom.
+  const grown = lines.map((line) => JSON.parse(line)).map(({ t, positions }) => JSON.stringify({
+    t, positions: Object.fromEntries(Object.entries(positions).map(([role, place]) => [role, place.map((value) => 23 * value)])),
+  }));
+  await page.locator("#source-file").setInputFiles({ name: "grown.jsonl", mimeType: "application/json", buffer: Buffer.from(grown.join("\n")) });
+  await page.locator("#diagnosis li").first().waitFor();
+  const within = await page.evaluate(() => {
+    const box = (id) => document.getElementById(id).getBoundingClientRect();
+    const picture = document.querySelector(".stage").getBoundingClientRect();
+    return {
+      top: box("diagnosis").top - picture.top, bottom: picture.bottom - box("bars").bottom,
+      apart: box("bars").top - box("diagnosis").bottom, letters: parseFloat(getComputedStyle(document.getElementById("large")).fontSize),
+    };
+  });
+  assert.ok(Math.abs(within.top) < 1 && Math.abs(within.bottom) < 1 && within.apart > 0 && within.letters >= 46, JSON.stringify(within));
+  await page.locator("#stop").click();
+  // What was wrong goes with its source.
+  await page.locator("#source-file").setInputFiles({ name: "again.jsonl", mimeType: "application/json", buffer });
+  await page.locator("#diagnosis li").first().waitFor({ state: "detached" });
+  await page.locator("#stop").click();
+  assert.deepEqual(errors, []);
+});
+
 test("the page is used by keyboard and fits a phone in both themes", { skip }, async () => {
   await page.reload();
   await page.keyboard.press("Tab");

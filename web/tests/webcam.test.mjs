@@ -83,8 +83,19 @@ test("the camera's page sends what MediaPipe sees, and the command recognises it
     tab.on("pageerror", (error) => errors.push(String(error)));
     await tab.goto(page);
     await tab.getByText("morec listens.").waitFor();
+    await tab.evaluate(() => {
+      const large = document.getElementById("large");
+      globalThis.large = new Set();
+      new MutationObserver(() => globalThis.large.add(large.textContent)).observe(large, { childList: true });
+    });
     await tab.waitForFunction(() => document.title === "done", null, { timeout: 90_000 });
     assert.deepEqual(errors, []);
+    // Somebody before the camera sees a bar for each class, and large what is recognised.
+    const classes = new Set(detections[0].map((row) => row.class));
+    const bars = await tab.locator("#bars meter").evaluateAll((meters) => meters.map((meter) => meter.getAttribute("aria-label")));
+    assert.ok([...classes].every((motion) => bars.includes(motion)), bars.join("; "));
+    const large = await tab.evaluate(() => [...globalThis.large].filter(Boolean));
+    assert.ok(large.length > 1 && large.every((motion) => bars.includes(motion)), large.join("; "));
     live.kill("SIGINT");
     await new Promise((done) => live.once("close", done));
     const found = new Set(events.map((event) => event.class));

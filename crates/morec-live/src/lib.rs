@@ -69,6 +69,7 @@ pub use sources::{OpenSource, SourceOptions, open_source};
 pub use summary::summary;
 pub use threads::pin_thread;
 pub use vmc::VmcSource;
+pub use webcam::WebcamPage;
 pub use websocket::WebSocketSink;
 #[doc(hidden)]
 pub use websocket::greet::heard;

@@ -14,7 +14,7 @@ use crate::axis::{AxisSource, axis_skeleton};
 use crate::clip::ClipSource;
 use crate::json::JsonSource;
 use crate::vmc::VmcSource;
-use crate::webcam::webcam;
+use crate::webcam::{WebcamPage, webcam};
 use crate::{Address, LiveError, Notices};
 
 /// Options of opening a source.
@@ -65,6 +65,8 @@ pub struct OpenSource {
     pub name: String,
     /// Notices about received data.
     pub notices: Notices,
+    /// The page of `webcam`, which shows what it is told.
+    pub page: Option<WebcamPage>,
 }
 
 /// Opens the source at `address`: `vmc://HOST:PORT`, `axis://HOST:PORT`, `axis+udp://HOST:PORT`, `json:-`,
@@ -113,10 +115,13 @@ pub fn open_source(
             ))
         }
         "webcam" => {
-            let (source, at) = webcam(address, options.mediapipe.as_deref())?;
+            let (source, at, page) = webcam(address, options.mediapipe.as_deref())?;
             let notices = source.notices();
             let name = format!("webcam://{at}");
-            Ok(opened(source, OverflowPolicy::Drop, name, notices))
+            Ok(OpenSource {
+                page: Some(page),
+                ..opened(source, OverflowPolicy::Drop, name, notices)
+            })
         }
         "clip" => {
             let reader = FileReader {
@@ -157,6 +162,7 @@ fn opened(
         overload,
         name,
         notices,
+        page: None,
     }
 }
 

@@ -1,6 +1,9 @@
 //! The camera of this machine: a page in the browser finds poses in its picture and sends them as lines of JSON over a WebSocket.
 //!
 //! The page is served here, and so are MediaPipe's files, from a folder that the user names. Nobody but this machine is answered.
+//! What the performer should know goes back to the page ([`WebcamPage`]).
+
+mod told;
 
 use std::io::{Read, Write};
 use std::net::{SocketAddr, TcpStream};
@@ -16,9 +19,10 @@ use crate::json::JsonSource;
 use crate::lines::{Came, LONGEST, Lines, SILENCE};
 use crate::websocket::greet::{Manners, PATIENCE, greet};
 use crate::{Address, LiveError, Notices};
+pub use told::WebcamPage;
 
 /// The page's own files: path, type, content.
-const PAGE: [(&str, &str, &str); 5] = [
+const PAGE: [(&str, &str, &str); 8] = [
     ("/", "text/html", include_str!("webcam/index.html")),
     (
         "/page.js",
@@ -36,6 +40,17 @@ const PAGE: [(&str, &str, &str); 5] = [
         include_str!("webcam/mediapipe.js"),
     ),
     (
+        "/nearness.js",
+        "text/javascript",
+        include_str!("webcam/nearness.js"),
+    ),
+    ("/stage.css", "text/css", include_str!("webcam/stage.css")),
+    (
+        "/stage.js",
+        "text/javascript",
+        include_str!("webcam/stage.js"),
+    ),
+    (
         "/words.js",
         "text/javascript",
         include_str!("webcam/words.js"),
@@ -50,14 +65,14 @@ const TRACKED: [&str; 3] = ["body", "hand", "hands"];
 /// Requests of browsers are shorter.
 const LARGEST_HEAD: usize = 1 << 13;
 
-/// Opens `webcam` (a free port of this machine) or `webcam://HOST:PORT`. Returns where the page is, too.
+/// Opens `webcam` (a free port of this machine) or `webcam://HOST:PORT`. Returns where the page is, and what it is told by, too.
 ///
 /// # Errors
 /// No folder with MediaPipe's files, another machine's address, a port that is taken.
 pub fn webcam(
     address: &Address,
     mediapipe: Option<&Path>,
-) -> Result<(JsonSource, SocketAddr), LiveError> {
+) -> Result<(JsonSource, SocketAddr, WebcamPage), LiveError> {
     address.allow(&["mediapipe", "track"])?;
     let at = address.socket()?;
     if !at.ip().is_loopback() {
@@ -69,13 +84,14 @@ pub fn webcam(
     let named = address.text("mediapipe").map(Path::new);
     let folder = with_mediapipe(named.or(mediapipe))?;
     let tracked = tracked(address, &folder)?;
-    let notices = Notices::default();
+    let (notices, page) = (Notices::default(), WebcamPage::default());
+    let told = page.clone();
     let attend = move |number, stream, sender: &SyncSender<Came>| {
         // A connection that is closed in the middle is no fault.
-        let _ = answer(number, stream, sender, &folder, tracked);
+        let _ = answer(number, stream, sender, &folder, tracked, &told);
     };
     let (lines, at) = Lines::serve(at, &notices, Arc::new(attend))?;
-    Ok((JsonSource::of_connections(lines, notices), at))
+    Ok((JsonSource::of_connections(lines, notices), at, page))
 }
 
 fn with_mediapipe(folder: Option<&Path>) -> Result<PathBuf, LiveError> {
@@ -120,12 +136,13 @@ fn answer(
     sender: &SyncSender<Came>,
     folder: &Path,
     tracked: &str,
+    page: &WebcamPage,
 ) -> std::io::Result<()> {
     let Some(head) = head_of(&stream)? else {
         return Ok(());
     };
     if head.to_ascii_lowercase().contains("\nupgrade: websocket") {
-        take_lines(number, stream, sender);
+        take_lines(number, stream, sender, page);
         return Ok(());
     }
     // What is left unread would reset the connection and what was written on it.
@@ -186,14 +203,18 @@ fn file_at(path: &str, folder: &Path, tracked: &str) -> Option<(&'static str, Ve
 }
 
 /// Lines from a page of this machine, each a text message.
-fn take_lines(number: u64, stream: TcpStream, sender: &SyncSender<Came>) {
+fn take_lines(number: u64, stream: TcpStream, sender: &SyncSender<Came>, page: &WebcamPage) {
     let manners = Manners {
         largest: LONGEST as usize,
         wait: SILENCE,
     };
+    let Ok(back) = stream.try_clone() else {
+        return;
+    };
     let Some(mut socket) = greet(stream, None, manners) else {
         return;
     };
+    page.add(number, back);
     let mut lines = 0;
     while let Ok(message) = socket.read() {
         let Message::Text(text) = message else {
@@ -206,9 +227,10 @@ fn take_lines(number: u64, stream: TcpStream, sender: &SyncSender<Came>) {
             text: Some(text.as_str().to_owned()),
         };
         if sender.send(came).is_err() {
-            return;
+            break;
         }
     }
+    page.remove(number);
     // A dropped receiver is no fault.
     let _ = sender.send(Came::Closed(number));
 }

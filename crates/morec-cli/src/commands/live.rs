@@ -17,7 +17,7 @@ use crate::live::open::TrackerArgs;
 use crate::live::sinks::CountedSink;
 use crate::live::status::StatusLine;
 use crate::live::takes::secs;
-use morec_live::{Address, Advice, NamedEvent, Notices, advice_of_status, summary};
+use morec_live::{Address, Advice, NamedEvent, Notices, WebcamPage, advice_of_status, summary};
 use morec_ops::StreamSettings;
 
 /// Recognise motions live, from a tracker to an event.
@@ -100,6 +100,20 @@ struct Listening {
     session: Session,
     reader: EventReader,
     notices: Notices,
+    page: Option<WebcamPage>,
+}
+
+/// The pages of webcams are told so often what is wrong with their streams.
+const TELL_EVERY: Duration = Duration::from_secs(1);
+
+impl Listening {
+    /// Shows what is wrong with the stream to somebody before the camera.
+    fn show_problems(&self, status: &Status, index: &MotionIndex) {
+        let Some(page) = &self.page else { return };
+        let diagnosed = status.actors.iter().filter_map(|actor| actor.diagnosis);
+        let sentences = diagnosed.flat_map(|diagnosis| index.findings(&diagnosis));
+        page.problems(&sentences.collect::<Vec<_>>());
+    }
 }
 
 /// Runs the command.
@@ -116,13 +130,13 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let mut listening: Vec<Listening> = args
         .listen
         .iter()
-        .map(|address| listen(address, &index, args))
+        .map(|address| listen(address, &index, args, &mut outlets))
         .collect::<Result<_>>()?;
     let stop = stop_on_ctrl_c()?;
     let handles: Vec<StatusHandle> = listening.iter().map(|l| l.session.handle()).collect();
     let begun = Instant::now();
     let mut line = StatusLine::new(args.quiet);
-    let mut dropped = 0;
+    let (mut dropped, mut told) = (0, begun);
     let mut advice = Advice::new(listening.iter().map(|l| l.name.clone()));
     let over = |secs: f64| begun.elapsed().as_secs_f64() >= secs;
     // One source can wait for its events; several are looked at in turn.
@@ -146,6 +160,12 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             break;
         }
         let statuses: Vec<Status> = handles.iter().map(StatusHandle::get).collect();
+        if told.elapsed() >= TELL_EVERY {
+            told = Instant::now();
+            for (source, status) in listening.iter().zip(&statuses) {
+                source.show_problems(status, &index);
+            }
+        }
         if !args.quiet {
             for text in advice.look(&statuses, &index) {
                 line.clear();
@@ -218,8 +238,24 @@ fn complain(source: &str, notices: &Notices, line: &mut StatusLine) {
     }
 }
 
-fn listen(address: &Address, index: &MotionIndex, args: &Args) -> Result<Listening> {
+/// Opens a source and a session. A page that it serves becomes an outlet.
+fn listen(
+    address: &Address,
+    index: &MotionIndex,
+    args: &Args,
+    outlets: &mut Vec<CountedSink>,
+) -> Result<Listening> {
     let opened = args.tracker.open(address, Some(index))?;
+    if let Some(page) = &opened.page {
+        page.classes(
+            index
+                .model
+                .classes()
+                .iter()
+                .map(|class| class.name.as_str()),
+        );
+        outlets.push(CountedSink::page(address, page));
+    }
     let session_options = SessionOptions {
         events: args.stream.options().events()?,
         overload: opened.overload,
@@ -235,5 +271,6 @@ fn listen(address: &Address, index: &MotionIndex, args: &Args) -> Result<Listeni
         session,
         reader,
         notices: opened.notices,
+        page: opened.page,
     })
 }

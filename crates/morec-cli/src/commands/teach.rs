@@ -15,8 +15,7 @@ use crate::live::open::TrackerArgs;
 use crate::live::sinks::CountedSink;
 use crate::live::takes::{Ended, TakeArgs, TakeRecorder, secs};
 use lesson::Lessons;
-use morec_live::Address;
-use morec_live::NamedEvent;
+use morec_live::{Address, NamedEvent, WebcamPage};
 
 /// Teach gestures live: name one, perform it three times, see it recognised.
 ///
@@ -73,8 +72,8 @@ fn gesture_name(text: &str) -> Result<String, String> {
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
     let mut lessons = Lessons::open(&args.index)?;
-    let mut watch = Watch::new(args, lessons.index())?;
     let opened = args.tracker.open(&args.listen, None)?;
+    let mut watch = Watch::new(args, lessons.index(), opened.page.clone())?;
     let mut stage = TakeRecorder::new(opened, &args.take, stop_on_ctrl_c()?);
     stage.check_end(Some(args.secs))?;
     let begun = Instant::now();
@@ -163,21 +162,27 @@ struct Watch {
     performers: Vec<Performer>,
     events: Vec<Event>,
     sequence: u64,
+    page: Option<WebcamPage>,
 }
 
 impl Watch {
-    fn new(args: &Args, index: Option<&MotionIndex>) -> Result<Self> {
+    fn new(args: &Args, index: Option<&MotionIndex>, page: Option<WebcamPage>) -> Result<Self> {
         let terminal = ["terminal:-".parse().map_err(anyhow::Error::msg)?];
         let emit = if args.emit.is_empty() {
             &terminal[..]
         } else {
             &args.emit
         };
+        let outlets = emit.iter().map(CountedSink::open);
+        let shown = page
+            .iter()
+            .map(|page| Ok(CountedSink::page(&args.listen, page)));
         let mut watch = Self {
-            outlets: emit.iter().map(CountedSink::open).collect::<Result<_>>()?,
+            outlets: outlets.chain(shown).collect::<Result<_>>()?,
             performers: Vec::new(),
             events: Vec::new(),
             sequence: 0,
+            page,
         };
         watch.begin(index);
         Ok(watch)
@@ -193,6 +198,15 @@ impl Watch {
             let performer = |actor| Performer::new(&index.model, PerformerId(actor), &options);
             (0..MAX_PERFORMERS as u16).map(performer).collect()
         });
+        if let Some((page, index)) = self.page.as_ref().zip(index) {
+            page.classes(
+                index
+                    .model
+                    .classes()
+                    .iter()
+                    .map(|class| class.name.as_str()),
+            );
+        }
     }
 
     /// Takes the next thing the source has.

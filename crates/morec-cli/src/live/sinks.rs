@@ -5,7 +5,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result};
 use morec::live::Phase;
-use morec_live::{Address, JsonLines, NamedEvent, Sink, open_sink};
+use morec_live::{Address, JsonLines, NamedEvent, Sink, WebcamPage, open_sink};
 
 use crate::output;
 
@@ -82,6 +82,15 @@ impl CountedSink {
             sink: open(address)?,
             failures: 0,
         })
+    }
+
+    /// The page of the webcam at `address`.
+    pub fn page(address: &Address, page: &WebcamPage) -> Self {
+        Self {
+            address: address.clone(),
+            sink: Box::new(page.clone()),
+            failures: 0,
+        }
     }
 
     /// Emits an event; failures are counted, and the first is returned to be shown. A sink that fails does not end a

@@ -7,12 +7,15 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::time::Instant;
 
 use anyhow::{Result, bail};
+use morec::diagnosis::{Diagnoser, Severity};
 use morec::live::{Frame, MAX_PERFORMERS, PerformerId, Recording, Rig, SourceEvent};
 
-use morec_live::OpenSource;
+use morec_live::{OpenSource, WebcamPage};
 
 /// Shorter takes are discarded, seconds.
 pub const SHORTEST_SECS: f64 = 0.3;
+/// The page of a webcam is told so often what is wrong with the stream.
+const TELL_EVERY_SECS: f64 = 1.0;
 
 /// Options of takes.
 #[derive(clap::Args, Debug)]
@@ -51,9 +54,43 @@ pub enum Ended {
     Stopped,
 }
 
+/// What is wrong with the performer's stream, for the page of a webcam.
+struct ShownProblems {
+    page: WebcamPage,
+    diagnoser: Diagnoser,
+    /// When the page was last told, seconds of stream.
+    told_secs: f64,
+}
+
+impl ShownProblems {
+    fn new(page: WebcamPage) -> Self {
+        Self {
+            page,
+            diagnoser: Diagnoser::live(),
+            told_secs: 0.0,
+        }
+    }
+
+    fn push(&mut self, frame: &Frame, rig: &Rig) {
+        let pose = frame.key_pose(rig);
+        self.diagnoser.push(frame.time_secs, frame.wall_secs, &pose);
+        if (frame.time_secs - self.told_secs).abs() < TELL_EVERY_SECS {
+            return;
+        }
+        self.told_secs = frame.time_secs;
+        let findings = self.diagnoser.diagnosis().findings();
+        let wrong = findings
+            .iter()
+            .filter(|finding| finding.severity() >= Severity::Warning);
+        let sentences: Vec<String> = wrong.map(ToString::to_string).collect();
+        self.page.problems(&sentences);
+    }
+}
+
 /// A source before which somebody performs.
 pub struct TakeRecorder {
     opened: OpenSource,
+    problems: Option<ShownProblems>,
     actor: PerformerId,
     bell: bool,
     count_down_secs: f64,
@@ -70,6 +107,7 @@ impl TakeRecorder {
         // Poses on standard input leave no room for anybody's words.
         let keys = (!opened.name.starts_with("json:")).then(typed);
         Self {
+            problems: opened.page.clone().map(ShownProblems::new),
             opened,
             actor: PerformerId(args.actor),
             bell: !args.no_bell,
@@ -109,6 +147,11 @@ impl TakeRecorder {
         let next = self.opened.source.next(&mut self.frame);
         match &next {
             SourceEvent::Rig(actor, rig) if *actor == self.actor => self.rig = Some(rig.clone()),
+            SourceEvent::Frame if self.frame.actor == self.actor => {
+                if let Some((problems, rig)) = self.problems.as_mut().zip(self.rig.as_deref()) {
+                    problems.push(&self.frame, rig);
+                }
+            }
             SourceEvent::Ended => self.ended = true,
             _ => {}
         }
@@ -133,6 +176,13 @@ impl TakeRecorder {
         &self.opened.name
     }
 
+    /// Says a text large where the performer looks.
+    fn show(&self, text: &str) {
+        if let Some(page) = &self.opened.page {
+            page.say(text);
+        }
+    }
+
     /// Counts down. Time passes as fast as the clock on the wall or as the stream, whichever is faster: a file has no
     /// need to wait.
     fn count_down(&mut self, what: &str) {
@@ -147,6 +197,7 @@ impl TakeRecorder {
             if left.ceil() < said {
                 said = left.ceil();
                 eprintln!("morec: {what} in {said} …");
+                self.show(&said.to_string());
             }
             let actor = self.actor;
             if let (SourceEvent::Frame, frame) = self.next()
@@ -166,8 +217,10 @@ impl TakeRecorder {
         while self.typed().is_some() {}
         self.ring();
         eprintln!("morec: {what}: go!");
+        self.show(what);
         let (recording, ended) = self.record(secs);
         self.ring();
+        self.show("");
         let recording = recording.filter(|recording| recording.secs() >= SHORTEST_SECS);
         (recording, ended)
     }

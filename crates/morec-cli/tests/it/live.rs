@@ -7,6 +7,7 @@ use std::time::Duration;
 
 use morec::formats::bvh;
 use morec::synth::{Person, Script};
+use serde_json::Value;
 
 use crate::kit::Folder;
 
@@ -15,14 +16,16 @@ const INDEX: &[u8] = include_bytes!("../../../morec/testdata/index/v1.index");
 
 /// A folder with an index and a person who moves for some seconds.
 fn folder() -> Folder {
+    folder_of_waves(1)
+}
+
+/// The same, of a person who waves this often.
+fn folder_of_waves(count: usize) -> Folder {
     let folder = Folder::with(&[]);
     std::fs::write(folder.path().join("v1.index"), INDEX).unwrap();
-    let take = Script::new(5, Person::draw(5, 0))
-        .rest(1.0)
-        .play("wave")
-        .rest(0.5)
-        .film("person", 60.0)
-        .unwrap();
+    let script = Script::new(5, Person::draw(5, 0)).rest(1.0);
+    let script = (0..count).fold(script, |script, _| script.play("wave").rest(0.5));
+    let take = script.film("person", 60.0).unwrap();
     let mut bytes = Vec::new();
     bvh::write(&take.clip, &mut bytes).unwrap();
     std::fs::write(folder.path().join("person.bvh"), bytes).unwrap();
@@ -39,8 +42,14 @@ struct Live {
 
 impl Live {
     fn start(folder: &Folder, listen: &str, more: &[&str]) -> Self {
+        Self::of(folder, &["live", "v1.index"], listen, more)
+    }
+
+    /// Another command that listens.
+    fn of(folder: &Folder, command: &[&str], listen: &str, more: &[&str]) -> Self {
         let mut child = Command::new(env!("CARGO_BIN_EXE_morec"))
-            .args(["live", "v1.index", "--listen", listen])
+            .args(command)
+            .args(["--listen", listen])
             .args(more)
             .current_dir(folder.path())
             .stdin(Stdio::null())
@@ -152,9 +161,9 @@ fn lines_over_tcp_are_poses_and_connections_come_and_go() {
     );
 }
 
-/// A WebSocket without a library: says hello, and sends short text messages.
+/// A WebSocket without a library: says hello.
 #[cfg(unix)]
-fn send_texts(at: &str, path: &str, texts: &[&str]) {
+fn connected(at: &str, path: &str) -> TcpStream {
     let mut stream = TcpStream::connect(at).unwrap();
     write!(
         stream,
@@ -168,6 +177,12 @@ fn send_texts(at: &str, path: &str, texts: &[&str]) {
         stream.read_exact(&mut byte).unwrap();
         answer.extend(byte);
     }
+    stream
+}
+
+/// Sends short text messages.
+#[cfg(unix)]
+fn send_texts(mut stream: &TcpStream, texts: &[&str]) {
     for text in texts {
         // A whole text, its length in two bytes, under a mask of zeros.
         let [high, low] = u16::try_from(text.len()).unwrap().to_be_bytes();
@@ -178,18 +193,84 @@ fn send_texts(at: &str, path: &str, texts: &[&str]) {
     }
 }
 
+/// Text messages as they come, until one `is_last`, or none comes for a minute.
+#[cfg(unix)]
+fn heard(mut stream: &TcpStream, is_last: impl Fn(&Value) -> bool) -> Vec<Value> {
+    let patience = Some(Duration::from_secs(60));
+    stream.set_read_timeout(patience).unwrap();
+    let mut messages = Vec::new();
+    let mut head = [0; 2];
+    while !messages.last().is_some_and(&is_last) && stream.read_exact(&mut head).is_ok() {
+        let mut length = usize::from(head[1]);
+        if length == 126 {
+            stream.read_exact(&mut head).unwrap();
+            length = u16::from_be_bytes(head).into();
+        }
+        let mut text = vec![0; length];
+        stream.read_exact(&mut text).unwrap();
+        messages.push(serde_json::from_slice(&text).unwrap());
+    }
+    messages
+}
+
+/// Lines of JSON with the poses of the folder's person, and what MediaPipe's folder is known by.
+#[cfg(unix)]
+fn camera_lines(folder: &Folder) -> String {
+    let to_lines = "record --listen clip://person.bvh?speed=0 -o take.jsonl --count-down 0";
+    let recorded = folder.morec(&to_lines.split(' ').collect::<Vec<_>>());
+    assert_eq!(recorded.code, Some(0), "{recorded:?}");
+    std::fs::write(folder.path().join("pose.js"), "").unwrap();
+    std::fs::read_to_string(folder.path().join("take.jsonl")).unwrap()
+}
+
+#[test]
+#[cfg(unix)]
+fn the_cameras_page_shows_the_countdown_the_classes_and_what_is_recognised() {
+    let folder = folder_of_waves(6);
+    let lines = camera_lines(&folder);
+    let lines: Vec<&str> = lines.lines().collect();
+    let take = ["--name", "wave", "--secs", "4", "--count-down", "1"];
+    let camera = ["--mediapipe", ".", "--no-bell"];
+    let teach = Live::of(
+        &folder,
+        &["teach", "new.index"],
+        "webcam://127.0.0.1:0",
+        &[&take[..], &camera[..]].concat(),
+    );
+    let page = connected(&teach.at, "/poses");
+    let sender = page.try_clone().unwrap();
+    let is_wave = |told: &Value| told["class"] == "wave" && told["phase"] == "end";
+    let told = std::thread::scope(|scope| {
+        scope.spawn(|| send_texts(&sender, &lines));
+        heard(&page, is_wave)
+    });
+    let texts: Vec<&str> = told.iter().filter_map(|t| t["text"].as_str()).collect();
+    let said = |text: &str| texts.iter().position(|t| *t == text);
+    let in_order = [
+        "wave, 1 of 3 in 1",
+        "wave, 1 of 3: go!",
+        "wave, 3 of 3: go!",
+    ]
+    .map(said);
+    assert!(in_order.is_sorted() && in_order[0].is_some(), "{texts:?}");
+    assert_eq!(texts.last(), Some(&""), "{texts:?}");
+    let classes = told.iter().find(|t| t["type"] == "classes");
+    assert_eq!(classes.unwrap()["names"], serde_json::json!(["wave"]));
+    assert!(told.last().is_some_and(is_wave), "{told:?}");
+    // Bars grow before the end.
+    assert!(told.iter().any(|t| t["phase"] == "start"), "{told:?}");
+    teach.interrupt();
+}
+
 #[test]
 #[cfg(unix)]
 fn recorded_poses_from_the_cameras_page_are_a_stream_like_any_other() {
     let folder = folder();
-    let to_lines = "record --listen clip://person.bvh?speed=0 -o take.jsonl --count-down 0";
-    let recorded = folder.morec(&to_lines.split(' ').collect::<Vec<_>>());
-    assert_eq!(recorded.code, Some(0), "{recorded:?}");
-    let lines = std::fs::read_to_string(folder.path().join("take.jsonl")).unwrap();
+    let lines = camera_lines(&folder);
     let lines: Vec<&str> = lines.lines().collect();
-    std::fs::write(folder.path().join("pose.js"), "").unwrap();
     let live = Live::start(&folder, "webcam://127.0.0.1:0", &["--mediapipe", "."]);
-    send_texts(&live.at, "/poses", &lines);
+    let page = connected(&live.at, "/poses");
+    send_texts(&page, &lines);
     // Until everything has arrived; if it never does, the counts below say so.
     std::thread::sleep(Duration::from_secs(3));
     let summary = live.interrupt();

@@ -22,7 +22,7 @@ impl Drop for UnpackedFiles {
     }
 }
 
-fn opened(folder: &UnpackedFiles) -> (JsonSource, SocketAddr) {
+fn opened(folder: &UnpackedFiles) -> (JsonSource, SocketAddr, WebcamPage) {
     webcam(&"webcam".parse().unwrap(), Some(&folder.0)).unwrap()
 }
 
@@ -37,12 +37,15 @@ fn get(at: SocketAddr, path: &str) -> String {
 #[test]
 fn the_page_and_mediapipe_are_served_and_nothing_else_is() {
     let folder = UnpackedFiles::new("served");
-    let (_source, at) = opened(&folder);
+    let (_source, at, _page) = opened(&folder);
     for (path, holds) in [
         ("/", "page.js"),
         ("/page.js", "camera.js"),
         ("/camera.js?1", "landmarks"),
         ("/mediapipe.js", "Handedness"),
+        ("/nearness.js", "nearly"),
+        ("/stage.css", "#large"),
+        ("/stage.js", "class Stage"),
         ("/words.js", "NotAllowedError"),
         ("/mediapipe/pose.js", "let pose;"),
     ] {
@@ -74,7 +77,7 @@ fn the_page_and_mediapipe_are_served_and_nothing_else_is() {
 #[test]
 fn poses_come_over_a_websocket_from_pages_of_this_machine_only() {
     let folder = UnpackedFiles::new("poses");
-    let (mut source, at) = opened(&folder);
+    let (mut source, at, _page) = opened(&folder);
     let of_page = |origin: &str| {
         let mut request = format!("ws://{at}/poses").into_client_request().unwrap();
         request
@@ -108,6 +111,35 @@ fn poses_come_over_a_websocket_from_pages_of_this_machine_only() {
 }
 
 #[test]
+fn a_tab_is_told_what_lasts_and_then_what_is_new() {
+    let folder = UnpackedFiles::new("told");
+    let (mut source, at, page) = opened(&folder);
+    page.classes(["wave", "bow"]);
+    page.say("3");
+    page.say("2");
+    let (mut socket, _) = tungstenite::connect(format!("ws://{at}/poses")).unwrap();
+    let mut heard = || {
+        let text = socket.read().unwrap().into_text().unwrap();
+        serde_json::from_str::<serde_json::Value>(&text).unwrap()
+    };
+    assert_eq!(heard()["names"], serde_json::json!(["wave", "bow"]));
+    assert_eq!(heard()["text"], "2");
+    // Between these two it is added, and nothing is said twice.
+    let problem = ["The hips are never seen.".to_owned()];
+    page.problems(&problem);
+    page.problems(&problem);
+    page.say("");
+    assert_eq!(heard()["sentences"][0], "The hips are never seen.");
+    assert_eq!(heard(), serde_json::json!({"type": "say", "text": ""}));
+    socket.close(None).unwrap();
+    let mut frame = Frame::default();
+    while socket.read().is_ok() {}
+    // A tab that was closed is forgotten, and no fault.
+    assert!(matches!(source.next(&mut frame), SourceEvent::Quiet));
+    page.say("1");
+}
+
+#[test]
 fn what_is_missing_is_said() {
     let said = |address: &str, folder: Option<&Path>| {
         webcam(&address.parse().unwrap(), folder)
@@ -130,7 +162,7 @@ fn what_is_missing_is_said() {
 fn the_page_tracks_what_is_asked_for_or_what_the_folder_has_files_of() {
     let folder = UnpackedFiles::new("tracked");
     let page_of = |address: &str| {
-        let (_source, at) = webcam(&address.parse().unwrap(), Some(&folder.0)).unwrap();
+        let (_source, at, _page) = webcam(&address.parse().unwrap(), Some(&folder.0)).unwrap();
         get(at, "/")
     };
     assert!(page_of("webcam").contains("<body data-track=\"body\">"));

@@ -111,7 +111,7 @@ fn in_a_small_window_tab_shows_and_outlines_each_control() {
     let mut person = Person::before(&[path]);
     let window = Rect::from_min_size(Pos2::ZERO, vec2(640.0, 400.0));
     person.window.set_size(window.size());
-    for panel in [Panel::Library, Panel::Label, Panel::Classes] {
+    for panel in Panel::ALL {
         person.goes_to(panel);
         person.command(Command::Dark(panel != Panel::Label));
         person.frames(3);

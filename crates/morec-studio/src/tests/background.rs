@@ -1,37 +1,47 @@
 //! Clips marked as background in the library, for training and live.
 
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 use egui::Key;
-use morec::formats::bvh;
 use morec::synth::{DatabaseSpec, database};
 use morec_db::{BACKGROUND, ClipUpdate, MotionDb};
 
-use super::{Person, made, takes};
+use super::{Person, files_of, made, takes, written};
 use crate::state::{Command, FileCommand, LiveCommand, Panel};
 use crate::store::Edit;
 
-/// The database of [`made`], and in it two clips `other_…` of other gestures.
+/// Two clips `other_…` of other gestures, as files.
+fn other_motion() -> &'static [(String, Vec<u8>)] {
+    static FILES: OnceLock<Vec<(String, Vec<u8>)>> = OnceLock::new();
+    FILES.get_or_init(|| {
+        let spec = DatabaseSpec {
+            people: 2,
+            repetitions: 2,
+            classes: vec!["raise_hands", "circle", "push"],
+            unknown_share: 1.0,
+            ..DatabaseSpec::default()
+        };
+        let files = files_of(&database(11, &spec)).into_iter().zip(1..);
+        files
+            .map(|((_, bytes), number)| (format!("other_{number}.bvh"), bytes))
+            .collect()
+    })
+}
+
+/// The database of [`made`], and in it the clips of other motion.
 fn with_other_motion(folder: &Path, labelled: usize) -> PathBuf {
+    static MADE: [OnceLock<Vec<u8>>; 4] = [const { OnceLock::new() }; 4];
     let path = made(folder, labelled);
-    let spec = DatabaseSpec {
-        people: 2,
-        repetitions: 6,
-        classes: vec!["raise_hands", "circle", "push"],
-        unknown_share: 1.0,
-        ..DatabaseSpec::default()
-    };
-    let mut files = Vec::new();
-    for (number, take) in database(11, &spec).iter().enumerate() {
-        let file = folder.join(format!("other_{}.bvh", number + 1));
-        let mut bytes = Vec::new();
-        bvh::write(&take.clip, &mut bytes).unwrap();
-        std::fs::write(&file, bytes).unwrap();
-        files.push(file);
-    }
-    let (reader, about) = (morec::files::FileReader::default(), ClipUpdate::default());
-    let mut db = MotionDb::open(&path).unwrap();
-    db.import(&files, &reader, &about, &()).unwrap();
+    let files = written(folder, other_motion());
+    let bytes = MADE[labelled].get_or_init(|| {
+        let (reader, about) = (morec::files::FileReader::default(), ClipUpdate::default());
+        let mut db = MotionDb::open(&path).unwrap();
+        db.import(&files, &reader, &about, &()).unwrap();
+        drop(db);
+        std::fs::read(&path).unwrap()
+    });
+    std::fs::write(&path, bytes).unwrap();
     path
 }
 
@@ -345,6 +355,7 @@ fn none_of_these_takes_the_false_alarm_that_was_just_reported_and_says_whether_i
     }
     let alarm = seen(&person)[0].span;
     let clips = person.state().store.as_ref().unwrap().snapshot.clips.len();
+    // One key is enough.
     person.key(Key::Num0);
     person.settle();
     let store = person.state().store.as_ref().unwrap();

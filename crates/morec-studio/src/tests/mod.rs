@@ -63,20 +63,48 @@ pub fn takes() -> &'static [SyntheticTake] {
     })
 }
 
-/// The clips of the takes as files in a folder.
-pub fn clips_of(folder: &Path) -> Vec<PathBuf> {
-    let written = takes().iter().map(|take| {
-        let path = folder.join(format!("{}.bvh", take.clip.name));
+/// These takes as BVH files: names and bytes.
+pub fn files_of(takes: &[SyntheticTake]) -> Vec<(String, Vec<u8>)> {
+    let written = takes.iter().map(|take| {
         let mut bytes = Vec::new();
         bvh::write(&take.clip, &mut bytes).unwrap();
-        std::fs::write(&path, bytes).unwrap();
-        path
+        (format!("{}.bvh", take.clip.name), bytes)
     });
     written.collect()
 }
 
-/// A database of the takes; those of the first `labelled` people are labelled.
+/// Writes files into a folder.
+pub fn written(folder: &Path, files: &[(String, Vec<u8>)]) -> Vec<PathBuf> {
+    let paths = files.iter().map(|(name, bytes)| {
+        let path = folder.join(name);
+        std::fs::write(&path, bytes).unwrap();
+        path
+    });
+    paths.collect()
+}
+
+/// The clips of the takes as files in a folder.
+pub fn clips_of(folder: &Path) -> Vec<PathBuf> {
+    static FILES: OnceLock<Vec<(String, Vec<u8>)>> = OnceLock::new();
+    written(folder, FILES.get_or_init(|| files_of(takes())))
+}
+
+/// A database of the takes; those of the first `labelled` people are labelled. Import takes longer than most tests: each
+/// database is made once and copied.
 pub fn made(folder: &Path, labelled: usize) -> PathBuf {
+    static MADE: [OnceLock<Vec<u8>>; 4] = [const { OnceLock::new() }; 4];
+    clips_of(folder);
+    let path = folder.join("moves.mdb");
+    let bytes = MADE[labelled].get_or_init(|| {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::read(imported(folder.path(), labelled)).unwrap()
+    });
+    std::fs::write(&path, bytes).unwrap();
+    path
+}
+
+/// Makes the database by an import of the files.
+fn imported(folder: &Path, labelled: usize) -> PathBuf {
     let files = clips_of(folder);
     let path = folder.join("moves.mdb");
     let mut db = MotionDb::create(&path).unwrap();

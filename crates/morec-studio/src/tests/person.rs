@@ -72,12 +72,15 @@ impl Person {
         let mut studio = Studio::new(&ctx, &paths, unsaved.path().to_owned());
         let answers = Arc::new(Answers::default());
         studio.dialogs = Dialogs::of(answers.clone());
+        let mut installed = false;
         let window = Harness::builder()
             .with_size(size)
             .with_step_dt(dt)
             .build_state(
-                |ctx, studio: &mut Studio| {
-                    crate::theme::install(ctx);
+                move |ctx, studio: &mut Studio| {
+                    if !std::mem::replace(&mut installed, true) {
+                        crate::theme::install(ctx);
+                    }
                     studio.frame(ctx);
                 },
                 studio,

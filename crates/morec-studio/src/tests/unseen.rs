@@ -13,7 +13,7 @@ use super::{Person, made};
 use crate::state::{Command, LibraryCommand, Panel};
 use crate::store::Edit;
 
-/// Actions of each run, unless `MOREC_ACTIONS` says how many.
+/// Actions of each run, unless `MOREC_ACTIONS` says how many, as `.ci/nightly` does.
 const ACTIONS: usize = 300;
 /// Points of the window; seconds of a frame, so that clicks that follow each other are no double clicks.
 const SIZE: [f32; 2] = [1000.0, 640.0];
