@@ -4,7 +4,7 @@ use egui::{Key, Modifiers};
 use morec_db::labels::SampleState as Judged;
 
 use super::{Person, made};
-use crate::state::{Command, LiveCommand, Panel, SimilarCommand, TimelineCommand};
+use crate::state::{Command, LiveCommand, Panel, TimelineCommand};
 
 fn of_class(person: &Person, class: &str) -> usize {
     let labels = person.labels();
@@ -65,17 +65,19 @@ fn a_class_that_is_background_loses_its_labels_and_marks_clips_of_nothing_else()
 }
 
 #[test]
-fn all_hits_of_a_likeness_become_labels_in_one_step() {
+fn all_hits_of_a_likeness_become_labels_by_four_clicks_and_keys() {
     let folder = tempfile::tempdir().unwrap();
     let mut person = Person::before(&[made(folder.path(), 1)]);
     person.goes_to(Panel::Label);
-    let wave = person.state().shown_samples().iter();
-    let wave = wave.filter(|s| s.state == Judged::Accepted);
-    let id = wave.map(|s| s.id).next();
-    person.command(Command::Timeline(TimelineCommand::Select {
-        id,
-        add: false,
-    }));
+    let begun = person.actions;
+    let labelled = person.state().shown_samples().iter();
+    let label = labelled.clone().find(|s| s.state == Judged::Accepted);
+    let label = label.unwrap();
+    let (class, start, stop) = (&label.class, label.start_secs, label.stop_secs);
+    let name = format!("{class} {start:.2}–{stop:.2} s");
+    // Soon after another click it would be a double click.
+    person.wait(1.0);
+    person.click(&name);
     person.key(Key::F);
     person.settle();
     let labels = person.labels().len();
@@ -85,12 +87,18 @@ fn all_hits_of_a_likeness_become_labels_in_one_step() {
     let scores: Vec<f32> = similar.hits.iter().map(|hit| hit.score).collect();
     // Below the third nearest.
     let percent = (100.0 * scores[2]).floor() as u8;
-    person.command(Command::Similar(SimilarCommand::Alike(percent)));
+    let slider = person.place("Similarity of hits");
+    let share = (f32::from(percent) - 1.0) / 99.0;
+    person.click_at(egui::pos2(
+        slider.left() + share * slider.width(),
+        slider.center().y,
+    ));
     let meant = person.state().alike_at_once().len();
     assert!((3..=all).contains(&meant));
     person.click(&format!("All {meant} above are {class}"));
     person.settle();
     assert_eq!(person.labels().len(), labels + meant);
+    assert_eq!(person.actions - begun, 4);
     let left = person.state().classes.similar.as_ref().unwrap();
     assert_eq!(left.hits.len(), all - meant);
     person.undo();
