@@ -49,7 +49,7 @@ pub struct Args {
     /// Draw each person's share of time by class as SVG
     #[arg(long, value_name = "SVG")]
     plot: Option<PathBuf>,
-    /// Write a table of classes, people and transitions as TSV
+    /// File to write: a table of classes, people and transitions
     #[arg(short, long, value_name = "TSV")]
     output: Option<PathBuf>,
     /// Print one JSON object instead of tables

@@ -61,7 +61,7 @@ pub struct Args {
     ///
     /// Needs --clip with the name of one clip. The file stays where it is.
     #[arg(long, value_name = "VIDEO", requires = "clip")]
-    set_video: Option<PathBuf>,
+    set_video: Option<String>,
     /// Time of the video at which the clip begins, seconds
     #[arg(
         long,
@@ -115,7 +115,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     }
     if let (Some(path), Some(clip)) = (&args.set_video, &args.clip) {
         let video = ClipVideo {
-            path: path.display().to_string(),
+            path: path.clone(),
             offset_secs: args.video_offset,
         };
         let video = Some(video).filter(|video| !video.path.is_empty());

@@ -229,8 +229,8 @@ impl Comparison {
     }
 
     /// Gives `take` the segments of `of` that `counts` admits, with their distances, those of the nearest sketches first, except those that
-    /// their sketch or lower bound excludes. `take` returns the distance from which on segments may be left out, at first `most`; below zero,
-    /// the search ends.
+    /// their lower bound excludes. `take` returns the distance from which on segments may be left out, at first `most`; below zero, the
+    /// search ends.
     fn search(
         &self,
         (of, ranked): (&MappedSegments, &mut [(f32, usize)]),
@@ -238,9 +238,10 @@ impl Comparison {
         counts: impl Fn(usize) -> bool,
         mut take: impl FnMut(usize, f32) -> f32,
     ) {
-        let count = self.rank(of, ranked, spread, most);
-        for (nearest, block) in &ranked[..count] {
-            if most < 0.0 || *nearest >= SKETCH_REACH * most {
+        let ranked = &mut ranked[..of.coarse.len()];
+        self.rank(of, ranked, spread);
+        for (_, block) in ranked {
+            if most < 0.0 {
                 return;
             }
             let first = block * TOGETHER;
@@ -257,27 +258,15 @@ impl Comparison {
         }
     }
 
-    /// Puts the blocks of `of` whose nearest sketch is within reach of `most` into `ranked`, the nearest first; gives how many there are.
-    fn rank(
-        &self,
-        of: &MappedSegments,
-        ranked: &mut [(f32, usize)],
-        spread: f32,
-        most: f32,
-    ) -> usize {
-        let mut count = 0;
+    /// Puts the blocks of `of` into `ranked` by their nearest sketches.
+    fn rank(&self, of: &MappedSegments, ranked: &mut [(f32, usize)], spread: f32) {
         for (block, sketches) in of.sketches.iter().enumerate() {
             let costs = apart(sketches, &self.sketch);
             let places = (block * TOGETHER..of.spreads.len()).zip(costs);
             let distance = |(place, cost)| self.bounded(of, place, spread, cost);
-            let nearest = places.map(distance).fold(f32::INFINITY, smaller);
-            if nearest < SKETCH_REACH * most {
-                ranked[count] = (nearest, block);
-                count += 1;
-            }
+            ranked[block] = (places.map(distance).fold(f32::INFINITY, smaller), block);
         }
-        ranked[..count].sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        count
+        ranked.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     }
 
     /// Of each class but `except` the distance of its nearest sample. O(samples · rows · band).
@@ -357,9 +346,6 @@ impl Comparison {
     }
 }
 
-/// A segment whose sketch is this many times as far as is asked for is left out, whatever its alignment costs. With 1 the 254 detections in
-/// sessions of actions and the 508 in those of gestures are the same as with all segments; with 0.7, eight of the 254 differ.
-const SKETCH_REACH: f32 = 1.0;
 /// The bound and the cost are rounded differently: by less than this.
 const ROUNDING: f32 = 1.001;
 /// Sum of the weights along an alignment.
