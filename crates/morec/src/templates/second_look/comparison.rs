@@ -240,13 +240,13 @@ impl Comparison {
     ) {
         let ranked = &mut ranked[..of.coarse.len()];
         self.rank(of, ranked, spread);
-        for (_, block) in ranked {
+        for &mut (_, block) in ranked {
             if most < 0.0 {
                 return;
             }
             let first = block * TOGETHER;
             let limits = std::array::from_fn(|lane| self.limit(of, first + lane, spread, most));
-            let costs = least_costs(&of.coarse[*block], &self.coarse, &limits);
+            let costs = least_costs(&of.coarse[block], &self.coarse, &limits);
             let mut lanes: [usize; TOGETHER] = std::array::from_fn(|lane| lane);
             lanes.sort_unstable_by(|a, b| costs[*a].total_cmp(&costs[*b]));
             for lane in lanes {
