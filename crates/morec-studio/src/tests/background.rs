@@ -108,6 +108,10 @@ fn clips_are_marked_by_key_tick_and_menu_and_each_is_undone() {
 }
 
 #[test]
+#[cfg_attr(
+    debug_assertions,
+    ignore = "trains for most of a minute: .ci/nightly runs it, in release"
+)]
 fn background_teaches_a_verifier_which_recognises_live() {
     let folder = tempfile::tempdir().unwrap();
     let path = with_other_motion(folder.path(), 3);
@@ -208,6 +212,10 @@ fn select(person: &mut Person, stretch: (f64, f64)) {
 }
 
 #[test]
+#[cfg_attr(
+    debug_assertions,
+    ignore = "trains for most of a minute: .ci/nightly runs it, in release"
+)]
 fn what_was_nothing_is_marked_live_learned_and_undone() {
     let folder = tempfile::tempdir().unwrap();
     let mut person = Person::before(&[with_other_motion(folder.path(), 3)]);
