@@ -56,6 +56,8 @@ mod text;
 mod train;
 #[cfg(feature = "db")]
 mod unlearned;
+#[cfg(feature = "db")]
+mod video;
 #[cfg(feature = "clap")]
 mod words;
 
@@ -103,5 +105,7 @@ pub use study::{ComparedAnnotators, time_budget};
 pub use train::{Method, TrainSettings, Unlabelled};
 #[cfg(feature = "db")]
 pub use unlearned::Unlearned;
+#[cfg(feature = "db")]
+pub use video::video_of_page;
 #[cfg(feature = "clap")]
 pub use words::share;

@@ -73,7 +73,7 @@ pub fn read(ctx: &egui::Context, state: &State, asks_a_file: bool, out: &mut Vec
                 timeline(i, state, out);
             }
             Panel::Classes => {
-                if state.study.view == Some(StudyView::Annotators) {
+                if state.study_view() == Some(StudyView::Annotators) {
                     decisions(i, out);
                 }
                 labels(i, state, out);

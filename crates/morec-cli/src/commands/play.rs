@@ -5,7 +5,7 @@ use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Error, Result, bail};
 use morec::clip::Clip;
 use morec::import::{ImportOptions, Take};
 use morec::index::MotionIndex;
@@ -15,7 +15,7 @@ use morec::live::Detection;
 use morec::live::recognize_clip;
 use morec::roles::mapping::Mapping;
 use morec_measure::player::{PlayedClip, PlayedVideo, page};
-use morec_ops::rebuilt_from;
+use morec_ops::{rebuilt_from, video_of_page};
 
 use super::recognize::open_index;
 use crate::files::{self, ReadArgs};
@@ -139,14 +139,8 @@ fn video(args: &Args, page: &Path, clips: usize) -> Result<Option<PlayedVideo>> 
     if clips != 1 {
         bail!("--video: expected one clip, found {clips}");
     }
-    let absolute = |path: &Path| {
-        path.canonicalize()
-            .with_context(|| path.display().to_string())
-    };
-    let folder = page.parent().filter(|folder| *folder != Path::new(""));
-    let folder = absolute(folder.unwrap_or(Path::new(".")))?;
-    let file = absolute(file)?;
-    Ok(Some(PlayedVideo::of(&folder, &file, args.video_offset)))
+    let video = video_of_page(page, file, args.video_offset);
+    Ok(Some(video.map_err(Error::msg)?))
 }
 
 /// The labels of each clip by its name.

@@ -12,6 +12,7 @@ use morec_measure::explain::{MotionDeviation, deviation_from};
 use super::progress::{JobError, JobProgress};
 use super::{nearest, similar};
 use crate::body::{Aligned, ClipMotion};
+use crate::format;
 use crate::stretch::Stretch;
 use morec_ops::{OperationError, Unlearned, rebuilt_from};
 
@@ -58,13 +59,10 @@ pub fn reduced(path: &Path, of: Stretch, dims: usize) -> Result<Arc<Aligned>, Jo
     let db = MotionDb::open(path).map_err(|error| failed(error.into()))?;
     let mut stored = db.clip(of.clip).map_err(|error| failed(error.into()))?;
     let whole = [(&stored.clip, &stored.roles, stored.rest.clone())];
-    for rebuilt in rebuilt_from(&whole, dims).map_err(failed)? {
+    if let Some(rebuilt) = rebuilt_from(&whole, dims).map_err(failed)?.pop() {
         stored.clip = rebuilt;
     }
-    stored.clip.name = match dims {
-        1 => "1 component".to_owned(),
-        _ => format!("{dims} components"),
-    };
+    stored.clip.name = format::count(dims, "component");
     let hz = FeatureParams::default().tick_hz();
     let ticks = (of.span.duration_secs() * hz).ceil() as usize + 1;
     Ok(Arc::new(Aligned {

@@ -9,8 +9,9 @@ use morec::formats::bvh;
 use morec::labels::Mark;
 use morec_db::exchange::{self, Annotation, LabelFormat};
 use morec_db::labels::{DbSample, SampleFilter, SampleState};
-use morec_db::{ClipFilter, ClipId, MotionDb};
+use morec_db::{ClipFilter, ClipId, ClipVideo, DbError, MotionDb};
 use morec_measure::player::{PlayedClip, PlayedVideo, page};
+use morec_ops::video_of_page;
 
 use super::progress::JobError;
 use crate::format;
@@ -170,20 +171,14 @@ fn part(clip: &Clip, span: TimeSpan, name: &str) -> Result<Clip, String> {
     })
 }
 
-/// The video of a clip as seen from a page, or why it cannot be seen; `None` if there is none.
-fn video(db: &MotionDb, clip: ClipId, page: &Path) -> Result<SeenVideo, Box<dyn Error>> {
-    let folder = page.parent().filter(|folder| *folder != Path::new(""));
-    let folder = folder.unwrap_or(Path::new(".")).canonicalize()?;
+/// The video of a clip as its page names it, or why the file cannot be used; `None` for a clip without a video.
+fn video(db: &MotionDb, clip: ClipId, page: &Path) -> Result<ExportedVideo, DbError> {
     let videos = db.videos()?;
-    let seen = videos.get(&clip).map(|video| {
-        let file = Path::new(&video.path).canonicalize();
-        let file = file.map_err(|why| format!("{}: {why}", video.path))?;
-        Ok(PlayedVideo::of(&folder, &file, video.offset_secs))
-    });
-    Ok(seen)
+    let of_page = |of: &ClipVideo| video_of_page(page, of.path.as_ref(), of.offset_secs);
+    Ok(videos.get(&clip).map(of_page))
 }
 
-type SeenVideo = Option<Result<PlayedVideo, String>>;
+type ExportedVideo = Option<Result<PlayedVideo, String>>;
 
 fn played(
     db: &MotionDb,

@@ -4,8 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use morec::TimeSpan;
-use morec::labels::Sample;
-use morec::labels::{ClipDetection, GroundTruth};
+use morec::labels::{ClipDetection, GroundTruth, Sample};
 use morec::train::TrainClip;
 use morec_measure::crossval::{CrossvalData, Tested};
 use morec_measure::eval::{

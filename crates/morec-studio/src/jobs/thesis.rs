@@ -4,8 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
-use morec::labels::GroundTruth;
-use morec::labels::{ClassLengths, Sample, class_lengths};
+use morec::labels::{ClassLengths, GroundTruth, Sample, class_lengths};
 use morec::live::Model;
 use morec::pivots::{PivotMap, pose_rows_of_clip};
 use morec::svrdm::{Branch, Node, SampleClassifier, SvrdmEngine, SvrdmModel};

@@ -10,13 +10,13 @@ use morec_db::{ClipId, WordHit, WordIndex, WordPlace};
 use super::progress::JobError;
 use crate::store::Snapshot;
 
-/// What a search is made in: the version of the database, and the number of captions beside it.
+/// What a search covered: the version of the database, and the number of captions read from files.
 pub type SearchedState = (u64, usize);
 
-/// An index of words, and of what.
+/// An index of words, and what it covers.
 pub type KnownWords = (SearchedState, Arc<WordIndex>);
 
-/// What was found of a text.
+/// Results of a search for a text.
 pub struct FoundWords {
     pub text: String,
     pub words: KnownWords,

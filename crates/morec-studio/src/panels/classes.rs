@@ -42,7 +42,7 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
                 (None, None) if state.shelf.open => shelf::show(ui, state, out),
                 (Some(found), _) => similar::show(ui, state, found, out),
                 (None, Some(_)) => groups_and_columns(ui, state, out),
-                (None, None) => match state.study.view {
+                (None, None) => match state.study_view() {
                     Some(StudyView::Budget) => budget::show(ui, state, out),
                     Some(StudyView::Annotators) => annotators::show(ui, state, out),
                     None => columns(ui, state, out),
@@ -65,7 +65,7 @@ fn tools(ui: &mut Ui, state: &State, out: Out) {
             groups::tools(ui, state, groups, out);
             return;
         }
-        match state.study.view {
+        match state.study_view() {
             Some(StudyView::Budget) => return budget::tools(ui, state, out),
             Some(StudyView::Annotators) => return annotators::tools(ui, state, out),
             None => {}

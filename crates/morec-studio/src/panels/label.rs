@@ -408,8 +408,7 @@ pub(super) fn like_this(ui: &mut Ui, out: Out) {
         }
         let reduced = ui.menu_button("Reduced", |ui| {
             for dims in COMPONENTS {
-                let text = format!("{dims} component{}", if dims == 1 { "" } else { "s" });
-                if ui.button(text).clicked() {
+                if ui.button(format::count(dims, "component")).clicked() {
                     out.push(Command::Compare(CompareCommand::Reduced(dims)));
                 }
             }

@@ -1,11 +1,10 @@
 //! The learning curve: results with fewer samples and fewer people, and what more of them are worth.
 
-use egui::{
-    Align2, Button, FontId, Frame, Grid, Margin, Rect, RichText, Sense, Ui, Vec2, WidgetType, pos2,
-};
+use egui::{Align2, Button, FontId, Grid, Rect, RichText, Sense, Ui, Vec2, WidgetType, pos2};
 use morec_ops::{CurveFigures, CurvePoint, LearningCurve};
 
 use super::{Out, widgets};
+use crate::format;
 use crate::state::{Command, State, TrainCommand};
 use crate::theme::Colours;
 
@@ -34,12 +33,7 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
         return;
     };
     let c = Colours::now(ui);
-    let frame = Frame::new()
-        .fill(c.ground)
-        .corner_radius(6.0)
-        .inner_margin(Margin::same(12));
-    frame.show(ui, |ui| {
-        ui.set_width(ui.available_width());
+    widgets::boxed(ui, |ui| {
         ui.horizontal_wrapped(|ui| {
             ui.label(RichText::new("Learning curve").strong());
             ui.colored_label(c.muted, format!("Left out: {}", curve.divided));
@@ -58,13 +52,10 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
 
 /// What teaches at a point: `4 samples`, `2 people`, `all`.
 fn taught(point: &CurvePoint) -> String {
-    let count = |n: usize, one: &str, several: &str| match n {
-        1 => format!("1 {one}"),
-        n => format!("{n} {several}"),
-    };
     match (point.samples, point.people) {
-        (Some(n), _) => count(n, "sample", "samples"),
-        (None, Some(n)) => count(n, "person", "people"),
+        (Some(n), _) => format::count(n, "sample"),
+        (None, Some(1)) => "1 person".to_owned(),
+        (None, Some(n)) => format!("{n} people"),
         (None, None) => "all".to_owned(),
     }
 }

@@ -1,6 +1,6 @@
 //! Reports that the database keeps: their list, and the one that was opened.
 
-use egui::{Frame, Id, Margin, RichText, ScrollArea, Sense, Ui, Vec2, WidgetType};
+use egui::{Id, RichText, ScrollArea, Sense, Ui, Vec2, WidgetType};
 use morec_db::ReportKind;
 
 use super::{Out, widgets};
@@ -76,12 +76,7 @@ pub fn opened(ui: &mut Ui, state: &State, out: Out) {
         return;
     };
     let c = Colours::now(ui);
-    let frame = Frame::new()
-        .fill(c.ground)
-        .corner_radius(6.0)
-        .inner_margin(Margin::same(12));
-    frame.show(ui, |ui| {
-        ui.set_width(ui.available_width());
+    widgets::boxed(ui, |ui| {
         ui.horizontal_wrapped(|ui| {
             let when = format::utc(opened.info.made_secs);
             let title = format!("Report of {when}: {}", name(opened.info.kind));

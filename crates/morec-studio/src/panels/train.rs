@@ -1,8 +1,6 @@
 //! Training: what is learned, how it went, how good it is on what it was not taught.
 
-use egui::{
-    CentralPanel, ComboBox, Frame, Margin, RichText, ScrollArea, SidePanel, Ui, WidgetType,
-};
+use egui::{CentralPanel, ComboBox, RichText, ScrollArea, SidePanel, Ui, WidgetType};
 
 use super::widgets::Clipped;
 use super::{
@@ -255,12 +253,7 @@ fn trained(ui: &mut Ui, state: &State, out: Out) {
     let Some(index) = &state.train.index else {
         return;
     };
-    let frame = Frame::new()
-        .fill(c.ground)
-        .corner_radius(6.0)
-        .inner_margin(Margin::same(12));
-    frame.show(ui, |ui| {
-        ui.set_width(ui.available_width());
+    widgets::boxed(ui, |ui| {
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing.x = 26.0;
             widgets::figure(ui, index.model.classes().len().to_string(), "classes");

@@ -17,6 +17,19 @@ pub fn padded() -> Frame {
     Frame::new().inner_margin(Margin::same(12))
 }
 
+/// A box over the whole width, on the ground's colour: results within a panel.
+pub fn boxed<R>(ui: &mut Ui, contents: impl FnOnce(&mut Ui) -> R) -> R {
+    let frame = Frame::new()
+        .fill(Colours::now(ui).ground)
+        .corner_radius(6.0)
+        .inner_margin(Margin::same(12));
+    let shown = frame.show(ui, |ui| {
+        ui.set_width(ui.available_width());
+        contents(ui)
+    });
+    shown.inner
+}
+
 /// Panels inside another area, of which nothing is drawn or clicked outside of it.
 pub trait Clipped {
     /// Shows the panel; `egui` alone would let it reach over the edges of an area that scrolls it.

@@ -1,4 +1,4 @@
-//! What those who study movement look at: time budgets, annotators and where two of them differ.
+//! State of time budgets and of annotators: whose labels are shown, and where two annotators differ.
 
 use std::collections::BTreeSet;
 
@@ -8,7 +8,7 @@ use morec_ops::ComparedAnnotators;
 
 use crate::store::Snapshot;
 
-/// Annotator of the labels that somebody has decided on after two annotators differed.
+/// Annotator name of labels that were kept when a difference of two annotators was decided.
 pub const AGREED: &str = "agreed";
 /// Length of the unit of time by which annotators are compared, seconds: that of `morec agree`.
 pub const UNIT_SECS: f64 = 0.1;
@@ -35,7 +35,7 @@ pub enum StudyCommand {
     Show(Option<StudyView>),
     /// Shows the labels of this annotator alone; `None`: of all.
     ShowLabelsOf(Option<String>),
-    /// New labels are by this annotator; `None`: by nobody who is named.
+    /// Sets the annotator of new labels; `None`: new labels have no annotator.
     Annotator(Option<String>),
     /// Compares two annotators.
     Compare([String; 2]),

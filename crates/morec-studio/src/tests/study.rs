@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 use egui::Key;
 use morec_db::MotionDb;
 use morec_db::labels::{DbSample, LabelOptions, NewSample, SampleState as Judged};
-use morec_ops::{CurveFigures, CurvePoint, LearningCurve, time_budget};
+use morec_ops::{CurveFigures, CurvePoint, GroupMethod, LearningCurve, time_budget};
 
 use super::{Person, made, takes};
 use crate::state::study::{AGREED, StudyView};
-use crate::state::{Command, Panel, PlayCommand, TimelineCommand};
+use crate::state::{ClassCommand, Command, Panel, PlayCommand, TimelineCommand};
 
 fn accepted(person: &Person) -> Vec<DbSample> {
     let store = person.state().store.as_ref().unwrap();
@@ -201,6 +201,31 @@ fn two_annotators_are_compared_and_each_difference_is_decided_and_undone() {
     }
     assert_eq!(accepted(&person), before);
     assert_eq!(person.state().study.view, Some(StudyView::Annotators));
+}
+
+#[test]
+fn keys_decide_nothing_while_groups_cover_the_differences() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[by_two(folder.path())]);
+    person.goes_to(Panel::Classes);
+    person.click("Compare annotators");
+    person.settle();
+    person.key(Key::ArrowDown);
+    person.key(Key::Home);
+    person.settle();
+    assert_eq!(person.state().study.chosen, Some(0));
+    let before = accepted(&person);
+    // Groups that were asked for before may come now.
+    person.command(Command::Classes(ClassCommand::Group {
+        cuts: false,
+        method: GroupMethod::Hierarchy,
+    }));
+    person.settle();
+    assert!(person.state().classes.groups.is_some());
+    assert_eq!(person.state().study_view(), None);
+    person.key(Key::E);
+    person.settle();
+    assert_eq!(accepted(&person), before);
 }
 
 #[test]

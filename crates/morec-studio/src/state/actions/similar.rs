@@ -91,7 +91,6 @@ impl State {
         ));
         self.classes.similar = Some(similar);
         self.classes.groups = None;
-        self.study.view = None;
         self.panel = Panel::Classes;
     }
 

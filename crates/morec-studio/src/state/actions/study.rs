@@ -47,6 +47,13 @@ impl State {
         self.refresh_study();
     }
 
+    /// The view that is shown in place of the classes; `None` while hits, groups or sets cover it.
+    pub fn study_view(&self) -> Option<StudyView> {
+        let classes = &self.classes;
+        let is_covered = classes.similar.is_some() || classes.groups.is_some() || self.shelf.open;
+        self.study.view.filter(|_| !is_covered)
+    }
+
     fn show_study(&mut self, view: Option<StudyView>) {
         self.study.view = view;
         if view.is_none() {
@@ -198,7 +205,9 @@ impl State {
         let name = format::file_name(path);
         let line = ShownCommand::new("morec budget").word(store.path());
         let line = line.with("-o", path);
-        let budget = time_budget(store.snapshot.accepted(), &store.snapshot.clips);
+        let Some((_, budget)) = &self.study.budget else {
+            return;
+        };
         match write_whole(path, budget.tsv().as_bytes()) {
             Ok(()) => self.say(format!("{name} written")),
             Err(why) => self.complain(format!("{name}: not written: {why}")),
