@@ -62,6 +62,7 @@ impl DecisionPlan {
         }
     }
 
+    /// True if the second look is learned before the matches are known.
     pub fn decides_by_look(&self) -> bool {
         self.judges_whole && !self.verifies
     }
@@ -76,6 +77,7 @@ impl DecisionPlan {
         (verified.map(MatchGate::plain), farthest)
     }
 
+    /// Parameters of decoding under this plan; `has_look` if the second look was learned.
     pub fn decode(&self, params: &DecodeParams, has_look: bool) -> DecodeParams {
         let mut decode = params.clone();
         if let Some(gate) = self.verified_gate {

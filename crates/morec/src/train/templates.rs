@@ -116,7 +116,9 @@ pub fn train(
         Some(learned) => step.representatives(learned, sorted.gestures),
         None => {
             let copies = step.faster_copies(&sorted.gestures, bones, plan.gates.plain)?;
-            [sorted.gestures, copies].concat()
+            let mut samples = sorted.gestures;
+            samples.extend(copies);
+            samples
         }
     };
     let matches = step.templates(&samples, plan.gates, plan.reach(step.largest_threshold()))?;
