@@ -33,7 +33,7 @@ impl MotionDb {
         Ok(videos.collect::<Result<_, _>>()?)
     }
 
-    /// Puts a video beside a clip in place of the one that it has, or takes it away, as one step.
+    /// Sets the video of a clip, replacing an earlier one; `None` removes it. One step of the history.
     ///
     /// # Errors
     /// No such clip; no path, one with control characters, or an offset that is not a number.

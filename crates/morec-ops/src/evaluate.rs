@@ -3,8 +3,10 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use morec::classes::ClassId;
-use morec::labels::{ClipDetection, GroundTruth, StreamInfo};
-use morec::labels::{ClipLength, Mark, Resolved, Sample, hint, said_absent, some_of};
+use morec::labels::{
+    ClipDetection, ClipLength, GroundTruth, Mark, Resolved, Sample, StreamInfo, hint, said_absent,
+    some_of,
+};
 use morec::live::{Detection, Model};
 use morec::train::TrainClip;
 use morec_measure::eval::{DetectionVerdict, Evaluation, Timeline, event_pairs, timelines};

@@ -1,7 +1,6 @@
-//! What those who study movement ask of the labels of a database: time budgets, and agreement of two annotators.
+//! Time budgets of the labels of a database, and agreement of two annotators.
 
-use morec::labels::GroundTruth;
-use morec::labels::{Sample, SharedClips, TimeBudget};
+use morec::labels::{GroundTruth, Sample, SharedClips, TimeBudget};
 use morec_db::ClipInfo;
 use morec_db::exchange::clip_lengths;
 use morec_db::labels::{DbSample, SampleState};

@@ -1,7 +1,6 @@
 //! `morec.agree` and `morec.budget`: what labels say without any motion.
 
-use morec::labels::GroundTruth;
-use morec::labels::{Labels, SharedClips, TimeBudget};
+use morec::labels::{GroundTruth, Labels, SharedClips, TimeBudget};
 use morec_measure::eval::LabelAgreement;
 use pyo3::prelude::*;
 

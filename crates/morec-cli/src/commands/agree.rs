@@ -6,8 +6,9 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::{Result, anyhow, bail};
-use morec::labels::{ClipDetection, GroundTruth, StreamInfo};
-use morec::labels::{ClipLength, Labels, SharedClips, some_of};
+use morec::labels::{
+    ClipDetection, ClipLength, GroundTruth, Labels, SharedClips, StreamInfo, some_of,
+};
 use morec_measure::eval::{ClassAgreement, Evaluation, Kappa, LabelAgreement, timelines};
 use morec_measure::report::Report;
 

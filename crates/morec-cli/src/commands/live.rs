@@ -14,7 +14,7 @@ use crate::interrupt::stop_on_ctrl_c;
 use crate::live::layout::LayoutArg;
 use crate::live::on::{ClassCommands, OnClass};
 use crate::live::open::TrackerArgs;
-use crate::live::sinks::CountedSink;
+use crate::live::sinks::{CountedSink, show_classes};
 use crate::live::status::StatusLine;
 use crate::live::takes::secs;
 use morec_live::{Address, Advice, NamedEvent, Notices, WebcamPage, advice_of_status, summary};
@@ -103,11 +103,11 @@ struct Listening {
     page: Option<WebcamPage>,
 }
 
-/// The pages of webcams are told so often what is wrong with their streams.
+/// Interval at which the pages of webcams show faults of their streams.
 const TELL_EVERY: Duration = Duration::from_secs(1);
 
 impl Listening {
-    /// Shows what is wrong with the stream to somebody before the camera.
+    /// Shows faults of the stream on the page of the camera.
     fn show_problems(&self, status: &Status, index: &MotionIndex) {
         let Some(page) = &self.page else { return };
         let diagnosed = status.actors.iter().filter_map(|actor| actor.diagnosis);
@@ -247,13 +247,7 @@ fn listen(
 ) -> Result<Listening> {
     let opened = args.tracker.open(address, Some(index))?;
     if let Some(page) = &opened.page {
-        page.classes(
-            index
-                .model
-                .classes()
-                .iter()
-                .map(|class| class.name.as_str()),
-        );
+        show_classes(page, index);
         outlets.push(CountedSink::page(address, page));
     }
     let session_options = SessionOptions {

@@ -12,7 +12,7 @@ use morec::live::{Event, EventOptions, MAX_PERFORMERS, Performer, PerformerId, S
 
 use crate::interrupt::stop_on_ctrl_c;
 use crate::live::open::TrackerArgs;
-use crate::live::sinks::CountedSink;
+use crate::live::sinks::{CountedSink, show_classes};
 use crate::live::takes::{Ended, TakeArgs, TakeRecorder, secs};
 use lesson::Lessons;
 use morec_live::{Address, NamedEvent, WebcamPage};
@@ -199,13 +199,7 @@ impl Watch {
             (0..MAX_PERFORMERS as u16).map(performer).collect()
         });
         if let Some((page, index)) = self.page.as_ref().zip(index) {
-            page.classes(
-                index
-                    .model
-                    .classes()
-                    .iter()
-                    .map(|class| class.name.as_str()),
-            );
+            show_classes(page, index);
         }
     }
 

@@ -4,6 +4,7 @@ use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
 use anyhow::{Context, Result};
+use morec::index::MotionIndex;
 use morec::live::Phase;
 use morec_live::{Address, JsonLines, NamedEvent, Sink, WebcamPage, open_sink};
 
@@ -120,4 +121,10 @@ impl CountedSink {
             )
         })
     }
+}
+
+/// Shows a bar for each class of an index on the page of a webcam.
+pub fn show_classes(page: &WebcamPage, index: &MotionIndex) {
+    let classes = index.model.classes().iter();
+    page.classes(classes.map(|class| class.name.as_str()));
 }

@@ -14,7 +14,7 @@ use morec_live::{OpenSource, WebcamPage};
 
 /// Shorter takes are discarded, seconds.
 pub const SHORTEST_SECS: f64 = 0.3;
-/// The page of a webcam is told so often what is wrong with the stream.
+/// Interval at which the page of a webcam shows faults of the stream.
 const TELL_EVERY_SECS: f64 = 1.0;
 
 /// Options of takes.
@@ -54,11 +54,11 @@ pub enum Ended {
     Stopped,
 }
 
-/// What is wrong with the performer's stream, for the page of a webcam.
+/// Faults of the performer's stream, for the page of a webcam.
 struct ShownProblems {
     page: WebcamPage,
     diagnoser: Diagnoser,
-    /// When the page was last told, seconds of stream.
+    /// Time of the last message to the page, seconds of stream.
     told_secs: f64,
 }
 

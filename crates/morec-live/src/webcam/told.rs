@@ -1,4 +1,4 @@
-//! What the page is told: countdowns, classes, motions and problems of the stream, large over the picture.
+//! Messages to the page: countdowns, classes, motions and faults of the stream, shown large over the picture.
 
 use std::net::TcpStream;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -9,10 +9,10 @@ use tungstenite::{Message, WebSocket};
 
 use crate::{NamedEvent, Sink};
 
-/// Tells the tabs that show the page of `webcam` what somebody before the camera should know. Clones tell the same tabs. As a
-/// [`Sink`], it shows what is recognised.
+/// Sends countdowns, classes, recognised motions and faults of the stream to the browser tabs that show the page of `webcam`.
+/// Clones send to the same tabs. As a [`Sink`], it sends recognised motions.
 ///
-/// A tab that takes nothing for two seconds is told nothing more.
+/// A tab that accepts no data for two seconds receives no further messages.
 #[derive(Clone, Default)]
 pub struct WebcamPage(Arc<Mutex<Told>>);
 

@@ -43,9 +43,7 @@ use crate::eval::event_pairs;
 use crate::explain::{Miss, explain};
 use crate::perturb::{Perturbation, Perturbed, perturb};
 use morec::features::for_each_pose;
-use morec::labels::Mark;
-use morec::labels::Sample;
-use morec::labels::{ClipDetection, GroundTruth, StreamInfo};
+use morec::labels::{ClipDetection, GroundTruth, Mark, Sample, StreamInfo};
 use morec::live::{Detection, Model, RecognizerCache, StartError};
 use morec::progress::Progress;
 use morec::train::{

@@ -26,7 +26,7 @@ enum Fit {
 }
 
 /// The labels that differ, by clip and start. Labels are paired one to one: of the same class and overlapping by half (intersection over
-/// union), then of another class and overlapping by half, then of the same class and overlapping at all, those that overlap most first.
+/// union), then of another class and overlapping by half, then of the same class with any overlap; within each kind, by decreasing overlap.
 /// Pairs of one class whose starts and stops are no further apart than `least_secs` agree and are left out. O(pairs of labels of the
 /// same clip).
 pub fn label_differences(

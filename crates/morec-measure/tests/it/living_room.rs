@@ -6,8 +6,7 @@
 use std::collections::BTreeMap;
 
 use morec::import::Take;
-use morec::labels::Mark;
-use morec::labels::{ClipDetection, GroundTruth, StreamInfo};
+use morec::labels::{ClipDetection, GroundTruth, Mark, StreamInfo};
 use morec::live::{Model, recognize_poses};
 use morec::synth::{DatabaseSpec, database, living_room};
 use morec::train::{LabelSet, StreamKind, TrainClip, TrainOptions, train_clips};
