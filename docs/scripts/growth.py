@@ -2,10 +2,11 @@
 
 Each class is made of `gestures`: the left arm of one gesture, the right arm of another, the legs of a third, every second class
 backwards; six samples of six people. Prints time and memory of training, bytes of the index, and frames a second of `morec bench` over
-one sample of each of the first twenty classes (30 Hz) and over a clip of 120 Hz.
+one sample of each of the first twenty classes (30 Hz) and over a clip of 120 Hz; then the power with which each grows from one number of
+classes to the next.
 """
 
-import csv, itertools, os, subprocess, sys, tempfile, time
+import csv, itertools, math, os, subprocess, sys, tempfile, time
 from pathlib import Path
 
 # Channels of the skeleton of `gestures`.
@@ -70,12 +71,13 @@ def run(command):
 def rate(morec, index, clips):
     """Frames a second."""
     *_, text = run([morec, "bench", index, *clips])
-    return next(line.split()[-1] for line in text.splitlines() if line.startswith("whole path"))
+    return int(next(line.split()[-1] for line in text.splitlines() if line.startswith("whole path")))
 
 
 def main():
     morec, data = sys.argv[1], Path(sys.argv[2])
     print("classes\ttraining, s\tprocessor, s\tMB\tindex, kB\tframes a second, 30 Hz\t120 Hz")
+    made = []
     for classes in map(int, sys.argv[3:] or ["5", "20", "100"]):
         with tempfile.TemporaryDirectory() as name:
             folder = Path(name)
@@ -88,6 +90,10 @@ def main():
             rates = [rate(morec, index, few), rate(morec, index, [data / "referee/clips/signals_1.bvh"])]
             kilobytes = index.stat().st_size / 1000
             print(f"{classes}\t{seconds:.1f}\t{processor:.1f}\t{memory:.0f}\t{kilobytes:.0f}\t{rates[0]}\t{rates[1]}", flush=True)
+            made.append((classes, seconds, processor, memory, kilobytes, *rates))
+    for few, many in itertools.pairwise(made):
+        powers = (math.log(b / a) / math.log(many[0] / few[0]) for a, b in zip(few[1:], many[1:]))
+        print(f"{few[0]} to {many[0]}\t" + "\t".join(f"{power:.2f}" for power in powers))
 
 
 main()

@@ -17,8 +17,16 @@ pub fn steps<'r>(tables: impl Iterator<Item = &'r Rows>, dim: usize) -> Vec<f32>
 }
 
 /// `rows` with every value moved to the nearest whole multiple of its column's step.
-pub fn snapped(rows: &Rows, step: &[f32]) -> Rows {
-    let snap = |(v, s): (&f32, &f32)| if *s > 0.0 { (v / s).round() * s } else { 0.0 };
-    let values = rows.iter().flat_map(|row| row.iter().zip(step).map(snap));
-    Rows::from_values(rows.dim(), values.collect())
+pub fn snapped(rows: Rows, step: &[f32]) -> Rows {
+    let dim = rows.dim();
+    let mut values = rows.into_values();
+    for row in values.chunks_exact_mut(dim.max(1)) {
+        for (value, step) in row.iter_mut().zip(step) {
+            *value = match *step > 0.0 {
+                true => (*value / step).round() * step,
+                false => 0.0,
+            };
+        }
+    }
+    Rows::from_values(dim, values)
 }

@@ -2,8 +2,8 @@
 
 use crate::features::Rows;
 
+use super::TemplateModel;
 use super::bytes::{snapped, steps};
-use super::{TemplateModel, TemplateSample};
 
 impl TemplateModel {
     /// The model with every stored row moved to the nearest step, column by column, of the column's largest value
@@ -21,22 +21,14 @@ impl TemplateModel {
             .chain(&self.negatives)
             .chain(shapes);
         let step = steps(all, self.ridged.dim());
-        let snap = |rows: &Rows| snapped(rows, &step);
-        self.samples = self
-            .samples
-            .iter()
-            .map(|s| TemplateSample {
-                class: s.class,
-                rows: snap(&s.rows),
-            })
-            .collect();
-        self.negatives = self.negatives.iter().map(snap).collect();
-        if let Some(verifier) = &mut self.verifier {
-            verifier
-                .classes
-                .iter_mut()
-                .for_each(|c| c.shapes = snap(&c.shapes));
-        }
+        let snap = |rows: &mut Rows| *rows = snapped(std::mem::take(rows), &step);
+        let samples = self.samples.iter_mut().map(|s| &mut s.rows);
+        let verifier = self.verifier.iter_mut();
+        let shapes = verifier.flat_map(|v| v.classes.iter_mut().map(|c| &mut c.shapes));
+        samples
+            .chain(&mut self.negatives)
+            .chain(shapes)
+            .for_each(snap);
         self.step = Some(step);
         self
     }

@@ -99,9 +99,9 @@ fn repetitions(
         || (of_class.iter()).flat_map(|(of, all)| evenly(all, MOST_REPETITIONS).map(|r| (of.0, r)));
     let dim = samples.first().map_or(0, |sample| sample.rows.dim());
     let step = steps(kept().map(|(_, rows)| rows), dim);
-    let sample = |(class, rows)| TemplateSample {
+    let sample = |(class, rows): (ClassId, &Rows)| TemplateSample {
         class,
-        rows: snapped(rows, &step),
+        rows: snapped(rows.clone(), &step),
     };
     (kept().map(sample).collect(), step)
 }

@@ -14,10 +14,10 @@ const MOST_COMPARED: usize = 60;
 /// Up to `most` samples of each group, in order: the first has the least sum of distances to the others, each further one lowers the sum of
 /// distances to the nearest chosen sample most (Kaufman and Rousseeuw, *Finding groups in data*, 1990, BUILD of k-medoids).
 ///
-/// `segments` are the samples' places in `look`, `groups` what they belong to. Distances are those of the second look.
+/// `segments` are the samples' places in `look`, which `comparison` compares with, `groups` what they belong to. Distances are those of the second look.
 /// O(samples of a group² · rows · band · d).
 pub fn representatives<G: Ord + Sync>(
-    look: &SecondLook,
+    (look, comparison): (&SecondLook, &Comparison),
     segments: &[usize],
     groups: &[G],
     most: usize,
@@ -26,7 +26,6 @@ pub fn representatives<G: Ord + Sync>(
     for (sample, group) in groups.iter().enumerate() {
         by_group.entry(group).or_default().push(sample);
     }
-    let comparison = Comparison::new(look);
     let choose = |comparison: &mut Comparison, of_group: Vec<usize>| {
         if of_group.len() <= most {
             return of_group;

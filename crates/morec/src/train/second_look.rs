@@ -9,7 +9,7 @@ use crate::features::{BoneSet, Rows};
 use crate::math::portable;
 use crate::rng::Rng;
 use crate::templates::second_look::{
-    BodyTrack, Comparison, SecondLook, grown_of, sample_span, segment_of,
+    BodyTrack, Comparison, SEGMENT_ROWS, SecondLook, grown_of, sample_span, segment_of,
 };
 use crate::templates::{
     ALARM_RATES, OperatingPoint, PackedSymmetric, PerformerKind, TemplateEngine, TemplateModel,
@@ -81,6 +81,8 @@ pub struct LearnedLook {
     pub own: Vec<OwnSample>,
     /// The segments of the samples within their labels: places in the second look.
     pub segments: Vec<usize>,
+    /// Compares with it.
+    pub comparison: Comparison,
 }
 
 /// Learns from the segments of `samples`, of a body. `None` where there is nothing to scale the score by.
@@ -105,18 +107,21 @@ pub fn learn(
         .collect();
     let within = within_class(&first, set.classes.len(), dim, params.max_pairs);
     let total = covariance(first.iter().map(|s| &s.rows), dim);
-    let all = || {
-        let places = segments.iter().enumerate();
-        places
-            .flat_map(|(place, (sample, rows))| rows.iter().map(move |r| (place, sample.class, r)))
-    };
+    drop(first);
+    let of_segments = segments.iter().enumerate();
+    let places = of_segments.flat_map(|(place, (_, rows))| rows.iter().map(move |_| place));
+    let places: Vec<usize> = places.collect();
+    // Of many samples a second copy of the rows would be much.
+    let mut values = Vec::with_capacity(places.len() * SEGMENT_ROWS * dim);
+    for rows in segments.into_iter().flat_map(|(_, rows)| rows) {
+        values.extend(rows.into_values());
+    }
     let mut distinct: Vec<ClassId> = samples.iter().map(|s| s.class).collect();
     distinct.sort_unstable();
     distinct.dedup();
-    let values = all().flat_map(|(_, _, rows)| rows.values().iter().copied());
     let mut look = SecondLook {
-        classes: all().map(|(_, class, _)| class).collect(),
-        segments: Rows::from_values(dim, values.collect()),
+        classes: places.iter().map(|place| samples[*place].class).collect(),
+        segments: Rows::from_values(dim, values),
         atlas: match distinct.len() < CLASSES_OF_SCALE {
             true => tracks.atlas(),
             false => Rows::new(dim),
@@ -134,15 +139,16 @@ pub fn learn(
     if params.compact {
         look = look.compacted();
     }
-    look.scale = look.measured_scale();
+    let mut comparison = Comparison::new(&look);
+    look.scale = look.scale_by(&mut comparison);
+    let comparison = comparison.with_scale(look.scale);
     if look.scale <= 0.0 && look.atlas.is_empty() {
         return None;
     }
-    let places: Vec<usize> = all().map(|(place, _, _)| place).collect();
     let segments: Vec<usize> = (0..places.len())
         .filter(|k| *k == 0 || places[*k] != places[*k - 1])
         .collect();
-    let own = among_others(&look, &places, &segments);
+    let own = among_others((&look, &comparison), &places, &segments);
     let mut scores: Vec<f32> = own.iter().map(|s| s.score).collect();
     scores.sort_by(f32::total_cmp);
     look.own_score = scores.get(scores.len() / 2).copied().unwrap_or(0.0);
@@ -150,14 +156,18 @@ pub fn learn(
         look,
         own,
         segments,
+        comparison,
     })
 }
 
 /// The first segment of each sample judged among those of the others; `places` are the segments' samples, `firsts` the first of each.
 /// O(samples² · rows · band · d).
-fn among_others(look: &SecondLook, places: &[usize], firsts: &[usize]) -> Vec<OwnSample> {
+fn among_others(
+    (look, comparison): (&SecondLook, &Comparison),
+    places: &[usize],
+    firsts: &[usize],
+) -> Vec<OwnSample> {
     let chosen: Vec<usize> = evenly(firsts, MOST_JUDGED).copied().collect();
-    let comparison = Comparison::new(look);
     let judge = |comparison: &mut Comparison, segment: &usize| {
         let others = |k: usize| places[k] != places[*segment];
         let judged = comparison.judge_among(look.segment(*segment), others)?;
@@ -320,6 +330,28 @@ fn wider(rate: f64, asked: f64) -> f32 {
     }
 }
 
+/// An engine whose margins, over a bound of 0 and for anyone, are the scores of the second look of `model`, which stays as it was: it may be
+/// too large for a copy.
+fn engine_of_scores(model: &mut TemplateModel) -> Result<TemplateEngine, TemplateModelError> {
+    let aside = (
+        model.calibration.take(),
+        model.held.take(),
+        model.activities.take(),
+    );
+    let open = |look: &mut SecondLook| {
+        let bound = std::mem::take(&mut look.bound);
+        let performer = std::mem::replace(&mut look.performer, PerformerKind::Anyone);
+        (bound, performer)
+    };
+    let closed = model.look.as_mut().map(open);
+    let engine = TemplateEngine::new(model);
+    (model.calibration, model.held, model.activities) = aside;
+    if let (Some(look), Some(closed)) = (&mut model.look, closed) {
+        (look.bound, look.performer) = closed;
+    }
+    engine
+}
+
 /// Scores of what a model reports in background motion, whatever its bound, largest first.
 struct BackgroundScores {
     scores: Vec<f32>,
@@ -329,7 +361,7 @@ struct BackgroundScores {
 impl BackgroundScores {
     /// Of every other stream, and of those between them.
     fn of_halves(
-        model: &TemplateModel,
+        model: &mut TemplateModel,
         set: &TrainSet,
         params: &TrainParams,
     ) -> Result<[Self; 2], TemplateModelError> {
@@ -337,20 +369,7 @@ impl BackgroundScores {
         let background = streams.filter(|s| s.source != StreamKind::Labelled);
         let background = background.chain(&set.everyday);
         let background: Vec<&Rows> = background.map(|s| &s.rows).collect();
-        // Margins over a bound of 0, for anyone, are scores.
-        let look = model.look.as_ref().map(|look| SecondLook {
-            bound: 0.0,
-            performer: PerformerKind::Anyone,
-            ..look.clone()
-        });
-        let open = TemplateModel {
-            calibration: None,
-            look,
-            held: None,
-            activities: None,
-            ..model.clone()
-        };
-        let engine = TemplateEngine::new(&open)?;
+        let engine = engine_of_scores(model)?;
         let scores = |rows: &&Rows| {
             let mut engine = engine.clone();
             let mut margins: Vec<f64> = Vec::new();

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use rayon::prelude::*;
 
-use crate::classes::ClassInfo;
+use crate::classes::{ClassId, ClassInfo};
 use crate::decode::TYPICAL_SPREAD;
 use crate::features::{BoneSet, Profile};
 use crate::progress::Progress;
@@ -243,7 +243,8 @@ impl TrainingContext<'_> {
         let group = |s: &TrainSample| (s.class, self.set.streams[s.stream].is_copy);
         let groups: Vec<_> = samples.iter().map(group).collect();
         let segments = &learned.segments[..samples.len()];
-        let chosen = representatives(&learned.look, segments, &groups, most);
+        let by = (&learned.look, &learned.comparison);
+        let chosen = representatives(by, segments, &groups, most);
         chosen.into_iter().map(|k| samples[k].clone()).collect()
     }
 
@@ -281,25 +282,29 @@ fn moving(
 ) -> (Vec<TrainSample>, Vec<TrainSample>) {
     let spread = |s: &TrainSample| mean_and_spread(&metric.apply_all(&s.rows), metric.dim()).1;
     let spreads: Vec<f32> = samples.iter().map(spread).collect();
-    let median = |of: &dyn Fn(usize) -> bool| {
-        let mut some: Vec<f32> = (0..spreads.len())
-            .filter(|i| of(*i))
-            .map(|i| spreads[i])
-            .collect();
-        some.sort_by(f32::total_cmp);
-        (some[some.len() / 2], some.len())
-    };
     if samples.is_empty() {
         return (samples, Vec::new());
     }
-    let all = median(&|_| true).0;
-    let is_quiet = |i: usize| {
-        let (of_class, count) = median(&|j| samples[j].class == samples[i].class);
-        let usual = if count < 3 {
-            all.min(of_class)
-        } else {
-            of_class
+    let mut by_class = BTreeMap::<ClassId, Vec<f32>>::new();
+    for (sample, spread) in samples.iter().zip(&spreads) {
+        by_class.entry(sample.class).or_default().push(*spread);
+    }
+    let median = |some: &mut Vec<f32>| {
+        some.sort_by(f32::total_cmp);
+        some[some.len() / 2]
+    };
+    let all = median(&mut spreads.clone());
+    let usual = by_class.iter_mut().map(|(class, spreads)| {
+        let of_class = median(spreads);
+        let usual = match spreads.len() < 3 {
+            true => all.min(of_class),
+            false => of_class,
         };
+        (*class, usual)
+    });
+    let usual: BTreeMap<ClassId, f32> = usual.collect();
+    let is_quiet = |i: usize| {
+        let usual = usual[&samples[i].class];
         f64::from(spreads[i]) < params.quiet_share * f64::from(usual)
     };
     let quiet: Vec<bool> = (0..samples.len()).map(is_quiet).collect();

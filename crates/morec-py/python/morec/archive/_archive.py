@@ -242,10 +242,15 @@ class Archive:
         DataFrame
             Columns clip, name, class, start_secs, stop_secs, score, reported_secs: a row for each motion.
         """
-        model = index if isinstance(index, Index) else load(index)
-        frame = self._clips("name", "motion", "roles", "rest_frames")
         if parts < 1:
             raise ValueError(f"parts: expected 1 or more, found {parts}")
+        return self._recognized(index if isinstance(index, Index) else load(index), parts=parts)
+
+    def _recognized(self, model: Index, keys: Sequence[str] | None = None, *, parts: int = 1) -> DataFrame:
+        """The same in all clips or those of ``keys``."""
+        frame = self._clips("name", "motion", "roles", "rest_frames")
+        if keys is not None:
+            frame = frame.where(col("clip").is_in(list(keys)))
         if parts == 1:
             found = events_of(col("motion"), model, col("roles"), col("rest_frames"))
             frame = frame.select(col("clip"), col("name"), found.alias("found"))
@@ -328,8 +333,8 @@ class Archive:
         """Motions that repeat, without labels: found in a sample of the clips, recognised in all of them.
 
         `morec.discover` compares every stretch with every other, which is too slow for an archive. Here it compares the clips
-        of a sample, its sets train an index, and the index finds the same motions in all clips. The next round takes the clips
-        of which least is explained, and adds the sets that are new.
+        of a sample, and a few repetitions of each set train an index. The next round takes the clips of a larger sample of which
+        the index explains least, and adds the sets that are new. The last index finds the same motions in all clips.
 
         Parameters
         ----------

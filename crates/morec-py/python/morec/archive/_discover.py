@@ -23,6 +23,10 @@ if TYPE_CHECKING:
 COLUMNS = ["set", "clip", "name", "start_secs", "stop_secs", "distance"]
 #: Class of a set in the index, before its number.
 CLASS = "set_"
+#: Repetitions of a set that teach it, at most: those nearest to its middle.
+TEACHING = 4
+#: Clips that the next round is chosen from last this many times as long as those that it compares.
+LOOKED_AT = 8
 #: A discovered set is an earlier one if events of the earlier set cover more than this share of its repetitions.
 KNOWN = 0.5
 
@@ -36,7 +40,7 @@ class ArchiveSets:
     sets : Table
         The repetitions in the clips that were compared: set (from 1), clip, name, start_secs, stop_secs, distance.
     index : Index
-        Its classes are ``set_1``, ``set_2``, … and were trained on these repetitions.
+        Its classes are ``set_1``, ``set_2``, … and were trained on the repetitions nearest to the middles of the sets.
     events : DataFrame
         What the index recognises in every clip, as from `Archive.recognize`.
     """
@@ -55,12 +59,14 @@ def discover_sets(archive: Archive, minutes: float, rounds: int, seed: int) -> A
     order = [keys[at] for at in np.random.default_rng(seed).permutation(len(keys))]
     compared: dict[str, Clip] = {}
     repetitions: list[dict[str, Any]] = []
-    made: tuple[Index, DataFrame] | None = None
+    index: Index | None = None
     for _ in range(rounds):
-        explained = _by_clip(made[1]) if made else {}
+        explained: dict[str, list[_Event]] = {}
         left = [key for key in order if key not in compared]
-        # First those of which most is not explained; the sort keeps the order by chance among equals.
-        if made:
+        if index is not None and left:
+            left = list(_up_to(left, lengths, LOOKED_AT * minutes * 60))
+            explained = _by_clip(archive._recognized(index, left))
+            # First those of which most is not explained; the sort keeps the order by chance among equals.
             left.sort(key=lambda key: sum(event.secs for event in explained.get(key, [])) - lengths[key]["secs"])
         new = dict(_read(archive, list(_up_to(left, lengths, minutes * 60))))
         last = max((row["set"] for row in repetitions), default=0)
@@ -69,19 +75,18 @@ def discover_sets(archive: Archive, minutes: float, rounds: int, seed: int) -> A
             break
         compared |= new
         repetitions += found
-        labels = [
-            {"clip": row["clip"], "class": f"{CLASS}{row['set']}", "start_secs": row["start_secs"], "stop_secs": row["stop_secs"]}
-            for row in repetitions
-        ]  # fmt: skip
+        labels = _teaching(repetitions)
+        teaching = [compared[clip] for clip in dict.fromkeys(row["clip"] for row in labels)]
         with warnings.catch_warnings():
             # Notes about labels that nobody has written.
             warnings.simplefilter("ignore", MorecWarning)
-            index = train(list(compared.values()), labels)
-        made = index, archive.recognize(index).collect()
-    if made is None:
+            # What is not labelled may well be another repetition.
+            index = train(teaching, labels, unlabelled="ignore")
+    if index is None:
         raise MorecError(f"{archive.store.uri}: no motion repeats in {minutes:g} minutes of its clips")
     rows = [{**row, "name": lengths[row["clip"]]["name"]} for row in repetitions]
-    return ArchiveSets(Table([{name: row[name] for name in COLUMNS} for row in rows], COLUMNS), *made)
+    sets = Table([{name: row[name] for name in COLUMNS} for row in rows], COLUMNS)
+    return ArchiveSets(sets, index, archive.recognize(index).collect())
 
 
 @dataclass(frozen=True)
@@ -93,6 +98,18 @@ class _Event:
     @property
     def secs(self) -> float:
         return self.stop - self.start
+
+
+def _teaching(repetitions: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Labels of the repetitions that teach."""
+    sets: dict[int, list[dict[str, Any]]] = {}
+    for row in repetitions:
+        sets.setdefault(row["set"], []).append(row)
+    nearest = (row for rows in sets.values() for row in sorted(rows, key=lambda row: row["distance"])[:TEACHING])
+    return [
+        {"clip": row["clip"], "class": f"{CLASS}{row['set']}", "start_secs": row["start_secs"], "stop_secs": row["stop_secs"]}
+        for row in nearest
+    ]
 
 
 def _by_clip(events: DataFrame) -> dict[str, list[_Event]]:

@@ -18,11 +18,35 @@ const FAR_VALUE: f32 = 1e18;
 pub const TOGETHER: usize = 8;
 
 /// The same value of [`TOGETHER`] segments.
-type SegmentLanes = [f32; TOGETHER];
+pub type SegmentLanes = [f32; TOGETHER];
 /// The rows of [`TOGETHER`] segments in those directions; what is left of the last ones is zero.
 pub type CoarseBlock = [[SegmentLanes; DIRECTIONS]; SEGMENT_ROWS];
 /// Rows of one segment in those directions, with [`BAND`] places before and behind them that are far from every row.
 pub type CoarseRows = [[f32; DIRECTIONS]; SEGMENT_ROWS + 2 * BAND];
+
+/// Parts of a segment, one after the other, and directions whose means over each of them make its sketch.
+const PARTS: usize = 4;
+const SKETCHED: usize = 8;
+/// Rows of a part.
+const PART_ROWS: usize = SEGMENT_ROWS / PARTS;
+/// Means of the parts of a segment, scaled so that squared distances of two sketches are at most what aligning row by row costs.
+pub type Sketch = [f32; PARTS * SKETCHED];
+/// The sketches of [`TOGETHER`] segments.
+pub type SketchBlock = [SegmentLanes; PARTS * SKETCHED];
+
+/// The sketch of a segment with these rows.
+pub fn sketch_of(rows: &CoarseRows) -> Sketch {
+    // In each row, both segments go on by one: its cost counts twice.
+    let scale = (2.0 / PART_ROWS as f32).sqrt();
+    let mut sketch = [0.0; PARTS * SKETCHED];
+    for (row, values) in rows[BAND..][..SEGMENT_ROWS].iter().enumerate() {
+        let part = &mut sketch[row / PART_ROWS * SKETCHED..][..SKETCHED];
+        for (sum, value) in part.iter_mut().zip(values) {
+            *sum += value * scale;
+        }
+    }
+    sketch
+}
 
 /// The directions in which rows of segments vary most: principal components.
 #[derive(Debug)]
@@ -62,21 +86,45 @@ impl CoarseBasis {
         rows
     }
 
-    /// The parts of the rows of all segments, [`TOGETHER`] in a block.
-    pub fn blocks(&self, segments: &[f32]) -> Vec<CoarseBlock> {
+    /// The parts of the rows of all segments, [`TOGETHER`] in a block, and their sketches.
+    pub fn blocks(&self, segments: &[f32]) -> (Vec<CoarseBlock>, Vec<SketchBlock>) {
         let of_block = |segments: &[f32]| {
             let mut block = [[[0.0; TOGETHER]; DIRECTIONS]; SEGMENT_ROWS];
+            let mut sketches = [[0.0; TOGETHER]; PARTS * SKETCHED];
             for (lane, segment) in segments.chunks_exact(SEGMENT).enumerate() {
-                for (row, out) in self.rows(segment)[BAND..].iter().zip(&mut block) {
+                let rows = self.rows(segment);
+                for (row, out) in rows[BAND..].iter().zip(&mut block) {
                     for (value, lanes) in row.iter().zip(out) {
                         lanes[lane] = *value;
                     }
                 }
+                for (value, lanes) in sketch_of(&rows).into_iter().zip(&mut sketches) {
+                    lanes[lane] = value;
+                }
             }
-            block
+            (block, sketches)
         };
-        segments.chunks(TOGETHER * SEGMENT).map(of_block).collect()
+        segments.chunks(TOGETHER * SEGMENT).map(of_block).unzip()
     }
+}
+
+/// The squared distances of a sketch from those of a block.
+#[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
+pub fn apart(block: &SketchBlock, sketch: &Sketch) -> SegmentLanes {
+    squares_of_lanes(block, sketch)
+}
+
+/// Of each lane the sum of the squared differences from `others`.
+#[inline(always)]
+fn squares_of_lanes<const N: usize>(values: &[SegmentLanes; N], others: &[f32; N]) -> SegmentLanes {
+    let mut sums = [0.0; TOGETHER];
+    for (values, other) in values.iter().zip(others) {
+        for lane in 0..TOGETHER {
+            let apart = values[lane] - other;
+            sums[lane] += apart * apart;
+        }
+    }
+    sums
 }
 
 /// What aligning each segment of a block with the one of `rows` costs in those directions alone, within the band, but for rounding. The
@@ -87,16 +135,9 @@ pub fn least_costs(block: &CoarseBlock, rows: &CoarseRows, limits: &SegmentLanes
     // Of the row before, at place `j - i + BAND`; the place behind them stays infinite.
     let mut before = [OUTSIDE; CELLS + 1];
     for (i, values) in block.iter().enumerate() {
-        let mut costs = [[0.0; TOGETHER]; CELLS];
-        for (k, values) in values.iter().enumerate() {
-            for (cell, costs) in costs.iter_mut().enumerate() {
-                let other = rows[i + cell][k];
-                for lane in 0..TOGETHER {
-                    let apart = values[lane] - other;
-                    costs[lane] += apart * apart;
-                }
-            }
-        }
+        // A cell's sum is done before the next begins: together, cells are compiled to gathered lanes, which takes eight times as long.
+        let costs: [SegmentLanes; CELLS] =
+            std::array::from_fn(|cell| squares_of_lanes(values, &rows[i + cell]));
         let (mut reached, mut least) = (OUTSIDE, OUTSIDE);
         for cell in 0..CELLS {
             for lane in 0..TOGETHER {

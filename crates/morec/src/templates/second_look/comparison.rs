@@ -8,9 +8,11 @@ use crate::classes::ClassId;
 use crate::math::portable;
 use crate::templates::Metric;
 
-use super::bounds::{CoarseBasis, CoarseRows, TOGETHER, least_costs, smaller};
+use super::bounds::{
+    CoarseBasis, CoarseRows, Sketch, TOGETHER, apart, least_costs, sketch_of, smaller,
+};
 use super::mapped::{
-    MappedSegments, divisor, mapped_rows, mean_of, median_of, noise_of, spread_of, squares, sum,
+    MappedSegments, divisor, mapped_rows, median_of, noise_of, spread_of, squares, sum,
 };
 use super::model::SecondLook;
 use super::segment::{BAND, LANES, PADDED, SEGMENT, SEGMENT_ROWS};
@@ -28,13 +30,13 @@ pub struct Judged {
     pub score: f32,
 }
 
-/// A model laid out for comparing. Nothing is allocated after construction.
+/// A model laid out for comparing. Nothing is allocated after construction; copies share the segments.
 #[derive(Debug, Clone)]
 pub struct Comparison {
     metric: Metric,
-    classes: Vec<ClassId>,
-    samples: MappedSegments,
-    atlas: MappedSegments,
+    classes: Arc<[ClassId]>,
+    samples: Arc<MappedSegments>,
+    atlas: Arc<MappedSegments>,
     typical_spread: f32,
     least_divisor: f32,
     scale: f32,
@@ -48,8 +50,10 @@ pub struct Comparison {
     basis: Arc<CoarseBasis>,
     /// Of the segment.
     coarse: Box<CoarseRows>,
+    sketch: Sketch,
     noise: f32,
-    mean: [f32; PADDED],
+    /// Room for the blocks that may hold a near segment, with the distances of their nearest sketches.
+    ranked: Vec<(f32, usize)>,
 }
 
 impl Comparison {
@@ -63,20 +67,22 @@ impl Comparison {
         let typical_spread = median_of(&mut samples.spreads.clone()).max(1e-6);
         samples.set_tangents(typical_spread);
         atlas.set_tangents(typical_spread);
+        let coarse = Box::new(basis.rows(&[]));
         Self {
-            classes: model.classes.clone(),
+            classes: model.classes.as_slice().into(),
             typical_spread,
             least_divisor: divisor(0.0),
-            mean: [0.0; PADDED],
-            atlas,
-            samples,
+            sketch: sketch_of(&coarse),
+            ranked: vec![(0.0, 0); samples.coarse.len().max(atlas.coarse.len())],
+            atlas: atlas.into(),
+            samples: samples.into(),
             scale: model.scale,
             has_scale: model.scale > 0.0,
             bound: model.bound,
             farthest: f32::MAX,
             mapped: vec![0.0; SEGMENT_ROWS * metric.dim()],
             segment: vec![0.0; SEGMENT],
-            coarse: Box::new(basis.rows(&[])),
+            coarse,
             basis: Arc::new(basis),
             noise: 0.0,
             metric,
@@ -93,6 +99,16 @@ impl Comparison {
                 ..comparison
             },
             false => comparison,
+        }
+    }
+
+    /// The same for a model with another scale.
+    #[cfg(feature = "train")]
+    pub(crate) fn with_scale(self, scale: f32) -> Self {
+        Self {
+            scale,
+            has_scale: scale > 0.0,
+            ..self
         }
     }
 
@@ -115,20 +131,23 @@ impl Comparison {
         let mut best: Option<(f32, ClassId)> = None;
         let mut least = self.farthest;
         let limits = (spread, least);
-        self.search(&self.samples, limits, counts, |sample, distance| {
+        let mut ranked = std::mem::take(&mut self.ranked);
+        let samples = (&*self.samples, ranked.as_mut_slice());
+        self.search(samples, limits, counts, |sample, distance| {
             if best.is_none() || distance < least {
                 best = Some((distance, self.classes[sample]));
                 least = least.min(distance);
             }
             least
         });
+        self.ranked = ranked;
         let (nearest, class) = best?;
         let score = self.score(spread, nearest);
         Some(Judged { class, score })
     }
 
     /// The score of a segment of this spread whose nearest sample is `nearest` away.
-    fn score(&self, spread: f32, nearest: f32) -> f32 {
+    fn score(&mut self, spread: f32, nearest: f32) -> f32 {
         let nearest = nearest.max(LEAST_DISTANCE);
         match self.atlas.spreads.is_empty() {
             true => portable::ln(f64::from(self.scale / nearest)) as f32,
@@ -145,15 +164,16 @@ impl Comparison {
     }
 
     /// The score relative to the distance of other motion.
-    fn against_atlas(&self, spread: f32, nearest: f32) -> f32 {
+    fn against_atlas(&mut self, spread: f32, nearest: f32) -> f32 {
         let mut found = [f32::MAX; NEAREST_OF_ATLAS];
         let least = match self.has_scale {
             true => 2.0 * self.bound - portable::ln(f64::from(self.scale / nearest)) as f32,
             false => self.bound,
         };
         let refused = nearest * portable::exp(f64::from(least)) as f32;
+        let mut ranked = std::mem::take(&mut self.ranked);
         self.search(
-            &self.atlas,
+            (&*self.atlas, ranked.as_mut_slice()),
             (spread, f32::MAX),
             |_| true,
             |_, distance| {
@@ -169,6 +189,7 @@ impl Comparison {
                 }
             },
         );
+        self.ranked = ranked;
         let against = |of: f32| portable::ln(f64::from(of / nearest)) as f32;
         let other = against(found[NEAREST_OF_ATLAS - 1].max(LEAST_DISTANCE));
         match self.has_scale {
@@ -202,54 +223,103 @@ impl Comparison {
             out[..dim].copy_from_slice(row);
         }
         self.noise = noise_of(&self.segment);
-        self.mean = mean_of(&self.segment);
         *self.coarse = self.basis.rows(&self.segment);
+        self.sketch = sketch_of(&self.coarse);
         spread_of(&self.segment)
     }
 
-    /// Gives `take` the segments of `of` that `counts` admits, with their distances: those of the nearest means first, then each whose lower
-    /// bound does not exclude it. `take` returns the distance from which on segments may be left out, at first `most`; below zero, the
+    /// Gives `take` the segments of `of` that `counts` admits, with their distances, those of the nearest sketches first, except those that
+    /// their lower bound excludes. `take` returns the distance from which on segments may be left out, at first `most`; below zero, the
     /// search ends.
     fn search(
         &self,
-        of: &MappedSegments,
+        (of, ranked): (&MappedSegments, &mut [(f32, usize)]),
         (spread, mut most): (f32, f32),
         counts: impl Fn(usize) -> bool,
         mut take: impl FnMut(usize, f32) -> f32,
     ) {
-        let nearest = of.nearest_means(&self.mean, &counts);
-        for place in nearest.into_iter().flatten() {
-            if most < 0.0 {
-                return;
-            }
-            most = take(place, self.distance(of, place, spread, most));
-        }
-        for (block, coarse) in of.coarse.iter().enumerate() {
+        let ranked = &mut ranked[..of.coarse.len()];
+        self.rank(of, ranked, spread);
+        for &mut (_, block) in ranked {
             if most < 0.0 {
                 return;
             }
             let first = block * TOGETHER;
             let limits = std::array::from_fn(|lane| self.limit(of, first + lane, spread, most));
-            let costs = least_costs(coarse, &self.coarse, &limits);
-            for lane in (0..TOGETHER).filter(|lane| costs[*lane] < limits[*lane]) {
+            let costs = least_costs(&of.coarse[block], &self.coarse, &limits);
+            let mut lanes: [usize; TOGETHER] = std::array::from_fn(|lane| lane);
+            lanes.sort_unstable_by(|a, b| costs[*a].total_cmp(&costs[*b]));
+            for lane in lanes {
                 let place = first + lane;
-                let is_left = counts(place) && !nearest.contains(&Some(place));
-                if is_left {
+                if costs[lane] < self.limit(of, place, spread, most) && counts(place) {
                     most = take(place, self.distance(of, place, spread, most));
                 }
             }
         }
     }
 
+    /// Puts the blocks of `of` into `ranked` by their nearest sketches.
+    fn rank(&self, of: &MappedSegments, ranked: &mut [(f32, usize)], spread: f32) {
+        for (block, sketches) in of.sketches.iter().enumerate() {
+            let costs = apart(sketches, &self.sketch);
+            let places = (block * TOGETHER..of.spreads.len()).zip(costs);
+            let distance = |(place, cost)| self.bounded(of, place, spread, cost);
+            ranked[block] = (places.map(distance).fold(f32::INFINITY, smaller), block);
+        }
+        ranked.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    }
+
+    /// Of each class but `except` the distance of its nearest sample. O(samples · rows · band).
+    fn nearest_of_classes(&mut self, segment: &[f32], except: ClassId) -> Vec<f32> {
+        let spread = self.map(segment);
+        let of = &*self.samples;
+        let open = [f32::INFINITY; TOGETHER];
+        let costs = (of.coarse.iter()).flat_map(|block| least_costs(block, &self.coarse, &open));
+        let places = self.classes.iter().zip(costs).enumerate();
+        let others = places.filter(|(_, (class, _))| **class != except);
+        let mut bounds: Vec<(ClassId, f32, usize)> = others
+            .map(|(place, (class, cost))| {
+                let bound = self.bounded(of, place, spread, cost / ROUNDING);
+                (*class, bound, place)
+            })
+            .collect();
+        bounds.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        let of_class = bounds.chunk_by(|a, b| a.0 == b.0);
+        let nearest = of_class.map(|bounds| {
+            let mut least = f32::MAX;
+            for (_, bound, place) in bounds {
+                if *bound >= least {
+                    break;
+                }
+                least = least.min(self.distance(of, *place, spread, least));
+            }
+            least
+        });
+        nearest.collect()
+    }
+
     /// The cost of an alignment from which on the distance is `most` or more; below every cost where there is no segment.
     fn limit(&self, of: &MappedSegments, place: usize, spread: f32, most: f32) -> f32 {
-        let (Some(noise), Some((at_own, slope))) = (of.noises.get(place), of.tangents.get(place))
-        else {
+        if place >= of.spreads.len() {
             return f32::MIN;
-        };
-        let (noise, moved) = self.noise_and_spread(spread, *noise);
-        let divisor = (at_own + slope * (moved - of.spreads[place])).max(self.least_divisor);
+        }
+        let (noise, divisor) = self.noise_and_divisor(of, place, spread);
         Self::cost_of(most * divisor, noise) * ROUNDING
+    }
+
+    /// The segment's noise beyond that of a sample, and an upper bound of what its distance from it is divided by.
+    fn noise_and_divisor(&self, of: &MappedSegments, place: usize, spread: f32) -> (f32, f32) {
+        let (noise, moved) = self.noise_and_spread(spread, of.noises[place]);
+        let (at_own, slope) = of.tangents[place];
+        let divisor = at_own + slope * (moved - of.spreads[place]);
+        (noise, divisor.max(self.least_divisor))
+    }
+
+    /// A distance of the sample that is no larger than its own where `cost` is no larger than that of its alignment.
+    fn bounded(&self, of: &MappedSegments, place: usize, spread: f32, cost: f32) -> f32 {
+        let (noise, divisor) = self.noise_and_divisor(of, place, spread);
+        let mean = cost / PATH_WEIGHT;
+        (mean - noise.min(NOISE_SHARE * mean)) / divisor
     }
 
     /// The segment's noise beyond that of a sample, and its spread without it.
@@ -289,25 +359,19 @@ impl SecondLook {
     /// `s_T` of the samples: the median over samples of the median distance from other classes, each at its nearest sample; 0 of one class.
     /// Of many samples evenly spaced ones count. O(samples² · rows · band · d).
     pub fn measured_scale(&self) -> f32 {
-        let mut comparison = Comparison::new(self);
-        let mut medians = Vec::new();
+        self.scale_by(&mut Comparison::new(self))
+    }
+
+    /// The same with a comparison of this model.
+    pub(crate) fn scale_by(&self, comparison: &mut Comparison) -> f32 {
         let count = self.classes.len();
-        for k in 0..count.min(MEASURED) {
-            let sample = k * count / count.min(MEASURED);
-            let spread = comparison.map(self.segment(sample));
-            let mut nearest = std::collections::BTreeMap::<ClassId, f32>::new();
-            for (place, class) in self.classes.iter().enumerate() {
-                if *class != self.classes[sample] {
-                    let least = nearest.entry(*class).or_insert(f32::MAX);
-                    let distance = comparison.distance(&comparison.samples, place, spread, *least);
-                    *least = least.min(distance);
-                }
-            }
-            let mut others: Vec<f32> = nearest.into_values().collect();
-            if !others.is_empty() {
-                medians.push(median_of(&mut others));
-            }
-        }
+        let measured = (0..count.min(MEASURED)).map(|k| k * count / count.min(MEASURED));
+        let median = |sample: usize| {
+            let class = self.classes[sample];
+            let mut others = comparison.nearest_of_classes(self.segment(sample), class);
+            (!others.is_empty()).then(|| median_of(&mut others))
+        };
+        let mut medians: Vec<f32> = measured.filter_map(median).collect();
         median_of(&mut medians)
     }
 }

@@ -4,15 +4,13 @@ use crate::features::Rows;
 use crate::math::portable;
 use crate::templates::Metric;
 
-use super::bounds::{CoarseBasis, CoarseBlock};
+use super::bounds::{CoarseBasis, CoarseBlock, SketchBlock};
 use super::segment::{LANES, PADDED, SEGMENT, SEGMENT_ROWS};
 
 /// Exponent by which the spread of both segments normalises their distance.
 const EXPONENT: f32 = 0.85;
 /// Least share of the typical spread that normalises: segments that hardly move must not be near everything.
 const LEAST_SPREAD: f32 = 0.05;
-/// Segments that are compared before bounds exclude any.
-pub const FIRST: usize = 16;
 
 /// Segments after the metric, each with its spread and its noise.
 #[derive(Debug, Clone, Default)]
@@ -21,9 +19,8 @@ pub struct MappedSegments {
     pub values: Vec<f32>,
     pub spreads: Vec<f32>,
     pub noises: Vec<f32>,
-    /// [`PADDED`] values each.
-    pub means: Vec<f32>,
     pub coarse: Vec<CoarseBlock>,
+    pub sketches: Vec<SketchBlock>,
     /// Of each segment the tangent of its [`divisor`] where both spreads are its own: value and slope.
     pub tangents: Vec<(f32, f32)>,
 }
@@ -31,33 +28,15 @@ pub struct MappedSegments {
 impl MappedSegments {
     pub fn of(values: Vec<f32>, basis: &CoarseBasis) -> Self {
         let segments = || values.chunks_exact(SEGMENT);
+        let (coarse, sketches) = basis.blocks(&values);
         Self {
             spreads: segments().map(spread_of).collect(),
             noises: segments().map(noise_of).collect(),
-            means: segments().flat_map(mean_of).collect(),
-            coarse: basis.blocks(&values),
             tangents: Vec::new(),
+            coarse,
+            sketches,
             values,
         }
-    }
-
-    /// Places of the segments that count and whose means are the nearest to `mean`, the nearest first. O(segments · d).
-    pub fn nearest_means(
-        &self,
-        mean: &[f32; PADDED],
-        counts: impl Fn(usize) -> bool,
-    ) -> [Option<usize>; FIRST] {
-        let mut nearest = [(f32::INFINITY, None); FIRST];
-        let means = self.means.chunks_exact(PADDED).enumerate();
-        for (place, of) in means.filter(|(place, _)| counts(*place)) {
-            let apart = squared(of, mean);
-            if apart < nearest[FIRST - 1].0 {
-                let at = nearest.partition_point(|(other, _)| *other <= apart);
-                nearest[at..].rotate_right(1);
-                nearest[at] = (apart, Some(place));
-            }
-        }
-        nearest.map(|(_, place)| place)
     }
 
     /// Sets the tangents, for spreads that are shares of `typical`.
@@ -82,17 +61,6 @@ pub fn mapped_rows(metric: &Metric, rows: &Rows) -> Vec<f32> {
         out[..dim].copy_from_slice(row);
     }
     values
-}
-
-/// Mean of a segment's rows.
-pub fn mean_of(segment: &[f32]) -> [f32; PADDED] {
-    let mut mean = [0.0; PADDED];
-    for row in segment.chunks_exact(PADDED) {
-        for (mean, value) in mean.iter_mut().zip(row) {
-            *mean += value / SEGMENT_ROWS as f32;
-        }
-    }
-    mean
 }
 
 /// Mean squared distance of a segment's rows from their mean.
@@ -133,11 +101,6 @@ pub fn noise_of(segment: &[f32]) -> f32 {
 /// `max(0.05, share)^0.85`.
 pub fn divisor(share: f32) -> f32 {
     portable::powf(f64::from(share.max(LEAST_SPREAD)), f64::from(EXPONENT)) as f32
-}
-
-/// The squared distance of two rows.
-pub fn squared(a: &[f32], b: &[f32]) -> f32 {
-    sum(squares(a, b))
 }
 
 /// Of every lane the sum of the squared differences of two rows.

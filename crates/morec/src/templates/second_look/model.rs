@@ -100,8 +100,8 @@ impl SecondLook {
     pub fn compacted(self) -> Self {
         let step = steps([&self.segments, &self.atlas].into_iter(), self.ridged.dim());
         Self {
-            segments: snapped(&self.segments, &step),
-            atlas: snapped(&self.atlas, &step),
+            segments: snapped(self.segments, &step),
+            atlas: snapped(self.atlas, &step),
             step: Some(step),
             ..self
         }

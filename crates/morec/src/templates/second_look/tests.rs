@@ -7,7 +7,7 @@ use crate::math::{Axis, Vec3};
 use crate::roles::Role;
 
 use super::body::BodyTrack;
-use super::bounds::{CoarseBasis, TOGETHER, least_costs};
+use super::bounds::{CoarseBasis, TOGETHER, apart, least_costs, sketch_of};
 use super::comparison::warped_rows;
 use super::extent::LookExtent;
 use super::segment::{
@@ -64,7 +64,7 @@ proptest! {
     ) {
         let basis = CoarseBasis::of(&segments.concat());
         let rows = basis.rows(&segments[0]);
-        let blocks = basis.blocks(&segments.concat());
+        let (blocks, _) = basis.blocks(&segments.concat());
         let all = |limit: f32| -> Vec<f32> {
             let costs = |block| least_costs(block, &rows, &[limit; TOGETHER]);
             blocks.iter().flat_map(costs).collect()
@@ -79,6 +79,23 @@ proptest! {
     }
 
     #[test]
+    fn sketches_are_no_farther_than_rows_aligned_one_by_one(
+        segments in prop::collection::vec(prop::collection::vec(-3.0f32..3.0, SEGMENT), 2..11),
+    ) {
+        let basis = CoarseBasis::of(&segments.concat());
+        let (_, sketches) = basis.blocks(&segments.concat());
+        let first = sketch_of(&basis.rows(&segments[0]));
+        let distances = sketches.iter().flat_map(|block| apart(block, &first));
+        for (segment, distance) in segments.iter().zip(distances) {
+            let cost = slow_by(SEGMENT_ROWS, 0, |i, j| {
+                let rows = segment[i * PADDED..][..PADDED].iter().zip(&segments[0][j * PADDED..]);
+                rows.map(|(a, b)| (f64::from(*a) - f64::from(*b)).powi(2)).sum()
+            });
+            prop_assert!(f64::from(distance) <= cost * 1.001 + 1e-3, "{} {}", distance, cost);
+        }
+    }
+
+    #[test]
     fn bounds_of_rows_of_few_values_are_costs(a in values(), b in values()) {
         let rows = |values: &[f64]| {
             let mut rows = vec![0.0f32; SEGMENT];
@@ -89,7 +106,7 @@ proptest! {
         };
         let (a, b) = (rows(&a), rows(&b));
         let basis = CoarseBasis::of(&[a.clone(), b.clone()].concat());
-        let blocks = basis.blocks(&a);
+        let (blocks, _) = basis.blocks(&a);
         let [bound, ..] = least_costs(&blocks[0], &basis.rows(&b), &[f32::INFINITY; TOGETHER]);
         let cost = slow_of(PADDED, &a, &b);
         prop_assert!((f64::from(bound) - cost).abs() < 1e-3 * (1.0 + cost), "{} {}", bound, cost);
