@@ -30,12 +30,12 @@ const SKETCHED: usize = 8;
 /// Rows of a part.
 const PART_ROWS: usize = SEGMENT_ROWS / PARTS;
 /// Means of the parts of a segment, scaled so that squared distances of two sketches are at most what aligning row by row costs.
-pub type Sketch = [f32; PARTS * SKETCHED];
+pub type SegmentSketch = [f32; PARTS * SKETCHED];
 /// The sketches of [`TOGETHER`] segments.
 pub type SketchBlock = [SegmentLanes; PARTS * SKETCHED];
 
 /// The sketch of a segment with these rows.
-pub fn sketch_of(rows: &CoarseRows) -> Sketch {
+pub fn sketch_of(rows: &CoarseRows) -> SegmentSketch {
     // In each row, both segments go on by one: its cost counts twice.
     let scale = (2.0 / PART_ROWS as f32).sqrt();
     let mut sketch = [0.0; PARTS * SKETCHED];
@@ -110,7 +110,7 @@ impl CoarseBasis {
 
 /// The squared distances of a sketch from those of a block.
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
-pub fn apart(block: &SketchBlock, sketch: &Sketch) -> SegmentLanes {
+pub fn apart(block: &SketchBlock, sketch: &SegmentSketch) -> SegmentLanes {
     squares_of_lanes(block, sketch)
 }
 
