@@ -1,5 +1,8 @@
 //! The report of a cross-validation: one count of mistakes, and from each to its moment and its nearest label.
 
+use std::ffi::OsString;
+use std::sync::OnceLock;
+
 use egui::Key;
 use egui_kittest::kittest::Queryable;
 use morec_db::labels::{NewSample, SampleState as Judged};
@@ -8,8 +11,32 @@ use super::{Person, made};
 use crate::state::{Command, Panel, TrainCommand};
 use crate::store::Edit;
 
-/// Cross-validated, with a label that cannot be recognised and a motion without its label.
+/// Whose database was cross-validated before, with the report opened. It is made once and copied: judging takes longer than most tests.
 fn judged() -> (tempfile::TempDir, Person) {
+    static JUDGED: OnceLock<Vec<(OsString, Vec<u8>)>> = OnceLock::new();
+    let files = JUDGED.get_or_init(|| {
+        let (folder, person) = cross_validated();
+        drop(person);
+        let entries = std::fs::read_dir(folder.path())
+            .unwrap()
+            .map(Result::unwrap);
+        let read = entries.map(|entry| (entry.file_name(), std::fs::read(entry.path()).unwrap()));
+        read.collect()
+    });
+    let folder = tempfile::tempdir().unwrap();
+    for (name, bytes) in files {
+        std::fs::write(folder.path().join(name), bytes).unwrap();
+    }
+    let mut person = Person::before(&[folder.path().join("moves.mdb")]);
+    person.goes_to(Panel::Train);
+    let reports = &person.state().store.as_ref().unwrap().snapshot.reports;
+    let id = reports[0].id;
+    person.command(Command::Train(TrainCommand::OpenReport(id)));
+    (folder, person)
+}
+
+/// Cross-validated, with a label that cannot be recognised and a motion without its label.
+fn cross_validated() -> (tempfile::TempDir, Person) {
     let folder = tempfile::tempdir().unwrap();
     let mut person = Person::before(&[made(folder.path(), 3)]);
     let clip = person.state().player.motion.as_ref().unwrap().id;
@@ -44,7 +71,7 @@ fn shows_search(person: &Person, what: &str) -> bool {
 
 #[test]
 fn matrix_list_and_figures_count_the_same() {
-    let (_folder, mut person) = judged();
+    let (_folder, mut person) = cross_validated();
     let judged = person.state().train.judged.as_ref().unwrap();
     let (rows, columns) = (judged.rows.len(), judged.columns.len());
     let sum = |row: usize| judged.counts[row].iter().sum::<usize>();

@@ -19,6 +19,8 @@ use crate::state::{Command, Panel, State};
 pub const DT: f32 = 1.0 / 60.0;
 /// No thread works longer than this, even on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(240);
+/// Between two looks at threads that have just begun.
+const SHORT: Duration = Duration::from_millis(2);
 
 /// Dialogs that are answered by what a test has queued, and noted.
 #[derive(Default)]
@@ -168,10 +170,13 @@ impl Person {
         let mut quiet = 0;
         while quiet < 3 {
             assert!(begun.elapsed() < PATIENCE, "threads are at work for ever");
+            let drawn = Instant::now();
             self.step();
             let busy = self.state().is_busy() || self.window.state().dialogs.is_open();
             quiet = if busy { 0 } else { quiet + 1 };
-            std::thread::sleep(Duration::from_millis(2));
+            // Drawing all the time would take half of the processors from the threads that are waited for.
+            let pause = if busy { 4 * drawn.elapsed() } else { SHORT };
+            std::thread::sleep(pause.min(begun.elapsed() / 8).max(SHORT));
         }
     }
 
