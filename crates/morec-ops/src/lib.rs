@@ -109,3 +109,7 @@ pub use unlearned::Unlearned;
 pub use video::video_of_page;
 #[cfg(feature = "clap")]
 pub use words::share;
+
+/// The version of all JSON that the command prints. Fields may be added under a version; what one means, or that it is there,
+/// does not change without another.
+pub const FORMAT_VERSION: u32 = 1;

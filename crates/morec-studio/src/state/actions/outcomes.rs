@@ -161,7 +161,7 @@ impl State {
             }
             JobOutcome::Curve(curve) => {
                 self.say("learning curve measured");
-                self.train.curve = Some(curve);
+                self.keep_curve(curve);
             }
             JobOutcome::Recognised((clip, found)) => self.detections = Some((clip, found)),
             JobOutcome::Resensed(found) => self.take_resensed(found),
