@@ -51,6 +51,8 @@ mod search;
 #[cfg(feature = "db")]
 mod shapes;
 #[cfg(feature = "db")]
+mod sound;
+#[cfg(feature = "db")]
 mod study;
 mod text;
 mod train;
@@ -100,6 +102,8 @@ pub use reduce::rebuilt_from;
 pub use search::{SearchSettings, example_of_clip, example_of_database};
 #[cfg(feature = "db")]
 pub use shapes::Shapes;
+#[cfg(feature = "db")]
+pub use sound::{ClapMatch, SoundEnvelope};
 #[cfg(feature = "db")]
 pub use study::{ComparedAnnotators, time_budget};
 pub use train::{Method, TrainSettings, Unlabelled};
