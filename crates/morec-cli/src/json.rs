@@ -5,9 +5,7 @@ use std::io::{self, Write};
 use serde::Serialize;
 use serde_json::ser::{Formatter, PrettyFormatter, Serializer};
 
-/// The version of all that `--json` prints. Fields may be added under a version; what one means, or that it is there, does
-/// not change without another.
-pub const FORMAT_VERSION: u32 = 1;
+pub use morec_ops::FORMAT_VERSION;
 
 /// Writes a value as JSON, indented, with a line ending. The object, or each object of a list, begins with the
 /// `format_version`. A closed pipe is an [`io::Error`].

@@ -40,8 +40,9 @@ pub use file_names::{clip_of_file_name, file_name, file_names};
 
 use morec::formats::ParseError;
 
-use annotation::text;
+pub(crate) use annotation::text;
 pub use annotation::{Annotation, ClipLengths, LabelContext, LabelFormat, ReadLabels, snap};
+pub(crate) use csv::{records, separator};
 pub use resolve::{ResolvedLabels, clip_lengths, clip_of_file, resolve};
 pub use tsv::is_of_boris;
 

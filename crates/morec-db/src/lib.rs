@@ -17,7 +17,7 @@
 //! | labels in other programs' forms | [`exchange`] |
 //! | cuts where behaviour changes | [`MotionDb::cut`] |
 //! | rows, search by example, near copies | [`rows`], [`search`] |
-//! | search by words | [`WordIndex`] |
+//! | search by words, by vectors | [`WordIndex`], [`EmbeddingTable`] |
 //! | videos beside clips | [`ClipVideo`] |
 //! | the other samples of classes that a few are labelled of | [`MotionDb::propose`], [`most_informative`] |
 //!
@@ -58,6 +58,7 @@ mod clips;
 mod cut;
 mod db;
 mod digest;
+mod embeddings;
 mod error;
 pub mod exchange;
 mod health;
@@ -89,6 +90,7 @@ pub use background::BackgroundClips;
 pub use clips::{BACKGROUND, ClipFilter, ClipId, ClipInfo, ClipUpdate};
 pub use cut::{BY_HAND, ClipCuts, CutReport, Cutter, Still};
 pub use db::{DbSummary, MotionDb};
+pub use embeddings::{EmbeddingHit, EmbeddingHits, EmbeddingTable};
 pub use error::DbError;
 pub use health::Health;
 pub use history::{Effect, HistoryStep, ReplayedStep, STEPS_KEPT};

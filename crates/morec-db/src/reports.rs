@@ -1,4 +1,4 @@
-//! Reports of trainings and cross-validations, the last of each kind.
+//! Reports of trainings, cross-validations and learning curves, the last of each kind.
 
 use rusqlite::{OptionalExtension, params};
 use serde_json::Value;
@@ -17,6 +17,8 @@ pub enum ReportKind {
     Training,
     /// A cross-validation.
     Crossval,
+    /// A learning curve.
+    Curve,
 }
 
 impl ReportKind {
@@ -25,6 +27,16 @@ impl ReportKind {
         match self {
             Self::Training => "training",
             Self::Crossval => "crossval",
+            Self::Curve => "curve",
+        }
+    }
+
+    /// Name in lists.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Training => "training",
+            Self::Crossval => "cross-validation",
+            Self::Curve => "learning curve",
         }
     }
 }
@@ -81,6 +93,7 @@ impl MotionDb {
                 id: row.get("id")?,
                 kind: match kind.as_str() {
                     "crossval" => ReportKind::Crossval,
+                    "curve" => ReportKind::Curve,
                     _ => ReportKind::Training,
                 },
                 made_secs: row.get("made_secs")?,

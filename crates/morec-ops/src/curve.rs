@@ -4,11 +4,13 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use morec::progress::Progress;
 use morec::train::TrainError;
+use morec_db::{DbError, MotionDb, ReportKind};
 use morec_measure::crossval::{
     CrossvalData, CrossvalError, CrossvalOptions, TaughtLimit, crossval,
 };
 use morec_measure::eval::{Evaluation, MEASURED_OVERLAP};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
+use serde_json::json;
 
 use crate::crossval::evaluation;
 use crate::{CrossvalSettings, OperationError, TrainSettings};
@@ -17,7 +19,7 @@ use crate::{CrossvalSettings, OperationError, TrainSettings};
 const DRAWS: u64 = 3;
 
 /// Measures of cross-validations in which ever more samples of each class teach, and ever more people.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LearningCurve {
     /// What was left out in turn, in words.
     pub divided: String,
@@ -28,7 +30,7 @@ pub struct LearningCurve {
 }
 
 /// One number of samples or people.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CurvePoint {
     /// Samples of each class that teach at most; `None` for all.
     pub samples: Option<usize>,
@@ -39,7 +41,7 @@ pub struct CurvePoint {
 }
 
 /// Measures of one draw.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CurveFigures {
     /// F1 of events.
     pub f1: Option<f64>,
@@ -84,6 +86,29 @@ impl CurvePoint {
 
     fn recall_of(&self, class: &str) -> Option<f64> {
         Some(self.spread(|draw| draw.recall_of_classes.get(class).copied())?[1])
+    }
+}
+
+impl LearningCurve {
+    /// The result in a line.
+    pub fn title(&self) -> String {
+        let f1 = |point: &CurvePoint| point.spread(|draw| draw.f1).map(|spread| spread[1]);
+        let ends = self
+            .points
+            .first()
+            .and_then(f1)
+            .zip(self.points.last().and_then(f1));
+        ends.map_or_else(String::new, |(first, all)| {
+            format!("F1 of events {first:.3} with the fewest, {all:.3} with all")
+        })
+    }
+
+    /// Keeps it in a database. Gives the number of the report.
+    ///
+    /// # Errors
+    /// The database cannot be written.
+    pub fn keep(&self, db: &mut MotionDb) -> Result<i64, DbError> {
+        db.keep_report(ReportKind::Curve, &self.title(), &json!(self))
     }
 }
 

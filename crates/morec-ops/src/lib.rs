@@ -51,6 +51,8 @@ mod search;
 #[cfg(feature = "db")]
 mod shapes;
 #[cfg(feature = "db")]
+mod sound;
+#[cfg(feature = "db")]
 mod study;
 mod text;
 mod train;
@@ -101,6 +103,8 @@ pub use search::{SearchSettings, example_of_clip, example_of_database};
 #[cfg(feature = "db")]
 pub use shapes::Shapes;
 #[cfg(feature = "db")]
+pub use sound::{ClapMatch, SoundEnvelope};
+#[cfg(feature = "db")]
 pub use study::{ComparedAnnotators, time_budget};
 pub use train::{Method, TrainSettings, Unlabelled};
 #[cfg(feature = "db")]
@@ -109,3 +113,7 @@ pub use unlearned::Unlearned;
 pub use video::video_of_page;
 #[cfg(feature = "clap")]
 pub use words::share;
+
+/// The version of all JSON that the command prints. Fields may be added under a version; what one means, or that it is there,
+/// does not change without another.
+pub const FORMAT_VERSION: u32 = 1;

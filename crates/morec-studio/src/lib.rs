@@ -29,6 +29,7 @@ mod stretch;
 mod tests;
 mod theme;
 mod unsaved;
+mod video_player;
 mod window;
 
 pub use window::{Args, run};

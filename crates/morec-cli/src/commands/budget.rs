@@ -49,8 +49,8 @@ pub struct Args {
     /// Draw each person's share of time by class as SVG
     #[arg(long, value_name = "SVG")]
     plot: Option<PathBuf>,
-    /// File to write: a table of classes, people and transitions
-    #[arg(short, long, value_name = "TSV")]
+    /// File to write: a table of classes, people and transitions, or the same as JSON
+    #[arg(short, long, value_name = "TSV|JSON")]
     output: Option<PathBuf>,
     /// Print one JSON object instead of tables
     #[arg(long)]
@@ -73,7 +73,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         output::check_page(path)?;
     }
     if let Some(path) = &args.output {
-        output::check_ending(path, "a table", &["tsv"])?;
+        output::check_ending(path, "a table or JSON", &["tsv", "json"])?;
     }
     let budget = match database::only(std::slice::from_ref(&args.labels))? {
         Some(path) => of_database(path)?,
@@ -88,9 +88,12 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             .with_context(|| path.display().to_string())?;
     }
     if let Some(path) = &args.output {
-        let table = budget.tsv();
-        output::write_whole(path, |out| out.write_all(table.as_bytes()))
-            .with_context(|| path.display().to_string())?;
+        let is_json = path.extension().is_some_and(|ending| ending == "json");
+        output::write_whole(path, |mut out| match is_json {
+            true => write_json(&mut out, &budget),
+            false => out.write_all(budget.tsv().as_bytes()),
+        })
+        .with_context(|| path.display().to_string())?;
     }
     let tables = BudgetTables::of(&budget);
     if let Some(path) = &args.report {

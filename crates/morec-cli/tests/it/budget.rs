@@ -30,6 +30,11 @@ fn time_is_divided_among_classes_and_people() {
         said["transitions"]["counts"],
         serde_json::json!([[0, 1], [1, 0]])
     );
+    folder
+        .morec(&["budget", "labels.tsv", "-o", "budget.json"])
+        .ok();
+    let written = std::fs::read(folder.path().join("budget.json")).unwrap();
+    assert_eq!(serde_json::from_slice::<Value>(&written).unwrap(), said);
     let picture = std::fs::read_to_string(folder.path().join("share.svg")).unwrap();
     assert!(
         picture.contains("73.3") && picture.contains("ann"),

@@ -269,6 +269,7 @@ fn kept_reports_are_listed_and_written() {
     let kinds = [
         morec_db::ReportKind::Training,
         morec_db::ReportKind::Crossval,
+        morec_db::ReportKind::Curve,
     ];
     for (number, kind) in kinds.into_iter().enumerate() {
         let contents = serde_json::json!({ "number": number });
@@ -276,20 +277,25 @@ fn kept_reports_are_listed_and_written() {
     }
     drop(db);
     let listed = json(&folder, &["db", "reports", "m.mdb"]);
-    assert_eq!(listed.as_array().unwrap().len(), 2);
+    assert_eq!(listed.as_array().unwrap().len(), 3);
+    assert_eq!(listed[0]["kind"], "curve");
     assert_eq!(
-        (&listed[0]["id"], &listed[0]["kind"]),
+        (&listed[1]["id"], &listed[1]["kind"]),
         (&2.into(), &"crossval".into())
     );
     let printed = folder.morec(&["db", "reports", "m.mdb"]).ok();
-    assert!(printed.contains("cross-validation") && printed.contains("2 of 3 found"));
+    assert!(
+        printed.contains("learning curve")
+            && printed.contains("cross-validation")
+            && printed.contains("2 of 3 found")
+    );
     let read = |name: &str| -> Value {
         let text = std::fs::read_to_string(folder.path().join(name)).unwrap();
         serde_json::from_str(&text).unwrap()
     };
     let write = ["db", "reports", "m.mdb", "-o", "all.json"];
     folder.morec(&write).ok();
-    assert_eq!(read("all.json")[1]["report"]["number"], 0);
+    assert_eq!(read("all.json")[2]["report"]["number"], 0);
     let one = ["db", "reports", "m.mdb", "--only", "2", "-o", "one.json"];
     folder.morec(&one).ok();
     assert_eq!(read("one.json")["report"]["number"], 1);

@@ -25,4 +25,5 @@ mod poses;
 mod record;
 mod smooth;
 mod studio;
+mod video;
 mod words;

@@ -212,7 +212,7 @@ pub(super) fn frames(annotation: &Annotation, lengths: &ClipLengths) -> Option<(
     Some((frame(start)?, frame(stop)?))
 }
 
-pub(super) fn text(bytes: &[u8]) -> Result<&str, ParseError> {
+pub(crate) fn text(bytes: &[u8]) -> Result<&str, ParseError> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     std::str::from_utf8(bytes).map_err(|error| {
         ParseError::new(

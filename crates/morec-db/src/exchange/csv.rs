@@ -203,7 +203,7 @@ impl CsvRow<'_> {
 }
 
 /// What separates cells: of comma, semicolon and tab the one that the first line that is no comment has most often.
-pub(super) fn separator(text: &str) -> char {
+pub(crate) fn separator(text: &str) -> char {
     let mut lines = text.lines().filter(|line| !line.trim().is_empty());
     let first = lines
         .find(|line| !line.starts_with('#'))
@@ -218,7 +218,7 @@ pub(super) fn separator(text: &str) -> char {
 }
 
 /// Records with the line each begins at; blank lines are skipped.
-pub(super) fn records(text: &str, separator: char) -> Result<Vec<(u64, Vec<String>)>, ParseError> {
+pub(crate) fn records(text: &str, separator: char) -> Result<Vec<(u64, Vec<String>)>, ParseError> {
     let (mut records, mut record, mut cell) = (Vec::new(), Vec::new(), String::new());
     let (mut line, mut begun, mut quoted) = (1, 1, false);
     let mut chars = text.chars().peekable();

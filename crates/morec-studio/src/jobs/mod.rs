@@ -17,6 +17,7 @@ mod progress;
 pub mod propose;
 pub mod recognise;
 pub mod similar;
+pub mod sound;
 pub mod teach;
 pub mod thesis;
 pub mod train;
@@ -55,6 +56,7 @@ pub enum JobOutcome {
     Words(words::FoundWords),
     ComparedAnnotators(Box<morec_ops::ComparedAnnotators>),
     Captions(Vec<morec_db::exchange::Caption>),
+    Sound(sound::ClipSound),
     Aligned(Arc<crate::body::Aligned>),
     Channel(channel::ChannelCurve),
     /// The method of 2009, trained, and its index.

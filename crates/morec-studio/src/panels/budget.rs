@@ -57,7 +57,11 @@ pub fn tools(ui: &mut Ui, state: &State, out: Out) {
             100.0 * budget.unlabelled_secs / budget.secs.max(f64::MIN_POSITIVE)
         );
         ui.colored_label(c.muted, text);
-        if ui.button("Export …").clicked() {
+        let export = ui.button("Export …");
+        if export
+            .on_hover_text("A table (.tsv) or JSON (.json)")
+            .clicked()
+        {
             out.push(Command::File(FileCommand::AskExportBudget));
         }
     }

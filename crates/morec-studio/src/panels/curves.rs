@@ -3,6 +3,8 @@
 use egui::epaint::Mesh;
 use egui::{Color32, Pos2, Rect, Sense, Shape, Stroke, Ui, Vec2, WidgetType, pos2};
 
+use morec_ops::SoundEnvelope;
+
 use super::scale::Scale;
 use super::tracks::{ROW, plain_track, remark};
 use super::{Out, widgets};
@@ -13,6 +15,8 @@ use crate::theme::Colours;
 const LEAST_DEGREES: f64 = 20.0;
 /// Name of the track of the misfit.
 const MISFIT: &str = "Misfit (thesis)";
+/// Name of the track of the sound.
+const SOUND: &str = "Sound";
 
 /// Track of the detections in the clip that is shown.
 pub fn detections(ui: &mut Ui, state: &State, scale: &Scale, out: Out) {
@@ -172,6 +176,31 @@ pub fn speed(ui: &mut Ui, state: &State, scale: &Scale, out: Out) {
     );
 }
 
+/// Track of the sound of the clip's video; none of a clip without a video.
+pub fn sound(ui: &mut Ui, state: &State, scale: &Scale, out: Out) {
+    let Some(video) = state.shown_video() else {
+        return;
+    };
+    let rect = plain_track(ui, state, scale, SOUND, 32.0, out);
+    match state.shown_sound().map(|sound| &sound.envelope) {
+        None => remark(ui, rect, SOUND, "…"),
+        Some(Err(why)) => remark(ui, rect, SOUND, why),
+        Some(Ok(sound)) => {
+            let colour = Colours::now(ui).tint(Colours::now(ui).good, 0.55);
+            let hz = SoundEnvelope::HZ;
+            area(
+                ui,
+                rect,
+                scale,
+                &sound.peaks,
+                hz,
+                -video.offset_secs,
+                colour,
+            );
+        }
+    }
+}
+
 /// Values at an even rate as a filled area: the highest of each point of the screen.
 pub fn area(
     ui: &Ui,
@@ -184,7 +213,7 @@ pub fn area(
 ) {
     let highest = values.iter().copied().fold(1e-6, f32::max);
     let mut mesh = Mesh::default();
-    let mut x = rect.left();
+    let mut x = rect.left().max(scale.x(origin));
     while x < rect.right() {
         let at =
             |x: f32| (((scale.secs(x) - origin) * hz).floor().max(0.0) as usize).min(values.len());

@@ -1,7 +1,6 @@
 //! Reports that the database keeps: their list, and the one that was opened.
 
 use egui::{Id, RichText, ScrollArea, Sense, Ui, Vec2, WidgetType};
-use morec_db::ReportKind;
 
 use super::{Out, widgets};
 use crate::format;
@@ -42,7 +41,7 @@ pub fn list(ui: &mut Ui, state: &State, out: Out) {
             let response = ui.interact(rect, id, Sense::click());
             let opened = state.train.opened.as_ref();
             let on = opened.is_some_and(|opened| opened.info.id == report.id);
-            let what = name(report.kind);
+            let what = report.kind.title();
             let called = format!("Report {}: {what}, {}", report.id, report.title);
             widgets::named(&response, WidgetType::SelectableLabel, &called, on);
             if on {
@@ -63,13 +62,6 @@ pub fn list(ui: &mut Ui, state: &State, out: Out) {
     });
 }
 
-fn name(kind: ReportKind) -> &'static str {
-    match kind {
-        ReportKind::Training => "training",
-        ReportKind::Crossval => "cross-validation",
-    }
-}
-
 /// The report that was opened: when it was made, and what is said of a training.
 pub fn opened(ui: &mut Ui, state: &State, out: Out) {
     let Some(opened) = &state.train.opened else {
@@ -79,7 +71,7 @@ pub fn opened(ui: &mut Ui, state: &State, out: Out) {
     widgets::boxed(ui, |ui| {
         ui.horizontal_wrapped(|ui| {
             let when = format::utc(opened.info.made_secs);
-            let title = format!("Report of {when}: {}", name(opened.info.kind));
+            let title = format!("Report of {when}: {}", opened.info.kind.title());
             ui.label(RichText::new(title).strong());
             ui.colored_label(c.muted, &opened.info.title);
             if ui.button("Export the report …").clicked() {

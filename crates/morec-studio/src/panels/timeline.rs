@@ -56,6 +56,7 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
                 channel::map(ui, state, &scale, out);
                 curves::misfit(ui, state, &scale, out);
                 curves::speed(ui, state, &scale, out);
+                curves::sound(ui, state, &scale, out);
                 channel::curve(ui, state, &scale, out);
             });
     });

@@ -5,6 +5,7 @@ use morec_db::{ClipInfo, ClipVideo};
 
 use super::{Out, widgets};
 use crate::format;
+use crate::state::video::VideoCommand;
 use crate::state::{Command, FileCommand, State};
 use crate::store::Edit;
 use crate::theme::Colours;
@@ -18,7 +19,10 @@ pub fn show(ui: &mut Ui, state: &State, clip: &ClipInfo, out: Out) {
                 out.push(Command::File(FileCommand::AskVideo));
             }
             let muted = Colours::now(ui).muted;
-            ui.colored_label(muted, "It plays in step in the page of the clip.");
+            ui.colored_label(
+                muted,
+                "It plays in step with the clip, here and in its page.",
+            );
         });
         return;
     };
@@ -45,6 +49,9 @@ pub fn show(ui: &mut Ui, state: &State, clip: &ClipInfo, out: Out) {
         offset_secs,
         ..video.clone()
     };
+    if state.shown_clip().is_some_and(|shown| shown.id == clip.id) {
+        of_shown(ui, state, |offset_secs| set(Some(moved(offset_secs))), out);
+    }
     let secs = |text: &str| text.trim().trim_end_matches('s').trim().parse::<f64>().ok();
     ui.horizontal(|ui| {
         ui.label("The clip begins at");
@@ -67,4 +74,44 @@ pub fn show(ui: &mut Ui, state: &State, clip: &ClipInfo, out: Out) {
         }
         ui.label("s");
     });
+}
+
+/// What needs the motion of the clip and the sound of its video.
+fn of_shown(ui: &mut Ui, state: &State, set: impl Fn(f64) -> Command, out: Out) {
+    ui.horizontal_wrapped(|ui| {
+        let along = state.video.along.is_some();
+        let text = ["Play video along", "Close the video"][usize::from(along)];
+        let hint =
+            "Shows the video in a window of its own, by the program mpv; it follows the playhead";
+        if ui.button(text).on_hover_text(hint).clicked() {
+            out.push(Command::Video(VideoCommand::Along(!along)));
+        }
+        let hint = "The loudest onset of the sound is when the hands meet in the clip";
+        if ui
+            .button("Offset from a clap")
+            .on_hover_text(hint)
+            .clicked()
+        {
+            out.push(Command::Video(VideoCommand::FromClap(true)));
+        }
+    });
+    let clap = state
+        .shown_sound()
+        .and_then(|sound| sound.clap.as_ref().ok());
+    if let Some(clap) = clap.filter(|_| state.video.proposed) {
+        let offset_secs = clap.offset_secs();
+        ui.label(format!(
+            "The hands meet at {:.2} s of the clip, the loudest onset is at {:.2} s of the video: the clip begins at {offset_secs:.3} s.",
+            clap.hands_secs, clap.sound_secs
+        ));
+        ui.horizontal(|ui| {
+            if ui.button("Use this offset").clicked() {
+                out.push(set(offset_secs));
+                out.push(Command::Video(VideoCommand::FromClap(false)));
+            }
+            if ui.button("Leave the offset").clicked() {
+                out.push(Command::Video(VideoCommand::FromClap(false)));
+            }
+        });
+    }
 }

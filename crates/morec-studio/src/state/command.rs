@@ -20,6 +20,7 @@ use super::player::PlayCommand;
 use super::shelf::ShelfCommand;
 use super::similar::SimilarCommand;
 use super::study::StudyCommand;
+use super::video::VideoCommand;
 use crate::body::Camera;
 use crate::store::Edit;
 use crate::stretch::Stretch;
@@ -83,6 +84,7 @@ pub enum Command {
     Shelf(ShelfCommand),
     Compare(CompareCommand),
     Study(StudyCommand),
+    Video(VideoCommand),
     /// Cancels the job of this place.
     Cancel(usize),
 }

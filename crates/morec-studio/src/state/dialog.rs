@@ -78,7 +78,13 @@ pub fn dialog(ask: &Ask) -> Dialog {
             "A folder for a clip of each label",
             None,
         ),
-        Ask::ExportBudget => save("Export the time budget", ("tables", "tsv"), "budget.tsv"),
+        // The ending says the form.
+        Ask::ExportBudget => shown(
+            DialogKind::Save,
+            "Export the time budget as a table (tsv) or JSON",
+            None,
+            "budget.tsv",
+        ),
         Ask::ExportPage(name) => save(
             "Web page of the clip",
             ("pages", "html"),

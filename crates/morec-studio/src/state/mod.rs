@@ -18,6 +18,7 @@ pub mod similar;
 pub mod study;
 pub mod timeline;
 mod train;
+pub mod video;
 pub mod words;
 
 use std::collections::BTreeMap;
@@ -111,6 +112,8 @@ pub struct State {
     pub shelf: shelf::Shelf,
     /// Time budgets and annotators.
     pub study: study::StudyState,
+    /// The video of the clip that is shown.
+    pub video: video::VideoState,
     pub train: Train,
     pub live: Live,
     pub import_report: Option<import::ImportSummary>,
@@ -239,6 +242,7 @@ impl State {
             classes: Classes::default(),
             shelf: shelf::Shelf::default(),
             study: study::StudyState::default(),
+            video: video::VideoState::default(),
             train: Train::default(),
             live: Live::default(),
             import_report: None,
@@ -276,6 +280,7 @@ impl State {
         {
             self.camera.target = centre;
         }
+        self.tick_video();
         self.tick_live(dt);
         self.poll();
     }
@@ -325,6 +330,7 @@ impl State {
             Command::Shelf(command) => self.apply_shelf(command),
             Command::Compare(command) => self.apply_compare(command),
             Command::Study(command) => self.apply_study(command),
+            Command::Video(command) => self.apply_video(command),
             Command::Cancel(at) => {
                 if let Some(job) = self.jobs.running.get(at) {
                     job.cancel();

@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use egui::Key;
-use morec_db::MotionDb;
+use morec::train::Everyday;
 use morec_db::labels::{DbSample, LabelOptions, NewSample, SampleState as Judged};
+use morec_db::{MotionDb, ReportKind};
 use morec_ops::{CurveFigures, CurvePoint, GroupMethod, LearningCurve, time_budget};
 
 use super::{Person, made, takes};
@@ -54,6 +55,14 @@ fn the_time_budget_follows_the_labels_plays_them_and_is_exported() {
     let budget = time_budget(store.snapshot.accepted(), &store.snapshot.clips);
     assert_eq!(std::fs::read_to_string(&path).unwrap(), budget.tsv());
     assert!(person.state().command_line.contains(" -o "));
+    let path = folder.path().join("budget.json");
+    person.will_choose(&[&path]);
+    person.click("Export …");
+    person.settle();
+    let text = std::fs::read_to_string(&path).unwrap();
+    let written: serde_json::Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(written["format_version"], 1);
+    assert_eq!(written["clips"], budget.clips);
     person.click("Back to classes");
     person.frames(2);
     assert!(person.sees("Column wave"));
@@ -253,7 +262,7 @@ fn the_learning_curve_is_measured_until_it_is_stopped_and_drawn_with_what_it_say
     person.click("Stop");
     person.settle();
     assert!(!person.state().is_measuring_curve() && person.offers("Learning curve"));
-    // One that is measured takes minutes here: what is drawn is of these figures.
+    // What is drawn is of these figures.
     let point = |samples, f1s: &[f64]| CurvePoint {
         samples,
         people: None,
@@ -271,6 +280,47 @@ fn the_learning_curve_is_measured_until_it_is_stopped_and_drawn_with_what_it_say
     person.click("Close the curve");
     person.frames(2);
     assert!(!person.sees("all: F1 0.900"));
+}
+
+#[test]
+fn a_learning_curve_is_measured_to_its_end_kept_and_opened_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), 1)]);
+    // Everyday motion as background would take minutes.
+    person.window.state_mut().state.train.settings.everyday = Everyday::Never;
+    person.goes_to(Panel::Train);
+    person.click("Learning curve");
+    person.settle();
+    let curve = person.state().train.curve.clone().unwrap();
+    let samples: Vec<_> = curve.points.iter().map(|point| point.samples).collect();
+    assert_eq!(samples.last(), Some(&None), "all teach at last");
+    assert!(
+        curve.points.iter().all(|p| p.people.is_none()),
+        "of one person"
+    );
+    assert_eq!(person.state().said, "learning curve measured");
+    let reports = &person.state().store.as_ref().unwrap().snapshot.reports;
+    assert_eq!(reports[0].kind, ReportKind::Curve);
+    assert_eq!(reports[0].title, curve.title());
+    person.click("Close the curve");
+    person.frames(2);
+    assert_eq!(person.state().train.curve, None);
+    let report = person.named_part("learning curve, F1 of events");
+    person.click(&report);
+    person.settle();
+    assert_eq!(person.state().train.curve, Some(curve.clone()));
+    assert!(person.sees_part("Report of ") && person.sees_part("taught by"));
+    let file = folder.path().join("curve.json");
+    person.will_choose(&[&file]);
+    person.click("Export the report …");
+    person.settle();
+    let text = std::fs::read_to_string(&file).unwrap();
+    let written: serde_json::Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(written["about"]["kind"], "curve");
+    assert_eq!(written["report"], serde_json::json!(curve));
+    person.click("Close the report");
+    person.frames(2);
+    assert!(person.state().train.curve.is_none() && person.state().train.opened.is_none());
 }
 
 fn figures(f1: f64) -> CurveFigures {

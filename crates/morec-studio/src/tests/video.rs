@@ -1,7 +1,11 @@
-//! A video beside a clip: chosen, brought into step, in the page of the clip, taken away; each is undone.
+//! A video beside a clip: chosen, brought into step, in the page of the clip, taken away; each is undone. Played along by another
+//! program, heard, and brought into step by a clap.
 
 use super::{Person, made};
 use crate::state::{Command, PlayCommand};
+
+#[cfg(unix)]
+mod programs;
 
 /// Time of the clip's video at which the clip begins, if it has one.
 fn offset(person: &Person) -> Option<f64> {

@@ -1,14 +1,16 @@
 //! `morec db clips`: lists clips and changes their descriptions.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use anyhow::{Result, bail};
+use anyhow::{Result, anyhow, bail};
 use morec::roles::Role;
-use morec_db::{ClipFilter, ClipId, ClipInfo, ClipUpdate, ClipVideo};
+use morec_db::{ClipFilter, ClipId, ClipInfo, ClipUpdate, ClipVideo, MotionDb};
+use morec_ops::{ClapMatch, SoundEnvelope};
 
 use crate::database;
 use crate::print;
+use crate::progress::StageBar;
 use crate::table::TextTable;
 
 /// List clips of a database, or change their descriptions
@@ -20,7 +22,8 @@ Examples:
   morec db clips moves.mdb --clip 'ah_*' --set-subject ah --add-tag gesture
   morec db clips moves.mdb --clip 'test_*' --remove
   morec db clips moves.mdb --rename take_1 walk_01
-  morec db clips moves.mdb --clip 'take_*' --set-role left_hand=LeftWrist")]
+  morec db clips moves.mdb --clip 'take_*' --set-role left_hand=LeftWrist
+  morec db clips moves.mdb --clip take_1 --set-video take_1.mp4 --video-offset clap")]
 pub struct Args {
     /// The database
     #[arg(value_name = "DB")]
@@ -62,15 +65,18 @@ pub struct Args {
     /// Needs --clip with the name of one clip. The file stays where it is.
     #[arg(long, value_name = "VIDEO", requires = "clip")]
     set_video: Option<String>,
-    /// Time of the video at which the clip begins, seconds
+    /// Time of the video at which the clip begins, seconds; `clap` finds it
+    ///
+    /// `clap`: when the hands meet in the clip, the sound of the video rises most. The program ffmpeg reads the sound.
     #[arg(
         long,
-        value_name = "SECS",
-        default_value_t = 0.0,
+        value_name = "SECS|clap",
+        default_value = "0",
         allow_hyphen_values = true,
+        value_parser = video_offset,
         requires = "set_video"
     )]
-    video_offset: f64,
+    video_offset: VideoOffset,
     /// Add a tag
     #[arg(long, value_name = "WORD")]
     add_tag: Vec<String>,
@@ -114,12 +120,18 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         set_roles(args, &filter)?;
     }
     if let (Some(path), Some(clip)) = (&args.set_video, &args.clip) {
-        let video = ClipVideo {
-            path: path.clone(),
-            offset_secs: args.video_offset,
+        let mut db = database::open(&args.db)?;
+        let video = match path.is_empty() {
+            true => None,
+            false => Some(ClipVideo {
+                offset_secs: match args.video_offset {
+                    VideoOffset::Secs(secs) => secs,
+                    VideoOffset::Clap => offset_of_clap(&db, clip, path.as_ref())?,
+                },
+                path: path.clone(),
+            }),
         };
-        let video = Some(video).filter(|video| !video.path.is_empty());
-        database::open(&args.db)?.set_video(clip, video.as_ref())?;
+        db.set_video(clip, video.as_ref())?;
     }
     let mut clips = if update == ClipUpdate::default() {
         database::open_read_only(&args.db)?.find_clips(&filter)?
@@ -141,6 +153,37 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         print(&clips, all)?;
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// How far into a video its clip begins.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum VideoOffset {
+    Secs(f64),
+    /// Where a clap is seen when it is heard.
+    Clap,
+}
+
+fn video_offset(text: &str) -> Result<VideoOffset, String> {
+    match (text, text.parse()) {
+        ("clap", _) => Ok(VideoOffset::Clap),
+        (_, Ok(secs)) => Ok(VideoOffset::Secs(secs)),
+        (_, Err(_)) => Err("expected seconds or clap".to_owned()),
+    }
+}
+
+/// The offset at which a clap of the clip is seen when it is heard in the video; says where it is.
+fn offset_of_clap(db: &MotionDb, clip: &str, video: &Path) -> Result<f64> {
+    let stored = db.clip(db.find_clip(clip)?.id)?;
+    let sound = SoundEnvelope::of_file("ffmpeg".as_ref(), video, &StageBar::stoppable()?);
+    let clap = sound.and_then(|sound| ClapMatch::of(&sound, &stored.clip, &stored.roles));
+    let clap = clap.map_err(|why| anyhow!("--video-offset clap: {why}"))?;
+    eprintln!(
+        "morec: hands meet at {:.2} s of {clip}, the loudest onset is at {:.2} s of the video: offset {:.3} s",
+        clap.hands_secs,
+        clap.sound_secs,
+        clap.offset_secs()
+    );
+    Ok(clap.offset_secs())
 }
 
 fn role_and_joint(text: &str) -> Result<(Role, String), String> {

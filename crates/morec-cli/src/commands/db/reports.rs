@@ -1,10 +1,10 @@
-//! `morec db reports`: reports of trainings and cross-validations that a database keeps.
+//! `morec db reports`: reports of trainings, cross-validations and learning curves that a database keeps.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::{Context, Result};
-use morec_db::{MotionDb, ReportInfo, ReportKind};
+use morec_db::{MotionDb, ReportInfo};
 use serde_json::{Value, json};
 
 use crate::database;
@@ -13,7 +13,7 @@ use crate::output;
 use crate::print;
 use crate::table::TextTable;
 
-/// List kept reports of training and cross-validation, or write them as JSON
+/// List kept reports of training, cross-validation and learning curves, or write them as JSON
 ///
 /// `train --db`, `crossval --db` and the studio keep them, the last hundred of each kind.
 #[derive(clap::Args)]
@@ -66,10 +66,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     for report in &reports {
         table.row([
             report.id.to_string(),
-            match report.kind {
-                ReportKind::Training => "training".to_owned(),
-                ReportKind::Crossval => "cross-validation".to_owned(),
-            },
+            report.kind.title().to_owned(),
             dates::to_the_second(report.made_secs),
             report.title.clone(),
         ]);

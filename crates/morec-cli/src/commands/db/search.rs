@@ -1,4 +1,4 @@
-//! `morec db search`: finds motions like an example, or by words.
+//! `morec db search`: finds motions like an example, by words, or by vectors.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -21,12 +21,14 @@ use crate::print;
 use crate::progress::StageBar;
 use crate::table::TextTable;
 
-/// Find stretches like an example, or by words
+/// Find stretches like an example, by words, or clips by your own vectors
 ///
 /// The example is a stretch of a clip in the database or of a file, with any skeleton and frame rate. With --learned, differences
 /// that also occur within labelled classes count less. To find similar whole clips, give a whole clip and --one-a-clip.
 ///
 /// With --words, clips and stretches are found by the names of classes, captions, tags, file names, sources and people.
+///
+/// With --embeddings, clips are ranked by vectors that you have computed, such as those of a model of motion and text.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -34,13 +36,15 @@ Examples:
   morec db search moves.mdb recorded.bvh --mirror --report hits.html
   morec db search moves.mdb walk_01 --one-a-clip --limit 50 --json
   morec db search moves.mdb walk_01 --one-a-clip --learned
-  morec db search moves.mdb --words \"wave left hand\" --captions babel.json")]
+  morec db search moves.mdb --words \"wave left hand\" --captions babel.json
+  morec db search moves.mdb --embeddings clips.tsv --like walk_01
+  morec db search moves.mdb --embeddings clips.tsv --queries sentences.tsv --like \"a slow bow\"")]
 pub struct Args {
     /// The database
     #[arg(value_name = "DB")]
     db: PathBuf,
     /// The example: a clip of the database by name, or a file
-    #[arg(value_name = "CLIP|FILE", required_unless_present = "words")]
+    #[arg(value_name = "CLIP|FILE", required_unless_present_any = ["words", "embeddings"])]
     example: Option<String>,
     /// Find what these words describe, in place of an example
     ///
@@ -58,6 +62,22 @@ pub struct Args {
     /// index of CMU).
     #[arg(long, value_name = "FILE|DIR", num_args = 1.., requires = "words")]
     captions: Vec<PathBuf>,
+    /// Rank clips by a table of vectors: a name and numbers in each line
+    ///
+    /// Clips are ranked by the cosine of their vector and the one that --like names.
+    #[arg(
+        long,
+        value_name = "TABLE",
+        requires = "like",
+        conflicts_with_all = ["example", "words", "start", "stop", "mirror", "learned", "one_a_clip"]
+    )]
+    embeddings: Option<PathBuf>,
+    /// Name of the vector that clips of --embeddings are compared with
+    #[arg(long, value_name = "NAME", requires = "embeddings")]
+    like: Option<String>,
+    /// Table that has the vector of --like [default: that of --embeddings]
+    #[arg(long, value_name = "TABLE", requires = "embeddings")]
+    queries: Option<PathBuf>,
     /// Start of the example, seconds [default: the clip's beginning]
     #[arg(long, value_name = "SECS", default_value_t = 0.0)]
     start: f64,
@@ -111,6 +131,12 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     if let Some(words) = &args.words {
         let out = (args.report.as_deref(), args.json);
         words::run(&db, words, &args.captions, args.settings.limit, out)?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    if let (Some(table), Some(like)) = (&args.embeddings, &args.like) {
+        let of = (table.as_path(), args.queries.as_deref(), like.as_str());
+        let out = (args.report.as_deref(), args.json);
+        words::by_embeddings(&db, of, args.settings.limit, out)?;
         return Ok(ExitCode::SUCCESS);
     }
     let index = SearchIndex::of_reader(&db, &StageBar::stoppable()?)?;

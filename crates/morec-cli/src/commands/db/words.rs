@@ -1,9 +1,9 @@
-//! `morec db search --words`: what do words describe?
+//! `morec db search --words` and `--embeddings`: what do words describe, and which clips are like a vector?
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Error, Result};
-use morec_db::{MotionDb, WordHit, WordHits, WordIndex};
+use anyhow::{Context, Error, Result};
+use morec_db::{ClipFilter, EmbeddingTable, MotionDb, WordHit, WordHits, WordIndex};
 use morec_ops::captions_of;
 
 use super::page::Page;
@@ -37,6 +37,49 @@ pub fn run(
         true => print::print_json(&found),
         false => print_hits(words, &found),
     }
+}
+
+/// Ranks clips by their vectors of a table, and prints.
+pub fn by_embeddings(
+    db: &MotionDb,
+    (table, queries, like): (&Path, Option<&Path>, &str),
+    limit: usize,
+    (report, json): (Option<&Path>, bool),
+) -> Result<()> {
+    let read = |path: &Path| {
+        let table = EmbeddingTable::read(&files::read(path)?);
+        table.with_context(|| path.display().to_string())
+    };
+    let queries = queries.map(read).transpose()?;
+    let clips = db.clips(&ClipFilter::default())?;
+    let found = read(table)?.nearest(&clips, like, queries.as_ref(), limit)?;
+    if found.absent > 0 {
+        let absent = found.absent;
+        eprintln!("morec: {absent} vectors are of clips that the database does not have; left out");
+    }
+    if let Some(path) = report {
+        let mut page = Page::default();
+        page.heading("Found");
+        for hit in &found.hits {
+            let caption = format!("{}, score {:.3}", hit.clip_name, hit.score);
+            page.figure(db, hit.clip, hit.span, &caption)?;
+        }
+        let head = format!("{} hits", found.hits.len());
+        page.write(path, &format!("Like {like}"), &head)?;
+    }
+    if json {
+        return print::print_json(&found);
+    }
+    let mut listed = TextTable::new(["clip", "start", "stop", "score"]);
+    for hit in &found.hits {
+        listed.row([
+            hit.clip_name.clone(),
+            format!("{:.2}", hit.span.start_secs),
+            format!("{:.2}", hit.span.stop_secs),
+            format!("{:.3}", hit.score),
+        ]);
+    }
+    print::print_table(&listed, "")
 }
 
 fn print_hits(words: &str, found: &WordHits) -> Result<()> {

@@ -24,4 +24,5 @@ mod similar;
 mod study;
 mod thesis;
 mod train;
+mod video;
 mod words;

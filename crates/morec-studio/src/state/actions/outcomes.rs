@@ -161,7 +161,7 @@ impl State {
             }
             JobOutcome::Curve(curve) => {
                 self.say("learning curve measured");
-                self.train.curve = Some(curve);
+                self.keep_curve(curve);
             }
             JobOutcome::Recognised((clip, found)) => self.detections = Some((clip, found)),
             JobOutcome::Resensed(found) => self.take_resensed(found),
@@ -174,6 +174,7 @@ impl State {
             JobOutcome::Words(found) => self.found_words(found),
             JobOutcome::ComparedAnnotators(compared) => self.annotators_compared(*compared),
             JobOutcome::Captions(captions) => self.captions_read(captions),
+            JobOutcome::Sound(sound) => self.video.sound = Some(sound),
             JobOutcome::Aligned(aligned) => self.aligned(aligned),
             JobOutcome::Channel(channel) => self.channel = Some(channel),
             JobOutcome::Thesis((thesis, trained)) => {
@@ -194,6 +195,7 @@ impl State {
                     super::shown::CURVES,
                     super::similar::SEARCHING,
                     super::thesis::MAPPING,
+                    super::video::LISTENING,
                 ];
                 if !quiet.contains(&name) {
                     self.say(format!("{name}: stopped"));

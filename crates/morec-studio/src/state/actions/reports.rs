@@ -1,9 +1,9 @@
-//! Reports of trainings and cross-validations: kept in the database, opened again, exported.
+//! Reports of trainings, cross-validations and learning curves: kept in the database, opened again, exported.
 
 use std::path::Path;
 
 use morec_db::{MotionDb, ReportInfo, ReportKind};
-use morec_ops::{KeptCrossval, KeptTraining};
+use morec_ops::{KeptCrossval, KeptTraining, LearningCurve};
 use serde_json::{Value, json};
 
 use super::lines::ShownCommand;
@@ -36,6 +36,26 @@ impl State {
                 report: json!(kept),
             });
         }
+    }
+
+    /// Keeps a learning curve, and shows it.
+    pub(super) fn keep_curve(&mut self, curve: LearningCurve) {
+        if let Some(store) = &mut self.store {
+            store.keep_report(NewReport {
+                kind: ReportKind::Curve,
+                title: curve.title(),
+                report: json!(curve),
+            });
+        }
+        self.close_curve();
+        self.train.curve = Some(curve);
+    }
+
+    /// Ends the look at a learning curve.
+    pub(super) fn close_curve(&mut self) {
+        let is_curve = |opened: &mut OpenedReport| opened.info.kind == ReportKind::Curve;
+        self.train.opened.take_if(is_curve);
+        self.train.curve = None;
     }
 
     /// Shows a cross-validation in place of the one before.
@@ -76,6 +96,11 @@ impl State {
                 self.show_judged(CrossvalResult::of(kept).map_err(|e| e.to_string())?);
                 None
             }
+            ReportKind::Curve => {
+                let curve = serde_json::from_value(value).map_err(|e| e.to_string())?;
+                self.train.curve = Some(curve);
+                None
+            }
         };
         self.train.opened = Some(OpenedReport { info, training });
         if let Some(store) = &self.store {
@@ -87,11 +112,14 @@ impl State {
 
     /// Ends the look at a report of the database.
     pub(super) fn close_report(&mut self) {
-        let opened = self.train.opened.take();
-        if opened.is_some_and(|opened| opened.training.is_none()) {
-            self.train.judged = None;
-            self.train.cell = None;
-            self.train.moment = None;
+        match self.train.opened.take().map(|opened| opened.info.kind) {
+            Some(ReportKind::Crossval) => {
+                self.train.judged = None;
+                self.train.cell = None;
+                self.train.moment = None;
+            }
+            Some(ReportKind::Curve) => self.train.curve = None,
+            _ => {}
         }
     }
 

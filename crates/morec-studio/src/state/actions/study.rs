@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use morec_db::labels::{DbSample, NewSample};
-use morec_ops::{ComparedAnnotators, time_budget};
+use morec_ops::{ComparedAnnotators, FORMAT_VERSION, time_budget};
+use serde_json::json;
 
 use super::lines::ShownCommand;
 use crate::format;
@@ -199,7 +200,7 @@ impl State {
         }
     }
 
-    /// Writes the time budget as a table.
+    /// Writes the time budget as a table, or as JSON.
     pub(super) fn export_budget(&mut self, path: &Path) {
         let Some(store) = &self.store else { return };
         let name = format::file_name(path);
@@ -208,7 +209,15 @@ impl State {
         let Some((_, budget)) = &self.study.budget else {
             return;
         };
-        match write_whole(path, budget.tsv().as_bytes()) {
+        let text = match path.extension().is_some_and(|ending| ending == "json") {
+            true => {
+                let mut json = json!(budget);
+                json["format_version"] = FORMAT_VERSION.into();
+                format!("{json:#}\n")
+            }
+            false => budget.tsv(),
+        };
+        match write_whole(path, text.as_bytes()) {
             Ok(()) => self.say(format!("{name} written")),
             Err(why) => self.complain(format!("{name}: not written: {why}")),
         }

@@ -38,7 +38,7 @@ impl State {
             TrainCommand::Train => self.start_training(),
             TrainCommand::Judge => self.start_judging(self.train_settings()),
             TrainCommand::Curve => self.measure_curve(),
-            TrainCommand::CloseCurve => self.train.curve = None,
+            TrainCommand::CloseCurve => self.close_curve(),
             TrainCommand::Cell(cell) => self.show_cell(cell),
             TrainCommand::Moment(at) => self.go_to_moment(at),
             TrainCommand::StepMoment(by) => self.step_moment(by),
