@@ -9,7 +9,11 @@ fn alone(folder: &Folder) -> Command {
     let here = folder
         .path()
         .join(format!("morec{}", std::env::consts::EXE_SUFFIX));
-    std::fs::copy(env!("CARGO_BIN_EXE_morec"), &here).unwrap();
+    // A copy cannot be started while a process that another test begins meanwhile still has it open for writing.
+    let command = env!("CARGO_BIN_EXE_morec");
+    std::fs::hard_link(command, &here)
+        .or_else(|_| std::fs::copy(command, &here).map(drop))
+        .unwrap();
     let mut command = Command::new(here);
     command.env("PATH", folder.path().join("nothing"));
     command
