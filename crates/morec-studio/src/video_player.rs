@@ -272,7 +272,7 @@ impl PlayerLink {
 }
 
 /// What the program was told.
-struct Told {
+struct LastTold {
     file: String,
     speed: f64,
     /// Whether it plays; `None` before it was told.
@@ -286,7 +286,7 @@ struct Told {
 
 /// Brings the program to each moment until it ends (an error) or nobody wants it any more.
 fn follow(mut link: PlayerLink, file: &str, moments: &Receiver<VideoMoment>) -> Result<()> {
-    let mut told = Told {
+    let mut told = LastTold {
         file: file.to_owned(),
         speed: 1.0,
         playing: None,
@@ -313,7 +313,7 @@ fn follow(mut link: PlayerLink, file: &str, moments: &Receiver<VideoMoment>) -> 
 }
 
 /// Brings the program to a moment; false while it cannot be.
-fn bring(link: &mut PlayerLink, told: &mut Told, moment: &VideoMoment) -> Result<bool> {
+fn bring(link: &mut PlayerLink, told: &mut LastTold, moment: &VideoMoment) -> Result<bool> {
     if told.file != moment.file {
         if let Ok(path) = local(&moment.file) {
             link.ask(json!(["loadfile", path.to_string_lossy()]))?;
