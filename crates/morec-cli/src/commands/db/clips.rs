@@ -23,7 +23,7 @@ Examples:
   morec db clips moves.mdb --clip 'test_*' --remove
   morec db clips moves.mdb --rename take_1 walk_01
   morec db clips moves.mdb --clip 'take_*' --set-role left_hand=LeftWrist
-  morec db clips moves.mdb --clip take_1 --set-video take_1.mp4 --video-offset clap")]
+  morec db clips moves.mdb --clip bow --set-video bow.mp4 --video-offset clap")]
 pub struct Args {
     /// The database
     #[arg(value_name = "DB")]
@@ -70,7 +70,7 @@ pub struct Args {
     /// `clap`: when the hands meet in the clip, the sound of the video rises most. The program ffmpeg reads the sound.
     #[arg(
         long,
-        value_name = "SECS|clap",
+        value_name = "SECS",
         default_value = "0",
         allow_hyphen_values = true,
         value_parser = video_offset,
