@@ -38,7 +38,7 @@ Examples:
   morec db search moves.mdb walk_01 --one-a-clip --learned
   morec db search moves.mdb --words \"wave left hand\" --captions babel.json
   morec db search moves.mdb --embeddings clips.tsv --like walk_01
-  morec db search moves.mdb --embeddings clips.tsv --queries sentences.tsv --like \"a slow bow\"")]
+  morec db search moves.mdb --embeddings v.tsv --queries q.tsv --like \"slow bow\"")]
 pub struct Args {
     /// The database
     #[arg(value_name = "DB")]
