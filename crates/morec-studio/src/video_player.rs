@@ -15,7 +15,7 @@ use crate::store::Wake;
 
 /// The program answers its first call within this time.
 const START: Duration = Duration::from_secs(15);
-/// Time between two looks at a program that starts, opens a file or seeks, and at one that is where it should be.
+/// Polling intervals: while the program starts, opens a file or seeks, and while it is at the right place.
 const SOON: Duration = Duration::from_millis(50);
 const LATER: Duration = Duration::from_millis(500);
 /// A video that plays may be this far from the playhead, seconds, before it is put there, which takes a moment.
@@ -142,7 +142,7 @@ fn local(file: &str) -> Result<PathBuf> {
     std::path::absolute(file)
 }
 
-/// Runs the program until it ends or nobody wants it any more; the reason why it ended, if nobody asked it to.
+/// Runs the program until it ends or its [`VideoPlayer`] is dropped. Returns the reason if it failed.
 fn run(
     program: &Path,
     file: &Path,
@@ -231,7 +231,8 @@ fn open(socket: &Path) -> Result<PlayerLink> {
     Ok(PlayerLink::new(pipe.try_clone()?, pipe))
 }
 
-/// The connection: one thread asks, then reads the answer, as Windows lets nobody write to a pipe that another thread reads.
+/// The connection to the program. One thread writes a request and then reads its answer: on Windows, a pipe cannot be written to while
+/// another thread reads from it.
 struct PlayerLink {
     reader: BufReader<File>,
     writer: File,
@@ -284,7 +285,7 @@ struct LastTold {
     ahead_secs: f64,
 }
 
-/// Brings the program to each moment until it ends (an error) or nobody wants it any more.
+/// Brings the program to each moment. Returns when its [`VideoPlayer`] is dropped; an error means that the program has ended.
 fn follow(mut link: PlayerLink, file: &str, moments: &Receiver<VideoMoment>) -> Result<()> {
     let mut told = LastTold {
         file: file.to_owned(),

@@ -77,7 +77,7 @@ fn an_offset_is_seconds_or_found_by_a_clap() {
             programs.path().join("bang").display()
         );
         std::fs::write(&text, line).unwrap();
-        // Another process writes the program: one that a thread of ours has open cannot be started.
+        // Another process writes the program, as a file that this process has open for writing cannot be executed.
         let copy = Command::new("/bin/sh")
             .args(["-c", "cp text ffmpeg && chmod +x ffmpeg"])
             .current_dir(programs.path())

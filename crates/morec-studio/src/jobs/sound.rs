@@ -29,8 +29,8 @@ pub fn read(
     if progress.cancelled() {
         return Err(JobError::Cancelled);
     }
-    let clap = envelope.clone();
-    let clap = clap.and_then(|sound| ClapMatch::of(&sound, &motion.clip, &motion.roles));
+    let sound = envelope.as_ref().map_err(Clone::clone);
+    let clap = sound.and_then(|sound| ClapMatch::of(sound, &motion.clip, &motion.roles));
     Ok(ClipSound {
         of: (motion.id, file.to_owned()),
         envelope,

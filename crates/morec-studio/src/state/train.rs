@@ -30,7 +30,7 @@ pub struct Train {
     pub(super) now: u64,
     pub judged: Option<CrossvalView>,
     pub curve: Option<LearningCurve>,
-    /// A report that the database kept, which was opened: the one that is judged by, the curve, or a training.
+    /// The kept report that is open: of the cross-validation shown, of the learning curve shown, or of a training.
     pub opened: Option<OpenedReport>,
     /// The cell of the confusion matrix whose moments are listed; `None` lists the mistakes.
     pub cell: Option<(usize, usize)>,
@@ -49,7 +49,7 @@ pub struct Train {
 /// A report of the database.
 pub struct OpenedReport {
     pub info: ReportInfo,
-    /// What is said of a training; nothing of a cross-validation, which is `Train::judged`, and of a learning curve, `Train::curve`.
+    /// Text of a training; `None` of a cross-validation (see `Train::judged`) or a learning curve (see `Train::curve`).
     pub training: Option<KeptTraining>,
 }
 

@@ -64,7 +64,7 @@ pub struct Args {
     captions: Vec<PathBuf>,
     /// Rank clips by a table of vectors: a name and numbers in each line
     ///
-    /// Clips are ranked by the cosine of their vector and the one that --like names.
+    /// Clips are ranked by the cosine similarity of their vectors to the vector named by --like.
     #[arg(
         long,
         value_name = "TABLE",

@@ -25,7 +25,7 @@ fn waits(person: &mut Person, what: &str, is_so: impl Fn(&Person) -> bool) {
     }
 }
 
-/// A program of these lines of a shell. Another process writes it: one that a thread of ours has open cannot be started.
+/// Makes a shell script. Another process writes it, as a file that this process has open for writing cannot be executed.
 fn program(folder: &Path, name: &str, lines: &str) -> PathBuf {
     let (text, program) = (folder.join(format!("{name}.txt")), folder.join(name));
     std::fs::write(&text, format!("#!/bin/sh\n{lines}\n")).unwrap();
