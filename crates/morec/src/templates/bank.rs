@@ -148,7 +148,7 @@ impl TemplateBank {
     }
 
     /// Advances by the stream's rows, of `dim` values each, and shows itself at each of them to `look`, which may ask what
-    /// [`matched`](Self::matched). As one by one, and faster: a template's row is loaded once for four of them.
+    /// [`matched`](Self::matched). As one by one, and faster: a template's row comes from memory once for many of them.
     ///
     /// # Panics
     /// A row has another width than the templates.

@@ -18,7 +18,11 @@ pub type Pair = [i16; 2];
 pub struct Pairs(pub [Pair; LANES]);
 
 /// Rows of a stream that are taken together: templates come from memory once for all of them.
-pub const AT_ONCE: usize = 4;
+pub const AT_ONCE: usize = 16;
+
+/// Rows of a stream whose sums are kept in registers together.
+#[allow(dead_code, reason = "not on every processor")]
+const IN_REGISTERS: usize = 4;
 
 /// `out[lane] = Σ_k rows[k].0[lane] · z[k]` for each row `z` of a stream and its `out`, at most [`AT_ONCE`]; a `z` has as many pairs as
 /// there are `rows`.
@@ -142,19 +146,21 @@ unsafe fn sums_of<S: LaneSums, const N: usize, const GROUPS: usize>(
 }
 
 /// The function `$name` of the type [`PairProducts`], compiled for the instructions `$features`, with sums of the type `$sums`: `$one` of
-/// them are kept in registers for a single row, `$all` for each of [`AT_ONCE`].
+/// them are kept in registers for a single row, `$all` for each of [`IN_REGISTERS`].
 #[allow(unused_macros, reason = "not on every processor")]
 macro_rules! dots {
     ($name:ident, $features:literal, $sums:ty, $one:literal, $all:literal) => {
         pub fn $name(rows: &[Pairs], stream: &[&[Pair]], out: &mut [[i32; LANES]]) {
             #[target_feature(enable = $features)]
             fn compiled(rows: &[Pairs], stream: &[&[Pair]], out: &mut [[i32; LANES]]) {
+                let (four, rest) = stream.as_chunks::<IN_REGISTERS>();
+                let (out_of_four, out_of_rest) = out.as_chunks_mut();
                 // SAFETY: this function is compiled for the instructions, and so runs only where they are.
                 unsafe {
-                    if let (Ok(stream), Ok(out)) = (stream.try_into(), (&mut *out).try_into()) {
-                        return sums_of::<$sums, AT_ONCE, $all>(rows, stream, out);
+                    for (stream, out) in four.iter().zip(out_of_four) {
+                        sums_of::<$sums, IN_REGISTERS, $all>(rows, stream, out);
                     }
-                    for (z, out) in stream.iter().zip(out) {
+                    for (z, out) in rest.iter().zip(out_of_rest) {
                         sums_of::<$sums, 1, $one>(rows, &[z], std::array::from_mut(out));
                     }
                 }
@@ -172,7 +178,7 @@ macro_rules! dots {
 mod x86 {
     use std::arch::x86_64::*;
 
-    use super::{AT_ONCE, LANES, LaneSums, Pair, Pairs, both, sums_of};
+    use super::{IN_REGISTERS, LANES, LaneSums, Pair, Pairs, both, sums_of};
 
     #[derive(Clone, Copy)]
     struct Vnni(__m512i);
@@ -273,7 +279,7 @@ mod x86 {
 mod neon {
     use std::arch::aarch64::*;
 
-    use super::{AT_ONCE, LANES, LaneSums, Pair, Pairs, sums_of};
+    use super::{IN_REGISTERS, LANES, LaneSums, Pair, Pairs, sums_of};
 
     #[derive(Clone, Copy)]
     struct Neon(int32x4_t, int32x4_t);
@@ -317,7 +323,7 @@ mod neon {
 mod wasm {
     use std::arch::wasm32::*;
 
-    use super::{AT_ONCE, LANES, LaneSums, Pair, Pairs, both, sums_of};
+    use super::{IN_REGISTERS, LANES, LaneSums, Pair, Pairs, both, sums_of};
 
     #[derive(Clone, Copy)]
     struct Simd(v128);

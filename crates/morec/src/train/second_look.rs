@@ -1,12 +1,14 @@
 //! Trains the second look: segments, their metric, and the bound of its score.
 
 use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
 use crate::classes::ClassId;
 use crate::features::{BoneSet, Rows};
 use crate::math::portable;
+use crate::progress::Progress;
 use crate::rng::Rng;
 use crate::templates::second_look::{
     BodyTrack, Comparison, SEGMENT_ROWS, SecondLook, grown_of, sample_span, segment_of,
@@ -16,6 +18,7 @@ use crate::templates::{
     TemplateModelError,
 };
 
+use super::error::TrainError;
 use super::everyday::is_built_in;
 use super::operating::CAP_EXPONENT;
 use super::params::TrainParams;
@@ -91,6 +94,7 @@ pub fn learn(
     samples: &[TrainSample],
     bones: BoneSet,
     params: &TrainParams,
+    progress: &dyn Progress,
 ) -> Option<LearnedLook> {
     if samples.is_empty() {
         return None;
@@ -148,7 +152,7 @@ pub fn learn(
     let segments: Vec<usize> = (0..places.len())
         .filter(|k| *k == 0 || places[*k] != places[*k - 1])
         .collect();
-    let own = among_others((&look, &comparison), &places, &segments);
+    let own = among_others((&look, &comparison), &places, &segments, progress);
     let mut scores: Vec<f32> = own.iter().map(|s| s.score).collect();
     scores.sort_by(f32::total_cmp);
     look.own_score = scores.get(scores.len() / 2).copied().unwrap_or(0.0);
@@ -166,11 +170,15 @@ fn among_others(
     (look, comparison): (&SecondLook, &Comparison),
     places: &[usize],
     firsts: &[usize],
+    progress: &dyn Progress,
 ) -> Vec<OwnSample> {
     let chosen: Vec<usize> = evenly(firsts, MOST_JUDGED).copied().collect();
+    let done = AtomicUsize::new(0);
     let judge = |comparison: &mut Comparison, segment: &usize| {
         let others = |k: usize| places[k] != places[*segment];
         let judged = comparison.judge_among(look.segment(*segment), others)?;
+        let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+        progress.report("comparing samples", done, chosen.len());
         Some(OwnSample {
             class: look.classes[*segment],
             named: judged.class,
@@ -286,17 +294,18 @@ pub struct HeldOutAlarms {
 /// background at the bound that the other half sets; nothing without a second look or background.
 ///
 /// # Errors
-/// As [`TemplateModel::check`].
+/// As [`TemplateModel::check`], or `progress` cancels.
 pub fn set_bound(
     model: &mut TemplateModel,
     set: &TrainSet,
     params: &TrainParams,
-) -> Result<Option<HeldOutAlarms>, TemplateModelError> {
+    progress: &dyn Progress,
+) -> Result<Option<HeldOutAlarms>, TrainError> {
     let Some(look) = &model.look else {
         return Ok(None);
     };
     let is_few = !look.atlas.is_empty();
-    let halves = BackgroundScores::of_halves(model, set, params)?;
+    let halves = BackgroundScores::of_halves(model, set, params, progress)?;
     let asked = params.alarms_per_minute;
     let background = BackgroundScores::of_all(&halves);
     let bound = |rate: f64| background.bound(rate, asked, is_few);
@@ -364,13 +373,18 @@ impl BackgroundScores {
         model: &mut TemplateModel,
         set: &TrainSet,
         params: &TrainParams,
-    ) -> Result<[Self; 2], TemplateModelError> {
+        progress: &dyn Progress,
+    ) -> Result<[Self; 2], TrainError> {
         let streams = set.streams.iter();
         let background = streams.filter(|s| s.source != StreamKind::Labelled);
         let background = background.chain(&set.everyday);
         let background: Vec<&Rows> = background.map(|s| &s.rows).collect();
         let engine = engine_of_scores(model)?;
+        let done = AtomicUsize::new(0);
         let scores = |rows: &&Rows| {
+            if progress.cancelled() {
+                return Err(TrainError::Cancelled);
+            }
             let mut engine = engine.clone();
             let mut margins: Vec<f64> = Vec::new();
             for row in rows.iter() {
@@ -378,9 +392,14 @@ impl BackgroundScores {
             }
             margins.extend(engine.finish().map(|found| found.score));
             let score = |margin: f64| -(portable::ln(1.0 - margin) as f32);
-            margins.into_iter().map(score).collect::<Vec<_>>()
+            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+            progress.report("judging background", done, background.len());
+            Ok(margins.into_iter().map(score).collect())
         };
-        let of_stream: Vec<Vec<f32>> = background.par_iter().map(scores).collect();
+        let of_stream: Vec<Vec<f32>> = background
+            .par_iter()
+            .map(scores)
+            .collect::<Result<_, TrainError>>()?;
         let hz = params.features.tick_hz();
         Ok([0, 1].map(|half| {
             let mut scores: Vec<f32> = of_stream

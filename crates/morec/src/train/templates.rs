@@ -109,7 +109,7 @@ pub fn train(
         progress,
     };
     let plan = DecisionPlan::new(&step, bones, &classes, (&sorted.gestures, &sorted.going_on));
-    let learn = || second_look::learn(set, &plan.judged, bones, params);
+    let learn = || second_look::learn(set, &plan.judged, bones, params, progress);
     let mut learned = plan.decides_by_look().then(learn).flatten();
     let samples = match &learned {
         // Templates only find candidates, which the second look then compares with all samples.
@@ -166,7 +166,7 @@ pub fn train(
     } else {
         model
     };
-    let held_out = second_look::set_bound(&mut model, set, params)?;
+    let held_out = second_look::set_bound(&mut model, set, params, progress)?;
     refused::refuse(&mut model, set, params)?;
     model.check()?;
     Ok(TrainedTemplates {
