@@ -54,6 +54,13 @@ pub fn open_read_only(path: &Path) -> Result<MotionDb, DbError> {
     }
 }
 
+/// Says that a report is not kept: it is printed all the same.
+pub fn note_unkept<T, E: std::fmt::Display>(db: &Path, kept: Result<T, E>) {
+    if let Err(error) = kept {
+        eprintln!("note: the report is not kept in {}: {error}", db.display());
+    }
+}
+
 /// The lengths of all clips by name.
 pub fn lengths(db: &MotionDb) -> Result<ClipLengths> {
     Ok(exchange::clip_lengths(&db.clips(&ClipFilter::default())?))

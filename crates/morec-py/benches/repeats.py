@@ -2,8 +2,8 @@
 
     python repeats.py FOLDER [--hours 100] [--minutes 15] [--rounds 2]
 
-FOLDER holds BVH clips of positions, such as those of `sessions`. Each copy has slow noise on every channel. Printed are hours, seconds and the most memory
-so far of each step, and the number of sets.
+FOLDER holds BVH clips of positions, such as those of `sessions`. Ten copies of each have slow noise on every channel of their own; they are imported again
+under other names until there are as many hours. Printed are hours, seconds and the most memory so far of each step, and the number of sets.
 """
 
 from __future__ import annotations
@@ -51,18 +51,18 @@ def main() -> None:
         print(f"{what}: {time.perf_counter() - begun:.0f} s, {most:.0f} MB", flush=True)
 
     with tempfile.TemporaryDirectory() as folder:
-        begun, copies = time.perf_counter(), 0
+        begun = time.perf_counter()
+        made = Path(folder) / "copies"
+        made.mkdir()
+        for copy in range(TOGETHER):
+            for clip in clips:
+                (made / f"{clip.stem}_{copy}.bvh").write_text(noisy(clip.read_text(), rng))
         archive = ma.create(f"{folder}/archive", from_files=str(args.folder / "*.bvh"))
         while archive.info()["hours"] < args.hours:
-            made = Path(folder) / "copies"
-            made.mkdir()
-            for copies in range(copies + 1, copies + TOGETHER + 1):
-                for clip in clips:
-                    (made / f"{clip.stem}_{copies}.bvh").write_text(noisy(clip.read_text(), rng))
             archive = ma.create(f"{folder}/archive", from_files=f"{made}/*.bvh")
-            for file in made.iterdir():
-                file.unlink()
-            made.rmdir()
+            for file in sorted(made.iterdir()):
+                stem, copy = file.stem.rsplit("_", 1)
+                file.rename(made / f"{stem}_{int(copy) + TOGETHER}.bvh")
         say(f"{archive.info()['hours']:.1f} hours made", begun)
         begun = time.perf_counter()
         sets = archive.discover(minutes=args.minutes, rounds=args.rounds)

@@ -199,6 +199,7 @@ fn without_the_engine_it_finds_what_c_finds() {
     let index = Path::new(files.index.to_str().unwrap());
     assert_eq!(found(&[index]), expected);
     assert_eq!(found(&[index, Path::new("mirrored")]), expected);
+    assert_eq!(found(&[index, Path::new("named")]), expected);
     let refused = run(&[&poses]).output().unwrap();
     let said = String::from_utf8_lossy(&refused.stderr);
     assert!(

@@ -3,10 +3,11 @@ using System;
 
 namespace UnityEngine
 {
-    public class Object { }
+    public class Object { public string name; }
     public class Component : Object
     {
         public T GetComponent<T>() { return default(T); }
+        public T[] GetComponentsInChildren<T>(bool inactive) { return new T[0]; }
     }
     public class MonoBehaviour : Component { public bool enabled; }
     public class ScriptableObject : Object

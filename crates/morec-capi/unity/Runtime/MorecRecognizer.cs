@@ -1,5 +1,6 @@
 #if UNITY_5_3_OR_NEWER
 using System;
+using System.Collections.Generic;
 using UnityEngine;
 using UnityEngine.Events;
 
@@ -45,6 +46,8 @@ namespace Morec
         public Animator animator;
         [Tooltip("Instead of a humanoid: a transform for each part of the body, in the order of MorecRole; empty where there is none.")]
         public Transform[] joints = new Transform[0];
+        [Tooltip("Instead of a body: one or both hands, each the transform that its joints lie under, named as XR Hands and OpenXR name them.")]
+        public Transform[] hands = new Transform[0];
         [Tooltip("Accepted false alarms a minute in background motion: 0.1 is strict, 1 is generous; 0: as trained.")]
         [Range(0, 1)] public float sensitivity;
         [Tooltip("The expected performer: decided automatically, the training subject, or anyone.")]
@@ -81,7 +84,8 @@ namespace Morec
             HumanBodyBones.RightShoulder, HumanBodyBones.RightUpperArm, HumanBodyBones.RightLowerArm, HumanBodyBones.RightHand,
         };
 
-        readonly Transform[] parts = new Transform[MotionStream.Roles];
+        /// <summary>The transforms whose positions are pushed, in the order of the stream's joints.</summary>
+        Transform[] parts;
         MotionIndex opened;
         MotionStream stream;
         Action<MorecEvent> said;
@@ -105,7 +109,9 @@ namespace Morec
             try
             {
                 opened = new MotionIndex(index.bytes);
-                stream = new MotionStream(opened, options, FindParts());
+                stream = hands.Length == 0
+                    ? new MotionStream(opened, options, FindParts())
+                    : StreamOfHands(options);
                 said = Say;
             }
             catch (MorecException error)
@@ -127,6 +133,7 @@ namespace Morec
         uint FindParts()
         {
             var humanoid = animator != null ? animator : GetComponent<Animator>();
+            parts = new Transform[MotionStream.Roles];
             uint roles = 0;
             for (var role = 0; role < parts.Length; role++)
             {
@@ -135,6 +142,18 @@ namespace Morec
                 if (parts[role] != null) roles |= 1u << role;
             }
             return roles;
+        }
+
+        /// <summary>All transforms of the hands are joints: their names say which points they are.</summary>
+        MotionStream StreamOfHands(StreamOptions options)
+        {
+            var found = new List<Transform>();
+            foreach (var hand in hands)
+                if (hand != null) found.AddRange(hand.GetComponentsInChildren<Transform>(true));
+            parts = found.ToArray();
+            var names = Array.ConvertAll(parts, part => part.name);
+            // Points of hands have no parents: a tree would be a body's.
+            return new MotionStream(opened, options, names, Array.ConvertAll(parts, part => -1));
         }
 
         /// <summary>Runs after animation and tracking have moved the joints.</summary>

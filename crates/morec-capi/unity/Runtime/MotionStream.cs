@@ -1,4 +1,5 @@
 using System;
+using System.Collections.Generic;
 using System.Runtime.InteropServices;
 using System.Text;
 
@@ -37,6 +38,20 @@ namespace Morec
                 return (uint)flags;
             }
         }
+
+        internal MorecOptions Given(uint roles, IntPtr skeleton)
+        {
+            return new MorecOptions
+            {
+                struct_size = Native.SizeOf<MorecOptions>(),
+                handedness = (int)(leftHanded ? MorecHandedness.Left : MorecHandedness.Right),
+                skeleton = skeleton,
+                roles = roles,
+                flags = Flags,
+                sensitivity = sensitivity,
+                refractory_secs = refractorySecs,
+            };
+        }
     }
 
     /// <summary>Recognises one performer's motions live. Y is up; lengths may have any unit.</summary>
@@ -45,8 +60,8 @@ namespace Morec
         /// <summary>Number of body parts, numbered as in MorecRole.</summary>
         public const int Roles = Native.MOREC_ROLE_COUNT;
 
-        /// <summary>x, y, z of each role; NaN if it is missing. Fill this in before calling Push.</summary>
-        public readonly double[] positions = new double[3 * Roles];
+        /// <summary>x, y, z of each role, or of each joint by its name; NaN if it is missing. Fill this in before calling Push.</summary>
+        public readonly double[] positions;
 
         IntPtr handle;
         GCHandle pinned;
@@ -55,25 +70,67 @@ namespace Morec
 
         /// <summary>A stream of the roles whose bit is set in `roles`; 0 for all.</summary>
         public MotionStream(MotionIndex index, StreamOptions options, uint roles)
+            : this(Roles)
         {
-            var given = new MorecOptions
-            {
-                struct_size = Native.SizeOf<MorecOptions>(),
-                handedness = (int)(options.leftHanded ? MorecHandedness.Left : MorecHandedness.Right),
-                roles = roles,
-                flags = options.Flags,
-                sensitivity = options.sensitivity,
-                refractory_secs = options.refractorySecs,
-            };
+            var given = options.Given(roles, IntPtr.Zero);
             MorecException.Check(Native.morec_recognizer_create(index.Handle, ref given, out handle));
+            Pin();
+        }
+
+        /// <summary>A stream of joints with these names, from which the library finds what part of a body or which point of a hand each
+        /// is (`LeftForearm`, `L_IndexTip`). `parents` has the number of each joint's parent, which comes before it, or -1.</summary>
+        public MotionStream(MotionIndex index, StreamOptions options, string[] names, int[] parents)
+            : this(names.Length)
+        {
+            if (parents.Length != names.Length)
+                throw new ArgumentException(names.Length + " names of joints and " + parents.Length + " parents");
+            using (var memory = new Unmanaged())
+            {
+                var skeleton = new MorecSkeleton
+                {
+                    struct_size = Native.SizeOf<MorecSkeleton>(),
+                    joint_count = (UIntPtr)names.Length,
+                    parents = memory.Pinned(parents),
+                    names = memory.Pinned(Array.ConvertAll(names, name => memory.Pinned(Encoding.UTF8.GetBytes(name + "\0")))),
+                };
+                var given = options.Given(0, memory.Pinned(skeleton));
+                MorecException.Check(Native.morec_recognizer_create(index.Handle, ref given, out handle));
+            }
+            Pin();
+        }
+
+        MotionStream(int joints)
+        {
+            positions = new double[3 * joints];
+        }
+
+        void Pin()
+        {
             pinned = GCHandle.Alloc(positions, GCHandleType.Pinned);
             frame = new MorecFrame
             {
                 struct_size = Native.SizeOf<MorecFrame>(),
-                joint_count = (UIntPtr)Roles,
+                joint_count = (UIntPtr)(positions.Length / 3),
                 positions = pinned.AddrOfPinnedObject(),
                 space = (int)MorecSpace.World,
             };
+        }
+
+        /// <summary>What the library may read during a call.</summary>
+        sealed class Unmanaged : IDisposable
+        {
+            readonly List<GCHandle> handles = new List<GCHandle>();
+
+            public IntPtr Pinned(object value)
+            {
+                handles.Add(GCHandle.Alloc(value, GCHandleType.Pinned));
+                return handles[handles.Count - 1].AddrOfPinnedObject();
+            }
+
+            public void Dispose()
+            {
+                foreach (var value in handles) value.Free();
+            }
         }
 
         /// <summary>Processes the pose in `positions` and passes each event that it causes to `said`. Allocates no

@@ -2,6 +2,7 @@
 using System;
 using System.Globalization;
 using System.IO;
+using System.Runtime.InteropServices;
 using Morec;
 
 /// <summary>What `examples/stream.c` does, without Unity: poses as lines of text in, a line for each motion out.</summary>
@@ -12,10 +13,11 @@ static class StreamProgram
         try
         {
             using (var index = new MotionIndex(File.ReadAllBytes(arguments[0])))
-            using (var stream = new MotionStream(index, new StreamOptions { leftHanded = arguments.Length > 1 }, 0))
+            using (var stream = Opened(index, arguments))
             {
-                Run(index, stream, arguments.Length > 1 ? -1 : 1);
-                if (arguments.Length > 1) Console.Error.WriteLine(stream.Diagnosis());
+                var mirrored = Array.IndexOf(arguments, "mirrored") > 0;
+                Run(index, stream, mirrored ? -1 : 1);
+                if (mirrored) Console.Error.WriteLine(stream.Diagnosis());
             }
             return 0;
         }
@@ -24,6 +26,16 @@ static class StreamProgram
             Console.Error.WriteLine(error.Status + ": " + error.Message);
             return 1;
         }
+    }
+
+    static MotionStream Opened(MotionIndex index, string[] arguments)
+    {
+        var options = new StreamOptions { leftHanded = Array.IndexOf(arguments, "mirrored") > 0 };
+        if (Array.IndexOf(arguments, "named") < 0) return new MotionStream(index, options, 0);
+        var parents = new[] { -1, 0, 1, 2, 0, 4, 5, 0, 7, 8, 7, 10, 11, 12, 7, 14, 15, 16 };
+        var names = new string[parents.Length];
+        for (var role = 0; role < names.Length; role++) names[role] = Marshal.PtrToStringAnsi(Native.morec_role_name(role));
+        return new MotionStream(index, options, names, parents);
     }
 
     /// <summary>`side` is the sign of x: a left-handed world is the mirrored one.</summary>

@@ -38,7 +38,8 @@ Examples:
   morec agree both.tsv --annotators ann,ben          # by the column annotator
   morec agree moves.mdb
 
-Exit codes: 0 compared; 1 a file cannot be read or no clip is in both files; 2 wrong command line.")]
+Exit codes: 0 compared; 1 a file cannot be read or no clip is
+labelled by both annotators; 2 wrong command line.")]
 pub struct Args {
     /// Labels of the first annotator, or of both, in any supported form
     ///
@@ -218,7 +219,7 @@ fn shared_streams(
     }
     if shared.streams.is_empty() {
         let [a, b] = shared.alone.map(|alone| alone.len());
-        bail!("no clip is labelled in both files: A names {a}, B names {b} clips");
+        bail!("no clip is labelled by both annotators: A labels {a}, B labels {b} clips");
     }
     Ok(shared.streams)
 }

@@ -117,7 +117,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         let curve = settings.learning_curve(&of, &args.material.settings, &StageBar::new())?;
         if let Some(db) = &args.material.db {
             let kept = database::open(db).and_then(|mut db| curve.keep(&mut db));
-            note_unkept(db, kept.map_err(Into::into));
+            database::note_unkept(db, kept);
         }
         curve::write(&curve, args.plot.as_deref(), args.json, &mut out)?;
         return Ok(ExitCode::SUCCESS);
@@ -125,7 +125,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let measures = settings.crossval(&of, &args.material.settings, &StageBar::new())?;
     let (tested, evaluation) = (&measures.tested, &measures.evaluation);
     if let Some(db) = &args.material.db {
-        note_unkept(db, keep(db, args, &of, &measures));
+        database::note_unkept(db, keep(db, args, &of, &measures));
     }
     // Before anything is printed: a closed pipe does not lose the report.
     if let Some(path) = &args.report {
@@ -181,13 +181,6 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     }
     out.flush()?;
     Ok(ExitCode::SUCCESS)
-}
-
-/// Says that a report is not kept: it is printed all the same.
-fn note_unkept<T>(db: &Path, kept: anyhow::Result<T>) {
-    if let Err(error) = kept {
-        eprintln!("note: the report is not kept in {}: {error}", db.display());
-    }
 }
 
 /// Keeps the report in the database.

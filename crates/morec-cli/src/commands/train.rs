@@ -57,17 +57,17 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let bytes = index.to_bytes()?;
     output::write_whole(&args.output, |out| out.write_all(&bytes))
         .with_context(|| args.output.display().to_string())?;
-    if let Some(db) = &args.material.db {
+    if let Some(path) = &args.material.db {
         let name = args
             .output
             .file_stem()
             .unwrap_or_default()
             .to_string_lossy();
-        let mut db = database::open(db)?;
+        let mut db = database::open(path)?;
         db.store_index(&name, &bytes)?;
         let secs = begun.elapsed().as_secs_f64();
-        KeptTraining::of(&report, secs, bytes.len())
-            .keep(&mut db, &KeptTraining::title(&report))?;
+        let kept = KeptTraining::of(&report, secs, bytes.len());
+        database::note_unkept(path, kept.keep(&mut db, &KeptTraining::title(&report)));
     }
     if args.json {
         let mut out = crate::console::stdout();

@@ -92,7 +92,7 @@ fn take(db: &mut MotionDb, step: &Step) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(48))]
+    #![proptest_config(ProptestConfig::with_cases(24))]
     #[test]
     fn undo_goes_back_through_every_state(steps in prop::collection::vec(step(), 1..25)) {
         let (_folder, mut db) = database_of_waves(1);

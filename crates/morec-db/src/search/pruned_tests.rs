@@ -197,9 +197,9 @@ proptest! {
 
     #[test]
     fn few_clips_are_read_and_the_hits_are_those_of_all(seed in 0u64..1 << 40, limit in 1usize..40) {
-        let mut clips = clips_of(seed, 600, &[BoneSet::BODY, some(), BoneSet::BODY]);
+        let mut clips = clips_of(seed, 300, &[BoneSet::BODY, some(), BoneSet::BODY]);
         // Equal distances: copies under other numbers.
-        for at in (0..600).step_by(10) {
+        for at in (0..300).step_by(10) {
             clips[at + 5].rows = clips[at].rows.clone();
             clips[at + 5].bones = clips[at].bones;
         }
@@ -280,7 +280,7 @@ fn of_real_clips_most_are_not_read() {
     let (mut shares, codes, mut likely) = (Vec::new(), SketchCodes::default(), (0, 0));
     for number in (0..clips.len() as i64).step_by(clips.len() / 8) {
         let example = index.example(ClipId(number), 0.2..1.4).unwrap();
-        check_bounds(&example, &clips[..300.min(clips.len())]);
+        check_bounds(&example, &clips[..100.min(clips.len())]);
         for options in all_options(5) {
             let (hits, read) = pruned(&example, &options, &clips, Some(&codes), true);
             assert_eq!(hits, index.search(&example, &options));

@@ -240,7 +240,7 @@ impl<P: Peer> Taking<'_, P> {
         frame.time_secs = time_secs;
         frame.wall_secs = arrival_secs;
         frame.actor = actor;
-        if self.options.skip_t_pose && is_t_pose(&frame.key_pose(&rig)) {
+        if self.options.skip_t_pose && is_t_pose(|role| frame.position(&rig, role)) {
             self.counts.not_motion += 1;
             self.ready.give_back(frame);
         } else {

@@ -1,6 +1,5 @@
 //! Recognises the rest pose of avatars that have no tracker.
 
-use morec::features::KeyPose;
 use morec::math::Vec3;
 use morec::roles::Role;
 
@@ -9,9 +8,9 @@ const ARMS: f64 = 0.999_39;
 /// Legs hang down as exactly as this (8°).
 const LEGS: f64 = 0.990_27;
 
-/// True if `pose` is a T-pose, too exact to be a person's: what a sender shows that has lost its tracker.
-pub fn is_t_pose(pose: &KeyPose) -> bool {
-    let along = |from, to| (pose.get(to)? - pose.get(from)?).try_normalize(1e-6);
+/// True if body parts at these positions are in a T-pose, too exact to be a person's: what a sender shows that has lost its tracker.
+pub fn is_t_pose(position: impl Fn(Role) -> Option<Vec3>) -> bool {
+    let along = |from, to| (position(to)? - position(from)?).try_normalize(1e-6);
     let check = || -> Option<bool> {
         let left = along(Role::RightThigh, Role::LeftThigh)?;
         let is = |from, to, direction: Vec3, exact: f64| {

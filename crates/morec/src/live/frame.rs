@@ -78,6 +78,11 @@ impl Frame {
         key
     }
 
+    /// Position of the joint with this role; `None` if no joint has it.
+    pub fn position(&self, rig: &Rig, role: Role) -> Option<Vec3> {
+        self.pose.positions.get(rig.roles.joint(role)?).copied()
+    }
+
     /// Sets the frame to a pose by roles: joints as in [`Rig::of_roles`], positions only.
     pub fn set_key_pose(&mut self, pose: &KeyPose) {
         let unknown = Vec3::repeat(f64::NAN);

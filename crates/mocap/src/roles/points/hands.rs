@@ -478,6 +478,15 @@ mod tests {
             check(web_xr, Hand::Right, 21).as_deref(),
             Some("index-finger-tip")
         );
+        let mut unity: Vec<String> = vec!["L_Wrist".into(), "L_Palm".into()];
+        for finger in ["Thumb", "Index", "Middle", "Ring", "Little"] {
+            let bones = ["Metacarpal", "Proximal", "Intermediate", "Distal", "Tip"];
+            let bones = bones
+                .into_iter()
+                .filter(|b| finger != "Thumb" || *b != "Intermediate");
+            unity.extend(bones.map(|bone| format!("L_{finger}{bone}")));
+        }
+        assert_eq!(check(unity, Hand::Left, 22).as_deref(), Some("L_IndexTip"));
     }
 
     #[test]

@@ -78,7 +78,7 @@ pub struct Args {
     /// Table that has the vector of --like [default: that of --embeddings]
     #[arg(long, value_name = "TABLE", requires = "embeddings")]
     queries: Option<PathBuf>,
-    /// Start of the example, seconds [default: the clip's beginning]
+    /// Start of the example, seconds
     #[arg(long, value_name = "SECS", default_value_t = 0.0)]
     start: f64,
     /// Stop of the example, seconds [default: the clip's end]
