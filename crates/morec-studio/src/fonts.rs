@@ -1,7 +1,7 @@
 //! Fonts of the system for names whose letters the fonts of the program do not have.
 
 use std::collections::BTreeSet;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use ab_glyph::{Font, FontRef};
 use egui::epaint::text::{FontInsert, FontPriority, InsertFontFamily};
@@ -58,8 +58,31 @@ pub struct Fonts {
 
 impl Default for Fonts {
     fn default() -> Self {
-        Self::of(USUAL.map(PathBuf::from).to_vec())
+        let usual = USUAL.into_iter().map(PathBuf::from);
+        let own = std::env::home_dir().map(|home| fonts_of(&home));
+        Self::of(usual.chain(own.into_iter().flatten()).collect())
     }
+}
+
+/// Fonts that a user has installed in their home folder, in order of their paths.
+fn fonts_of(home: &Path) -> Vec<PathBuf> {
+    let mut folders = [".local/share/fonts", ".fonts", "Library/Fonts"]
+        .map(|folder| home.join(folder))
+        .to_vec();
+    let mut fonts = Vec::new();
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+            let (path, kind) = (entry.path(), entry.file_type());
+            let ending = path.extension().map(|e| e.to_ascii_lowercase());
+            if kind.is_ok_and(|kind| kind.is_dir()) {
+                folders.push(path);
+            } else if ending.is_some_and(|e| e == "ttf" || e == "otf" || e == "ttc") {
+                fonts.push(path);
+            }
+        }
+    }
+    fonts.sort();
+    fonts
 }
 
 impl Fonts {
@@ -133,4 +156,24 @@ fn insert(ctx: &Context, name: &str, bytes: Vec<u8>) {
     });
     let data = FontData::from_owned(bytes);
     ctx.add_font(FontInsert::new(name, data, families.to_vec()));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fonts_of_a_user_are_found_in_folders_of_folders() {
+        let home = tempfile::tempdir().unwrap();
+        let write = |path: &str| {
+            let path = home.path().join(path);
+            std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+            std::fs::write(&path, b"").unwrap();
+            path
+        };
+        let own = write(".fonts/Own.TTF");
+        let deep = write(".local/share/fonts/nanum/NanumGothic.ttf");
+        write(".local/share/fonts/readme.txt");
+        assert_eq!(fonts_of(home.path()), [own, deep]);
+    }
 }

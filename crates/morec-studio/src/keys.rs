@@ -76,7 +76,10 @@ pub fn read(ctx: &egui::Context, state: &State, asks_a_file: bool, out: &mut Vec
                 if state.study_view() == Some(StudyView::Annotators) {
                     decisions(i, out);
                 }
-                labels(i, state, out);
+                // The list of hits does not show the label whose like was searched: keys act on a hit that was gone to.
+                if state.classes.similar.is_none() || state.timeline.range.is_some() {
+                    labels(i, state, out);
+                }
             }
             Panel::Train => {
                 for (key, by) in STEPS {

@@ -8,7 +8,7 @@ use super::strips::{STRIP, go};
 use super::{Out, strips, widgets};
 use crate::format;
 use crate::lists::List;
-use crate::state::{ClassCommand, Command, Panel, State};
+use crate::state::{ClassCommand, Command, Panel, State, TimelineCommand};
 use crate::theme::Colours;
 
 /// Width of a column of cards, points.
@@ -56,7 +56,12 @@ pub fn show(ui: &mut Ui, state: &State, sample: &DbSample, (list, at): (&List, u
         response.dnd_set_drag_payload(Carried::Sample(sample.id));
     }
     if list.row(ui, at, &response, selected) || response.double_clicked() {
-        go(sample.into(), Some(sample.id), out);
+        if ui.input(|i| i.modifiers.command) {
+            let (id, add) = (Some(sample.id), true);
+            out.push(Command::Timeline(TimelineCommand::Select { id, add }));
+        } else {
+            go(sample.into(), Some(sample.id), out);
+        }
     }
     if response.double_clicked() {
         out.push(Command::Show(Panel::Label));

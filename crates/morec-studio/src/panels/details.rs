@@ -1,7 +1,7 @@
 //! Details of the chosen clip, which can be changed.
 
 use egui::{Grid, Ui};
-use morec_db::{ClipInfo, ClipUpdate};
+use morec_db::{ClipId, ClipInfo, ClipUpdate};
 
 use super::{Out, background, roles, video, whole, widgets};
 use crate::format;
@@ -80,9 +80,35 @@ fn several(ui: &mut Ui, state: &State, out: Out) {
     });
     whole::from_names(ui, state, &clips, out);
     ui.add_space(4.0);
-    if ui.button("Remove these clips").clicked() {
-        out.push(Command::Edit(Edit::RemoveClips(selected.clone())));
+    remove(ui, &clips, out);
+}
+
+/// Removes clips at the second click, which says how much goes.
+fn remove(ui: &mut Ui, clips: &[&ClipInfo], out: Out) {
+    let ids: Vec<ClipId> = clips.iter().map(|clip| clip.id).collect();
+    let asked = egui::Id::new(("remove these clips", &ids));
+    let labels = clips.iter().map(|clip| clip.samples).sum();
+    let sure = format!(
+        "Remove {} and {}",
+        format::count(ids.len(), "clip"),
+        format::count(labels, "label")
+    );
+    let is_asked = ui.data(|data| data.get_temp(asked).unwrap_or(false));
+    if !is_asked {
+        if ui.button("Remove these clips …").clicked() {
+            ui.data_mut(|data| data.insert_temp(asked, true));
+        }
+        return;
     }
+    ui.horizontal(|ui| {
+        let goes = ui.button(sure).clicked();
+        if goes {
+            out.push(Command::Edit(Edit::RemoveClips(ids)));
+        }
+        if goes || ui.button("Keep them").clicked() {
+            ui.data_mut(|data| data.remove::<bool>(asked));
+        }
+    });
 }
 
 /// Tags as they are typed, parted by commas.

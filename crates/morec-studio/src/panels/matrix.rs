@@ -35,9 +35,15 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
         let recognised = format!("{} of {}", judged.recognised(), e.totals.samples);
         widgets::figure(ui, recognised, "labels recognised");
         widgets::figure(ui, judged.missed().to_string(), "missed");
+        let mistaken = e
+            .totals
+            .samples
+            .saturating_sub(judged.recognised() + judged.missed());
+        widgets::figure(ui, mistaken.to_string(), "taken for another class");
         let alarms = judged.false_detections().to_string();
         widgets::figure(ui, alarms, "false detections");
-        widgets::figure(ui, share(e.events.f1), "F1 of events");
+        let found = format!("F1 of events, {} found", e.events.matched);
+        widgets::figure(ui, share(e.events.f1), &found);
         widgets::figure(
             ui,
             format::duration(e.totals.known_secs),

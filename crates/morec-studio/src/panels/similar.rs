@@ -95,8 +95,8 @@ pub fn show(ui: &mut Ui, state: &State, similar: &Similar, out: Out) {
     if similar.hits.is_empty() {
         widgets::nothing(
             ui,
-            "No similar motion found",
-            "Import more clips to search in.",
+            "No other motion like it",
+            "What is like it has labels already, or more clips must be imported.",
         );
         return;
     }

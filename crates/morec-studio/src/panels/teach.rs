@@ -61,7 +61,7 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
             out.push(Command::Live(LiveCommand::MarkBackground));
         }
     });
-    label::unnamed(ui, state, out);
+    label::unnamed(ui, state, false, out);
     let busy = state.live.teaching || state.is_training();
     if busy {
         ui.horizontal(|ui| {

@@ -73,7 +73,19 @@ fn several_clips_are_described_and_removed_together() {
     person.undo();
     assert_eq!(described(&person), before);
     person.ctrl_click("ada_1");
-    person.click("Remove these clips");
+    person.click("Remove these clips …");
+    assert_eq!(described(&person), before);
+    let snapshot = person.state().store.as_ref().unwrap().snapshot.clone();
+    let of = |name: &str| {
+        snapshot
+            .clips
+            .iter()
+            .find(|c| c.name == name)
+            .unwrap()
+            .samples
+    };
+    let labels = crate::format::count(of("ben_1") + of("cleo_1"), "label");
+    person.click(&format!("Remove 2 clips and {labels}"));
     person.settle();
     assert!(person.offers("ada_1") && !person.offers("ben_1") && !person.offers("cleo_1"));
     person.undo();

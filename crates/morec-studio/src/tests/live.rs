@@ -506,6 +506,21 @@ fn hand(secs: f64) -> Vec<[f64; 3]> {
 }
 
 #[test]
+fn what_is_said_of_a_source_that_cannot_be_opened_goes_when_another_runs() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), 1)]);
+    person.goes_to(Panel::Live);
+    let nowhere = Choice::Network("json+tcp://nowhere".to_owned());
+    person.command(Command::Live(LiveCommand::Choose(nowhere)));
+    person.click("Start");
+    assert_eq!(person.state().notices.len(), 1);
+    person.command(Command::Live(LiveCommand::Choose(Choice::Clip(None))));
+    person.click("Start");
+    person.settle();
+    assert!(person.state().live.run.is_some() && person.state().notices.is_empty());
+}
+
+#[test]
 fn a_hand_is_seen_marked_kept_with_its_roles_and_spoils_no_training() {
     use std::io::Write;
     let folder = tempfile::tempdir().unwrap();

@@ -4,7 +4,7 @@ use egui::{Key, Modifiers};
 use morec_db::labels::SampleState as Judged;
 
 use super::{Person, made};
-use crate::state::{Command, LiveCommand, Panel, TimelineCommand};
+use crate::state::{Command, LiveCommand, Panel, SimilarCommand, TimelineCommand};
 
 fn of_class(person: &Person, class: &str) -> usize {
     let labels = person.labels();
@@ -101,8 +101,88 @@ fn all_hits_of_a_likeness_become_labels_by_four_clicks_and_keys() {
     assert_eq!(person.actions - begun, 4);
     let left = person.state().classes.similar.as_ref().unwrap();
     assert_eq!(left.hits.len(), all - meant);
+    // What is labelled now is not found again: a second label would be double.
+    person.command(Command::Similar(SimilarCommand::Mirror(false)));
+    person.settle();
+    let again = person.state().classes.similar.as_ref().unwrap();
+    assert_eq!(again.hits.len(), all - meant);
+    let found = again.hits.iter().map(|hit| (hit.clip, hit.span));
+    for (clip, span) in found {
+        let snapshot = &person.state().store.as_ref().unwrap().snapshot;
+        let of_class = snapshot
+            .samples_of(clip)
+            .iter()
+            .filter(|s| s.class == class);
+        let doubled = of_class.filter(|s| s.span().matches(span)).count();
+        assert_eq!(doubled, 0, "{span:?}");
+    }
     person.undo();
     assert_eq!(person.labels().len(), labels);
+}
+
+#[test]
+fn among_hits_keys_leave_the_label_alone_whose_like_was_searched() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), 1)]);
+    person.goes_to(Panel::Label);
+    let labelled = person.state().shown_samples().iter();
+    let mut accepted = labelled.filter(|s| s.state == Judged::Accepted);
+    let label = accepted.next().unwrap().clone();
+    let name = format!(
+        "{} {:.2}–{:.2} s",
+        label.class, label.start_secs, label.stop_secs
+    );
+    // Soon after another click it would be a double click.
+    person.wait(1.0);
+    person.click(&name);
+    person.key(Key::F);
+    person.settle();
+    assert!(person.state().classes.similar.is_some());
+    let labels = person.labels();
+    for key in [Key::Num1, Key::Num2, Key::Delete] {
+        person.key(key);
+        person.settle();
+    }
+    assert_eq!(person.labels(), labels);
+    // A hit that was gone to is what keys act on.
+    person.key(Key::ArrowDown);
+    person.settle();
+    person.key(Key::Num1);
+    person.settle();
+    assert_eq!(person.labels().len(), labels.len() + 1);
+}
+
+#[test]
+fn several_samples_are_chosen_with_ctrl_and_moved_by_one_key() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), 2)]);
+    person.goes_to(Panel::Classes);
+    let snapshot = person.state().store.as_ref().unwrap().snapshot.clone();
+    let waves = snapshot.samples.iter().filter(|s| s.class == "wave");
+    let cards = waves.map(|s| format!("wave in {} at {:.2} s", s.clip_name, s.start_secs));
+    let cards: Vec<String> = cards.collect();
+    let people = snapshot.samples.iter().filter(|s| s.class == "wave");
+    assert!(
+        people
+            .map(|s| s.clip)
+            .collect::<std::collections::BTreeSet<_>>()
+            .len()
+            > 1
+    );
+    let other = (1..=9).find(|n| person.state().classes.at(n - 1) == Some("clap"));
+    person.click(&cards[0]);
+    for card in &cards[1..] {
+        person.ctrl_click(card);
+    }
+    person.settle();
+    assert_eq!(person.state().selected().len(), cards.len());
+    let claps = of_class(&person, "clap");
+    person.key(crate::keys::CLASS_KEYS[other.unwrap() - 1]);
+    person.settle();
+    assert_eq!(of_class(&person, "clap"), claps + cards.len());
+    assert_eq!(of_class(&person, "wave"), 0);
+    person.undo();
+    assert_eq!(of_class(&person, "wave"), cards.len());
 }
 
 #[test]
@@ -129,15 +209,42 @@ fn a_class_that_a_key_made_asks_for_its_name_live() {
         person.frames(1);
     }
     person.command(Command::Live(LiveCommand::Range(Some((1.0, 2.0)))));
-    assert!(!person.sees_part("What is gesture 1 called?"));
+    assert!(!person.sees_part("gesture 1 has no name yet"));
     person.key(Key::Num1);
     person.settle();
+    assert!(person.sees("gesture 1 has no name yet"));
+    person.click("Name gesture 1 …");
     assert!(person.sees("What is gesture 1 called?"));
-    person.click("Name of gesture 1");
     person.window.event(egui::Event::Text("nod".to_owned()));
     person.frames(2);
     person.key(Key::Enter);
     person.settle();
     assert_eq!(of_class(&person, "nod"), 1);
-    assert!(!person.sees_part("What is gesture"));
+    assert!(!person.sees_part("What is gesture") && !person.sees_part("no name yet"));
+}
+
+#[test]
+fn a_class_that_a_key_made_asks_for_its_name_beside_the_table_and_in_the_list() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), 0)]);
+    for (panel, name) in [(Panel::Library, "nod"), (Panel::Label, "bow")] {
+        person.goes_to(Panel::Library);
+        person.click("ben_1");
+        person.settle();
+        let key = if name == "nod" { Key::Num1 } else { Key::Num2 };
+        person.key(key);
+        person.settle();
+        person.goes_to(panel);
+        let class = person.state().classes.order.last().unwrap().clone();
+        person.click(&format!("Name {class} …"));
+        person.window.event(egui::Event::Text(name.to_owned()));
+        person.frames(2);
+        person.key(Key::Enter);
+        person.settle();
+        assert!(
+            person.state().classes.order.iter().any(|c| c == name),
+            "{panel:?}"
+        );
+        assert!(!person.sees_part("has no name yet"));
+    }
 }

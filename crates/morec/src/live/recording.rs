@@ -5,7 +5,9 @@ mod tree;
 use std::sync::Arc;
 
 use crate::clip::Clip;
+use crate::features::Profile;
 use crate::resample::usual_step;
+use crate::roles::Role;
 use crate::roles::mapping::Mapping;
 
 use super::{Frame, Rig};
@@ -130,18 +132,32 @@ impl Recording {
     }
 
     /// Which joints of `clip`, made by [`to_clip`](Self::to_clip), play which roles, for reading its file again: names alone do not say
-    /// it of a hand. `None` where the source says the skeleton, whose names are its own.
+    /// it of a hand or a custom skeleton. `None` where the source says the skeleton of a body, whose names and tree do.
     pub fn mapping(&self, clip: &Clip) -> Option<Mapping> {
-        let joints = self.rig.skeleton.joints();
+        let (joints, roles) = (self.rig.skeleton.joints(), &self.rig.roles);
         let flat = joints.len() > 1 && joints.iter().all(|joint| joint.parent.is_none());
-        let is_there = |name: &&str| clip.skeleton.find(name).is_some();
-        let lines = self.rig.roles.played().filter_map(|(role, _)| {
-            let joint = Some(tree::name_of(role)).filter(is_there)?;
-            Some(format!("{}\t{joint}\n", role.name()))
-        });
-        let lines: String = lines.collect();
-        let mapping = Mapping::read(lines.as_bytes()).ok();
-        mapping.filter(|_| flat && !lines.is_empty())
+        if !flat && roles.profile() == Profile::Body {
+            return None;
+        }
+        let line = |(role, joint): (Role, usize)| {
+            let name = match flat {
+                true => tree::name_of(role),
+                false => &joints[joint].name,
+            };
+            clip.skeleton.find(name)?;
+            Some(format!("{}\t{name}\n", role.name()))
+        };
+        let mut lines: String = roles.played().filter_map(line).collect();
+        if lines.is_empty() {
+            return None;
+        }
+        if roles.profile() != Profile::Body {
+            // A reader takes the first joint of a tree for the hips, and what hangs on it for limbs.
+            let others = Role::ALL.into_iter().filter(|role| role.is_of_body());
+            let others = others.filter(|role| roles.joint(*role).is_none());
+            lines.extend(others.map(|role| format!("{}\t-\n", role.name())));
+        }
+        Mapping::read(lines.as_bytes()).ok()
     }
 }
 

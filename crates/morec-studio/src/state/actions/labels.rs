@@ -52,7 +52,7 @@ impl State {
         let ids = self.timeline.selected.iter();
         let mut selected: Vec<&DbSample> = ids
             .filter_map(|id| store.snapshot.sample(*id))
-            .filter(|s| s.clip == motion.id)
+            .filter(|s| s.clip == motion.id || self.panel == Panel::Classes)
             .collect();
         selected.sort_by(|a, b| a.start_secs.total_cmp(&b.start_secs));
         selected

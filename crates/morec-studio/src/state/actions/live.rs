@@ -132,6 +132,8 @@ impl State {
         if let Some(model) = self.live.model() {
             run.recognise_with(&model);
         }
+        // That another source could not be opened is over.
+        self.succeeded();
         self.live.run = Some(run);
         self.live.marks.clear();
         self.live.counts.clear();

@@ -84,7 +84,10 @@ impl State {
     }
 
     /// Shows what was found.
-    pub(in crate::state) fn found_similar(&mut self, similar: Similar) {
+    pub(in crate::state) fn found_similar(&mut self, mut similar: Similar) {
+        if let Some(class) = &similar.class {
+            similar.hits.retain(|hit| !self.is_labelled(hit, class));
+        }
         self.say(format!(
             "{} like it",
             crate::format::count(similar.hits.len(), "stretch")
@@ -104,8 +107,22 @@ impl State {
             .collect()
     }
 
+    /// True if a label of the class lies where the hit does: another one would be double.
+    fn is_labelled(&self, hit: &Hit, class: &str) -> bool {
+        let store = self.store.iter();
+        let mut samples = store.flat_map(|store| store.snapshot.samples_of(hit.clip));
+        samples.any(|sample| {
+            sample.state == Judged::Accepted
+                && sample.class == class
+                && sample.span().matches(hit.span)
+        })
+    }
+
     fn label_hits(&mut self, class: &str) {
-        let places = self.alike_at_once();
+        let mut places = self.alike_at_once();
+        if let Some(similar) = &self.classes.similar {
+            places.retain(|at| !self.is_labelled(&similar.hits[*at], class));
+        }
         let Some(similar) = &mut self.classes.similar else {
             return;
         };

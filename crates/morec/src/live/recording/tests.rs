@@ -1,11 +1,13 @@
 use super::*;
-use crate::features::{KeyPose, for_each_pose};
+use crate::clip::Skeleton;
+use crate::features::{Hand, KeyPose, for_each_pose};
 use crate::formats::{Limits, bvh};
 use crate::import::{ImportOptions, Take, normalize};
 use crate::kinematics::{WorldPose, for_each_world_pose};
 use crate::math::Vec3;
 use crate::roles::Role;
 use crate::synth::{Person, Script};
+use mocap::testing::clip_of_hands;
 
 fn performance() -> Take {
     let script = Script::new(6, Person::draw(6, 1))
@@ -25,11 +27,11 @@ fn written(recording: &Recording) -> Take {
     let mut bytes = Vec::new();
     bvh::write(&clip, &mut bytes).unwrap();
     let read = bvh::read(&bytes, "take", &Default::default(), &Limits::default()).unwrap();
-    normalize(
-        read.clips.into_iter().next().unwrap(),
-        &ImportOptions::default(),
-    )
-    .unwrap()
+    let options = ImportOptions {
+        mapping: recording.mapping(&clip),
+        ..ImportOptions::default()
+    };
+    normalize(read.clips.into_iter().next().unwrap(), &options).unwrap()
 }
 
 fn poses(imported: &Take) -> Vec<KeyPose> {
@@ -102,6 +104,27 @@ fn places_of_roles_become_a_body_whatever_comes_and_goes() {
     // Where all was seen nothing is changed.
     let (seventh, read) = (&seen[24..25], &poses(&read)[24..25]);
     assert!(farthest(read, seventh) < 1e-5);
+}
+
+#[test]
+fn a_hand_with_a_skeleton_of_its_own_is_a_hand_again() {
+    let hand = clip_of_hands(&[Hand::Left], |_, number| number.to_string());
+    let made = normalize(hand, &ImportOptions::default()).unwrap();
+    let mut joints = made.clip.skeleton.joints().to_vec();
+    joints.iter_mut().skip(1).for_each(|j| j.parent = Some(0));
+    let rig = Arc::new(Rig {
+        skeleton: Skeleton::new(joints).unwrap(),
+        roles: made.roles.clone(),
+    });
+    assert_ne!(rig.roles.profile(), Profile::Body);
+    let (mut recording, mut frame) = (Recording::new(&rig), Frame::default());
+    for_each_world_pose(&made.clip, &(0..0), |secs, world: &WorldPose| {
+        (frame.time_secs, frame.pose) = (secs, world.clone());
+        recording.push(&frame);
+    });
+    let read = written(&recording);
+    assert_eq!(read.roles, made.roles);
+    assert!(farthest(&poses(&read), &poses(&made)) < 1e-5);
 }
 
 #[test]
