@@ -176,8 +176,8 @@ fn track_at(track: &JointTrack, instants: &[(usize, f64)]) -> JointTrack {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::clip::{Joint, Skeleton};
-    use crate::math::{Axis, Quat, Vec3};
+    use crate::math::{Axis, Vec3};
+    use crate::smooth::tests::one_joint;
     use proptest::prelude::*;
 
     /// One joint that turns about Y and moves along X, given by functions of time.
@@ -187,34 +187,8 @@ mod tests {
         angle: impl Fn(f64) -> f64,
         x: impl Fn(f64) -> f64,
     ) -> Clip {
-        let root = Joint {
-            name: "Hips".into(),
-            parent: None,
-            offset: Vec3::zeros(),
-            tip: None,
-        };
-        let times: Vec<f64> = (0..frames).map(|f| f as f64 / rate_hz).collect();
-        let mut rotations: Vec<Quat> = Vec::new();
-        for &t in &times {
-            let q = Axis::Y.rotation(angle(t));
-            rotations.push(rotations.last().map_or(q, |p| same_hemisphere(p, q)));
-        }
-        let positions = times.iter().map(|&t| Vec3::new(x(t), 0.0, 0.0)).collect();
-        let skeleton = Skeleton::new(vec![root]).unwrap();
-        let tracks = vec![JointTrack {
-            joint: 0,
-            positions,
-        }];
-        Clip {
-            name: "c".into(),
-            skeleton,
-            rate_hz,
-            rotations,
-            tracks,
-            frames,
-            repaired: Vec::new(),
-            points: None,
-        }
+        let rotation = |t| Axis::Y.rotation(angle(t));
+        one_joint(rate_hz, frames, rotation, |t| Vec3::new(x(t), 0.0, 0.0))
     }
 
     proptest! {

@@ -61,6 +61,27 @@ pub const ARMS: [[Role; 3]; 2] = [
     [Role::LeftArm, Role::LeftForearm, Role::LeftHand],
     [Role::RightArm, Role::RightForearm, Role::RightHand],
 ];
+/// The lines in which a body is drawn whose joints do not hang together.
+pub const BODY_LINES: [(Role, Role); 15] = {
+    use Role::*;
+    [
+        (Hips, LeftThigh),
+        (LeftThigh, LeftShin),
+        (LeftShin, LeftFoot),
+        (Hips, RightThigh),
+        (RightThigh, RightShin),
+        (RightShin, RightFoot),
+        (Hips, Torso),
+        (Hips, Neck),
+        (Neck, Head),
+        (Neck, LeftArm),
+        (LeftArm, LeftForearm),
+        (LeftForearm, LeftHand),
+        (Neck, RightArm),
+        (RightArm, RightForearm),
+        (RightForearm, RightHand),
+    ]
+};
 
 impl Role {
     /// Number of roles.

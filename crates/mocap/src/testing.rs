@@ -9,6 +9,17 @@ mod bodies;
 
 pub use bodies::{at_a_desk, clip_of_hands, flat_hand, pushing};
 
+/// Classes of signals among the clips of referees.
+pub const SIGNALS: [&str; 7] = [
+    "traveling",
+    "illegal_dribble",
+    "visible_count",
+    "no_score",
+    "hands_up",
+    "pushing",
+    "stop_clock",
+];
+
 /// The folder of real clips: `MOREC_DATA`, or `../shared/data` beside the repository. Where it is missing, says that the
 /// calling test is skipped.
 pub fn data() -> Option<PathBuf> {

@@ -84,6 +84,14 @@ impl SlowProgress {
         self.lines.say(self.what, done as usize, total as usize);
     }
 
+    /// One step is done: what came of it, or `None` once its error is printed.
+    pub fn step_of<T>(&mut self, done: anyhow::Result<T>) -> Option<T> {
+        let printed = |error| self.suspend(|| eprintln!("morec: {error:#}"));
+        let done = done.map_err(printed).ok();
+        self.step();
+        done
+    }
+
     /// Runs `print` with the bar out of the way.
     pub fn suspend<T>(&self, print: impl FnOnce() -> T) -> T {
         self.bar.suspend(print)

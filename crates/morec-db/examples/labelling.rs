@@ -16,24 +16,14 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
+use mocap::testing::SIGNALS;
 use morec_db::labels::{NewSample, SampleState};
 use morec_db::{
     ClipFilter, ClipId, ClipUpdate, MotionDb, Proposal, ProposeOptions, most_informative,
 };
 
-/// The classes of the database figure: seven signals, walking and two dribbles.
-const TEN: [&str; 10] = [
-    "traveling",
-    "illegal_dribble",
-    "visible_count",
-    "no_score",
-    "hands_up",
-    "pushing",
-    "stop_clock",
-    "walk",
-    "dribble_right",
-    "dribble_left",
-];
+/// The classes of the database figure beside the seven signals: walking and two dribbles.
+const OTHERS: [&str; 3] = ["walk", "dribble_right", "dribble_left"];
 
 type Failure = Box<dyn std::error::Error>;
 
@@ -91,7 +81,8 @@ fn material(data: &Path, which: &str) -> Result<Material, Failure> {
                 .and_then(|frame| frame.parse::<f64>().ok())
                 .map(|f| f / 120.0)
         };
-        let wanted = which != "signals" || TEN.contains(&class.as_str());
+        let mut figure = SIGNALS.iter().chain(&OTHERS);
+        let wanted = which != "signals" || figure.any(|one| *one == class);
         if wanted && class != "dontcare" {
             let person = of(&row, "person").or_else(|| people.get(&clip).cloned());
             truth.push(Truth {

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use morec::TimeSpan;
 use morec::progress::Progress;
 use tempfile::TempDir;
 
@@ -10,6 +11,11 @@ use morec::formats::Limits;
 
 use crate::testing::{database_of_waves, waves, write_bvh};
 use crate::{ClipFilter, ClipInfo, ClipUpdate, DbError, ImportOutcome, MotionDb};
+
+fn names_in(db: &MotionDb) -> Vec<String> {
+    let clips = db.clips(&ClipFilter::default()).unwrap();
+    clips.into_iter().map(|c| c.name).collect()
+}
 
 #[test]
 fn other_files_are_plain_errors() {
@@ -32,14 +38,12 @@ fn other_files_are_plain_errors() {
     other
         .execute_batch("CREATE TABLE t (a); PRAGMA application_id = 7;")
         .unwrap();
-    assert!(matches!(
-        MotionDb::open(&path("other")),
-        Err(DbError::Foreign { found: 7, .. })
-    ));
-    assert!(matches!(
-        MotionDb::open_read_only(&path("other")),
-        Err(DbError::Foreign { found: 7, .. })
-    ));
+    for open in [MotionDb::open, MotionDb::open_read_only] {
+        assert!(matches!(
+            open(&path("other")),
+            Err(DbError::Foreign { found: 7, .. })
+        ));
+    }
     // What a program that was killed while it made a database left behind.
     std::fs::write(path("begun"), "").unwrap();
     assert!(
@@ -242,13 +246,7 @@ fn clips_of_one_name_are_told_apart() {
     let mut db = MotionDb::create(&folder.path().join("a.mdb")).unwrap();
     db.import(&paths, &FileReader::default(), &ClipUpdate::default(), &())
         .unwrap();
-    let names: Vec<String> = db
-        .clips(&ClipFilter::default())
-        .unwrap()
-        .into_iter()
-        .map(|c| c.name)
-        .collect();
-    assert_eq!(names, ["b/walk", "walk", "walk~2"]);
+    assert_eq!(names_in(&db), ["b/walk", "walk", "walk~2"]);
 }
 
 /// Cancels once this many files were reported.
@@ -394,23 +392,14 @@ fn damage_is_found() {
 
 #[test]
 fn clips_are_renamed_and_removed_with_what_belongs_to_them() {
-    use crate::labels::{NewSample, SampleFilter, SampleState};
+    use crate::labels::{NewSample, SampleFilter};
     let (_folder, mut db) = database_of_waves(2);
-    let names: Vec<String> = db
-        .clips(&ClipFilter::default())
-        .unwrap()
-        .into_iter()
-        .map(|c| c.name)
-        .collect();
-    let sample = NewSample {
-        clip: db.find_clip(&names[0]).unwrap().id,
-        class: "wave".into(),
-        start_secs: 0.0,
-        stop_secs: 1.0,
-        whole_clip: false,
-        state: SampleState::Accepted,
-        score: None,
-    };
+    let names = names_in(&db);
+    let sample = NewSample::accepted(
+        db.find_clip(&names[0]).unwrap().id,
+        "wave",
+        TimeSpan::new(0.0, 1.0),
+    );
     db.add_samples(&[sample], "me").unwrap();
     assert!(db.rename_clip(&names[0], &names[1]).is_err());
     assert!(db.rename_clip(&names[0], "a\tb").is_err());

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use morec::clip::{Clip, Gap, JointTrack, Points};
-use morec::formats::{Limits, bvh, c3d, from_positions as clip_of_positions, jsonl, trc};
+use morec::formats::{Limits, bvh, c3d, from_positions, jsonl, trc};
 use morec::import::{normalize, points_by_role};
 use morec::kinematics::WorldPose;
 use morec::math::Vec3;
@@ -54,7 +54,33 @@ impl PyClip {
         up: Option<&str>,
         roles: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
-        from_positions(positions, names, rate_hz, name, unit, up, roles)
+        let (values, frames, joints) = motion(positions)?;
+        if joints != names.len() {
+            let expected = format!(
+                "(frames, {}, 3), as there are {} names",
+                names.len(),
+                names.len()
+            );
+            return Err(wrong_shape(&expected, &[frames, joints, 3]));
+        }
+        if !(rate_hz.is_finite() && rate_hz > 0.0) {
+            return Err(value_error(format!(
+                "rate_hz: expected a rate in Hz above 0, found {rate_hz}"
+            )));
+        }
+        let options = import_options(up, unit, roles)?;
+        let point = |joint: usize| -> Vec<Vec3> {
+            (0..frames).map(|f| values[f * joints + joint]).collect()
+        };
+        let points = names.into_iter().enumerate();
+        let points = points.map(|(joint, name)| (name, point(joint))).collect();
+        let loaded =
+            from_positions(name, rate_hz, points, unit, &Limits::default()).map_err(morec_error)?;
+        let clip = loaded.clips.into_iter().next();
+        let clip = clip.ok_or_else(|| morec_error("these positions contain no performer"))?;
+        let mut data = ClipData::from(normalize(clip, &options).map_err(morec_error)?);
+        data.warnings = loaded.warnings.iter().map(|w| w.text.clone()).collect();
+        Ok(data.into())
     }
 
     /// Name of the clip: its file's stem, by default.
@@ -358,44 +384,6 @@ fn stretch(take: &ClipData, span: Range<usize>) -> ClipData {
         rest: within(&take.rest).unwrap_or(0..0),
         ..take.clone()
     }
-}
-
-/// A clip of points from an array of shape (frames, joints, 3).
-fn from_positions(
-    positions: &Bound<'_, PyAny>,
-    names: Vec<String>,
-    rate_hz: f64,
-    name: &str,
-    unit: Option<f64>,
-    up: Option<&str>,
-    roles: Option<&Bound<'_, PyAny>>,
-) -> PyResult<PyClip> {
-    let (values, frames, joints) = motion(positions)?;
-    if joints != names.len() {
-        let expected = format!(
-            "(frames, {}, 3), as there are {} names",
-            names.len(),
-            names.len()
-        );
-        return Err(wrong_shape(&expected, &[frames, joints, 3]));
-    }
-    if !(rate_hz.is_finite() && rate_hz > 0.0) {
-        return Err(value_error(format!(
-            "rate_hz: expected a rate in Hz above 0, found {rate_hz}"
-        )));
-    }
-    let options = import_options(up, unit, roles)?;
-    let point =
-        |joint: usize| -> Vec<Vec3> { (0..frames).map(|f| values[f * joints + joint]).collect() };
-    let points = names.into_iter().enumerate();
-    let points = points.map(|(joint, name)| (name, point(joint))).collect();
-    let loaded =
-        clip_of_positions(name, rate_hz, points, unit, &Limits::default()).map_err(morec_error)?;
-    let clip = loaded.clips.into_iter().next();
-    let clip = clip.ok_or_else(|| morec_error("these positions contain no performer"))?;
-    let mut data = ClipData::from(normalize(clip, &options).map_err(morec_error)?);
-    data.warnings = loaded.warnings.iter().map(|w| w.text.clone()).collect();
-    Ok(data.into())
 }
 
 /// The clip of a pickled state.

@@ -4,10 +4,11 @@
 use std::error::Error;
 use std::path::Path;
 
+use morec::TimeSpan;
 use morec::files::FileReader;
 use morec::formats::bvh;
 use morec::synth::{Person, Script};
-use morec_db::labels::{NewSample, SampleFilter, SampleState};
+use morec_db::labels::{NewSample, SampleFilter};
 use morec_db::{ClipFilter, ClipUpdate, MotionDb};
 
 const CLIPS: usize = 5000;
@@ -53,14 +54,12 @@ fn made(folder: &Path, path: &Path) -> Result<(), Box<dyn Error>> {
     let about = ClipUpdate::default();
     db.import(&files, &FileReader::default(), &about, &())?;
     let clips = db.clips(&ClipFilter::default())?;
-    let label = |n: usize| NewSample {
-        clip: clips[n / 2].id,
-        class: format!("gesture {}", n % 8 + 1),
-        start_secs: 0.25 * (n % 2) as f64,
-        stop_secs: 0.25 * (n % 2) as f64 + 0.2,
-        whole_clip: false,
-        state: SampleState::Accepted,
-        score: None,
+    let label = |n: usize| {
+        NewSample::accepted(
+            clips[n / 2].id,
+            &format!("gesture {}", n % 8 + 1),
+            TimeSpan::new(0.25 * (n % 2) as f64, 0.25 * (n % 2) as f64 + 0.2),
+        )
     };
     let labels: Vec<NewSample> = (0..2 * clips.len()).map(label).collect();
     db.add_samples(&labels, "edit_time")?;

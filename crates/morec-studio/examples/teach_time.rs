@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use morec::files::FileReader;
 use morec::formats::bvh;
 use morec::synth::{DatabaseSpec, database};
-use morec_db::labels::{NewSample, SampleState};
+use morec_db::labels::NewSample;
 use morec_db::{ClipUpdate, MotionDb};
 use morec_studio::measure::teaching;
 
@@ -63,14 +63,8 @@ fn made(folder: &Path, path: &Path) -> Result<(), Box<dyn Error>> {
         };
         db.import(&[file], &FileReader::default(), &about, &())?;
         let clip = db.find_clip(&take.clip.name)?.id;
-        let sample = |label: &morec::labels::Mark<&'static str>| NewSample {
-            clip,
-            class: label.class.to_owned(),
-            start_secs: label.span.start_secs,
-            stop_secs: label.span.stop_secs,
-            whole_clip: false,
-            state: SampleState::Accepted,
-            score: None,
+        let sample = |label: &morec::labels::Mark<&'static str>| {
+            NewSample::accepted(clip, label.class, label.span)
         };
         let samples: Vec<NewSample> = take.labels.iter().map(sample).collect();
         db.add_samples(&samples, "teach_time")?;

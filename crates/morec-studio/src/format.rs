@@ -1,5 +1,15 @@
 //! Numbers as people read them.
 
+use morec_db::labels::{DbSample, SampleState};
+
+/// A sample's class, and whether it is proposed.
+pub fn class(sample: &DbSample) -> String {
+    match sample.state {
+        SampleState::Proposed => format!("proposed {}", sample.class),
+        _ => sample.class.clone(),
+    }
+}
+
 /// A time in a clip: `1:02.35`, below a minute `2.35 s`.
 pub fn secs(secs: f64) -> String {
     match secs.abs() < 60.0 {

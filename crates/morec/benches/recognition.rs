@@ -18,7 +18,7 @@ use divan::counter::ItemsCount;
 use morec::classes::ClassId;
 use morec::features::{FeatureParams, FeatureStream, Rows};
 use morec::live::Recognizer;
-use morec::synth::{LimbSide, Person, Rng, Script};
+use morec::synth::Rng;
 use morec::templates::TemplateModel;
 
 fn main() {
@@ -48,10 +48,8 @@ mod bank {
     /// The bank's step over this many template rows.
     #[divan::bench(args = [600, 1800])]
     fn step(bencher: Bencher, template_rows: usize) {
-        let (mut bank, stream) = (
-            TemplateBank::new(&templates(template_rows), DIM),
-            rows(99, 64),
-        );
+        let mut bank = TemplateBank::new(&templates(template_rows), DIM);
+        let stream = rows(99, 64);
         bencher
             .counter(ItemsCount::new(stream.len()))
             .bench_local(|| {
@@ -63,10 +61,8 @@ mod bank {
     /// The same four ticks at a time, as for clips.
     #[divan::bench(args = [600, 1800])]
     fn step_through(bencher: Bencher, template_rows: usize) {
-        let (mut bank, stream) = (
-            TemplateBank::new(&templates(template_rows), DIM),
-            rows(99, 64),
-        );
+        let mut bank = TemplateBank::new(&templates(template_rows), DIM);
+        let stream = rows(99, 64);
         bencher
             .counter(ItemsCount::new(stream.len()))
             .bench_local(|| {
@@ -152,11 +148,7 @@ mod bank {
 
 /// Ten seconds of gestures at 60 Hz.
 fn poses() -> (morec::features::BoneSet, Vec<made::Timed>) {
-    let person = Person {
-        hand: LimbSide::Right,
-        ..Person::draw(3, 1)
-    };
-    let script = Script::new(3, person)
+    let script = made::right_handed(3, 1)
         .rest(1.0)
         .play("wave")
         .play("look_around")

@@ -204,6 +204,14 @@ fn tracking(bencher: Bencher) {
         });
 }
 
+/// Number of detections as rows come.
+fn pushed(rows: &[Vec<f32>], engine: &mut SvrdmEngine) -> usize {
+    let mut found = 0;
+    rows.iter()
+        .for_each(|row| engine.push(row, &mut |_| found += 1));
+    found
+}
+
 /// Rows to detections where every segment is accepted.
 #[divan::bench]
 fn all_accepted(bencher: Bencher) {
@@ -213,12 +221,7 @@ fn all_accepted(bencher: Bencher) {
     );
     bencher
         .counter(ItemsCount::new(rows.len() / 16))
-        .bench_local(|| {
-            let mut found = 0;
-            rows.iter()
-                .for_each(|row| engine.push(row, &mut |_| found += 1));
-            found
-        });
+        .bench_local(|| pushed(&rows, &mut engine));
 }
 
 /// Rows to detections as the reference stream has them: five values after projection, a tenth accepted.
@@ -230,9 +233,7 @@ fn reference_stream(bencher: Bencher) {
     bencher
         .counter(ItemsCount::new(rows.len() / 16))
         .bench_local(|| {
-            let mut found = 0;
-            rows.iter()
-                .for_each(|row| engine.push(row, &mut |_| found += 1));
+            let mut found = pushed(&rows, &mut engine);
             engine.finish(&mut |_| found += 1);
             found
         });

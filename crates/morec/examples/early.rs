@@ -16,16 +16,6 @@ use morec::live::{EarlyDetection, Recognizer};
 use morec::templates::EarlyDetectionParams;
 use morec::{MotionIndex, Take, Trainer};
 
-const SIGNALS: [&str; 7] = [
-    "traveling",
-    "illegal_dribble",
-    "visible_count",
-    "no_score",
-    "hands_up",
-    "pushing",
-    "stop_clock",
-];
-
 fn main() {
     let Some(data) = mocap::testing::data() else {
         return;
@@ -68,7 +58,10 @@ fn referee(data: &Path, params: EarlyDetectionParams) -> Counts {
         let others = signals.iter().filter(|take| take.name() != test.name());
         let others: Vec<Take> = others.cloned().collect();
         let trainer = Trainer::new().labels(&labels).background(&background);
-        let index = trainer.classes(SIGNALS).train(&others).unwrap();
+        let index = trainer
+            .classes(mocap::testing::SIGNALS)
+            .train(&others)
+            .unwrap();
         counts.clip(&index, test, &labels, params);
         for take in unknown.iter().filter(|_| number == 0) {
             counts.clip(&index, take, &Labels::default(), params);

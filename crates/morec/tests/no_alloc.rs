@@ -17,7 +17,6 @@ use morec::svrdm::SvrdmEngine;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use morec::live::{EventOptions, Frame, Performer, PerformerId, Recognizer, Rig};
-use morec::synth::{LimbSide, Person, Script};
 
 #[global_allocator]
 static ALLOCATOR: AllocDisabler = AllocDisabler;
@@ -38,11 +37,7 @@ fn pushing_takes_no_memory() {
         "the counter must count"
     );
 
-    let person = Person {
-        hand: LimbSide::Right,
-        ..Person::draw(89, 1)
-    };
-    let script = Script::new(89, person)
+    let script = made::right_handed(89, 1)
         .rest(0.5)
         .play("push")
         .rest(1.5)
@@ -131,11 +126,7 @@ fn events_take_no_memory(model: &Arc<morec::templates::TemplateModel>, poses: &[
 
 #[test]
 fn pose_rows_and_their_reduction_take_no_memory() {
-    let person = Person {
-        hand: LimbSide::Right,
-        ..Person::draw(89, 1)
-    };
-    let clip = Script::new(89, person)
+    let clip = made::right_handed(89, 1)
         .rest(0.5)
         .play("bow")
         .film("quiet", 60.0)
@@ -203,11 +194,7 @@ fn the_thesiss_method_from_frames_to_events_takes_no_memory() {
     let model = morec::index::MotionIndex::from_bytes(&std::fs::read(file).unwrap())
         .unwrap()
         .model;
-    let person = Person {
-        hand: LimbSide::Right,
-        ..Person::draw(90, 3)
-    };
-    let script = Script::new(90, person)
+    let script = made::right_handed(90, 3)
         .rest(1.0)
         .play("wave")
         .rest(0.8)

@@ -50,13 +50,8 @@ pub fn read(
         stated_hz: heading.rate_hz,
         assumed_hz: ASSUMED_HZ,
     };
-    let timed = TimedPoints {
-        points,
-        stamps: Stamps::none(numbers.len()).numbered(numbers),
-        clock,
-        metres_per_unit: None,
-    };
-    timed.into_loaded(name, warnings, limits)
+    let stamps = Stamps::none(numbers.len()).numbered(numbers);
+    TimedPoints::of_any_unit(points, stamps, clock).into_loaded(name, warnings, limits)
 }
 
 /// Everything above the frames.

@@ -47,7 +47,25 @@ pub struct FormatInput<'a> {
     pub limits: &'a Limits,
 }
 
-impl FormatInput<'_> {
+impl<'a> FormatInput<'a> {
+    /// A file of its own, with nothing beside it.
+    pub(super) fn alone(
+        bytes: &'a [u8],
+        name: &'a str,
+        rate_hz: Option<f64>,
+        limits: &'a Limits,
+    ) -> Self {
+        Self {
+            bytes,
+            name,
+            rate_hz,
+            positions: None,
+            planar: false,
+            beside: &|_| Err(io::ErrorKind::NotFound.into()),
+            limits,
+        }
+    }
+
     /// Its clips at the rate that replaces theirs.
     pub(super) fn at_rate(&self, mut loaded: Loaded) -> Loaded {
         for clip in &mut loaded.clips {

@@ -15,13 +15,7 @@ pub(super) const FORMAT: FormatDescriptor = FormatDescriptor {
 
 #[cfg(feature = "hdf5")]
 fn read(file: &FormatInput<'_>) -> Result<Loaded, ParseError> {
-    super::hdf5::read_as(
-        file.bytes,
-        file.name,
-        file.rate_hz,
-        file.limits,
-        file.planar,
-    )
+    super::hdf5::read_as(file)
 }
 
 #[cfg(not(feature = "hdf5"))]

@@ -115,7 +115,6 @@ pub fn read(
     rate_hz: Option<f64>,
     limits: &Limits,
 ) -> Result<Loaded, ParseError> {
-    let mut warnings = Vec::new();
     // Hands that have lines of their own are performers of their own, as live.
     let mut performers: BTreeMap<(u16, Option<Hand>), RecordedPerformer> = BTreeMap::new();
     let limits = &json::limits_beside(bytes, limits)?;
@@ -156,6 +155,7 @@ pub fn read(
         let expected = "lines of JSON with \"positions\", \"points\" or \"rotations\"";
         return Err(ParseError::new(Place::Line(line), expected, found));
     }
+    let mut warnings = Vec::new();
     if let Some((line, why)) = broken.first() {
         let text = format!(
             "{} lines without a pose left out; the first: {why}",

@@ -146,13 +146,7 @@ pub fn read(
         stated_hz: rate_in(&document, children(&document)),
         assumed_hz: ASSUMED_HZ,
     };
-    let timed = TimedPoints {
-        points,
-        stamps,
-        clock,
-        metres_per_unit: None,
-    };
-    timed.into_loaded(name, warnings, limits)
+    TimedPoints::of_any_unit(points, stamps, clock).into_loaded(name, warnings, limits)
 }
 
 /// The points of hands whose sides a frame says.

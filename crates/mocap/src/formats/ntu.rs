@@ -21,7 +21,7 @@ pub(super) const FORMAT: FormatDescriptor = FormatDescriptor {
 };
 
 /// In the order of `JointType` of the Kinect for Windows SDK 2.0.
-const JOINTS: [&str; 25] = [
+pub(crate) const JOINTS: [&str; 25] = [
     "SpineBase",
     "SpineMid",
     "Neck",

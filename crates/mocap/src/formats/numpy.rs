@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 
 use super::builder::{self, ClipBuilder};
-use super::descriptor::FormatDescriptor;
+use super::descriptor::{FormatDescriptor, FormatInput};
 use super::npy::{self, Array};
 use super::points::{BODY_OF_THESE, IN_A_PICTURE, Point, UNSEEN, WITH_HANDS_AND_FACE, check_size};
 use super::timing::{Clock, Stamps, TimedPoints};
@@ -24,13 +24,7 @@ pub(super) const FORMAT: FormatDescriptor = FormatDescriptor {
     looks_so: |h| h.bytes.starts_with(b"\x93NUMPY"),
     up: None,
     read: |file| {
-        let loaded = read_as(
-            file.bytes,
-            file.name,
-            file.rate_hz,
-            file.limits,
-            file.planar,
-        )?;
+        let loaded = read_as(file)?;
         Ok(file.at_rate(loaded))
     },
 };
@@ -83,18 +77,13 @@ pub fn read(
     rate_hz: Option<f64>,
     limits: &Limits,
 ) -> Result<Loaded, ParseError> {
-    read_as(bytes, name, rate_hz, limits, false)
+    read_as(&FormatInput::alone(bytes, name, rate_hz, limits))
 }
 
-fn read_as(
-    bytes: &[u8],
-    name: &str,
-    rate_hz: Option<f64>,
-    limits: &Limits,
-    planar: bool,
-) -> Result<Loaded, ParseError> {
+fn read_as(file: &FormatInput<'_>) -> Result<Loaded, ParseError> {
+    let bytes = file.bytes;
     let mut archive = ArrayArchive::default();
-    let mut limits = limits.of_packed(bytes.len());
+    let mut limits = file.limits.of_packed(bytes.len());
     if bytes.starts_with(b"PK") {
         let wanted = |path: &str| {
             let key = key_of(path);
@@ -104,29 +93,27 @@ fn read_as(
             limits = limits.without(member.bytes.len())?;
             archive.add(key_of(&member.path), &member.bytes, &mut limits)?;
         }
-        if let Some(loaded) = skeleton(&archive, name, rate_hz, bytes.len(), &limits)? {
+        if let Some(loaded) = skeleton(&archive, file, &limits)? {
             return Ok(loaded);
         }
     } else {
         archive.add(POSITION, bytes, &mut limits)?;
     }
-    of_arrays(&archive, bytes.len(), name, rate_hz, &limits, planar)
+    of_arrays(&archive, file, &limits)
 }
 
-/// Reads arrays that are at hand, of a file of `bytes` bytes; as [`read`].
+/// Reads arrays that are at hand, those of `file`; as [`read`].
 pub(super) fn of_arrays(
     archive: &ArrayArchive,
-    bytes: usize,
-    name: &str,
-    rate_hz: Option<f64>,
+    file: &FormatInput<'_>,
     limits: &Limits,
-    planar: bool,
 ) -> Result<Loaded, ParseError> {
     let array = archive
         .first(POSITIONS)
         .ok_or_else(|| ParseError::new(Place::File, "an array of positions", "none"))?;
-    let shape = PointArray::of(array, planar)?;
-    check_size(shape.points * shape.people, shape.frames, bytes, limits)?;
+    let shape = PointArray::of(array, file.planar)?;
+    let points = shape.points * shape.people;
+    check_size(points, shape.frames, file.bytes.len(), limits)?;
     if shape.frames > limits.frames {
         let expected = format!("at most {} frames", limits.frames);
         return Err(ParseError::new(
@@ -142,7 +129,7 @@ pub(super) fn of_arrays(
         .first(RATE)
         .and_then(|rate| rate.values.first().copied());
     let clock = Clock {
-        given_hz: rate_hz,
+        given_hz: file.rate_hz,
         stated_hz: stated,
         assumed_hz: ASSUMED_HZ,
     };
@@ -153,13 +140,7 @@ pub(super) fn of_arrays(
         Some(times) => Stamps::of_values(times.values.iter().copied().map(Some).collect(), None),
         None => Stamps::none(shape.frames),
     };
-    let timed = TimedPoints {
-        points,
-        stamps,
-        clock,
-        metres_per_unit: None,
-    };
-    timed.into_loaded(name, warnings, limits)
+    TimedPoints::of_any_unit(points, stamps, clock).into_loaded(file.name, warnings, limits)
 }
 
 /// Arrays found in an archive.
@@ -308,9 +289,7 @@ const SKELETON: [&str; 3] = ["rotations", "local_positions", "parents"];
 /// The skeleton of an archive that morec wrote; `None` of others, and of a clip of points.
 fn skeleton(
     archive: &ArrayArchive,
-    name: &str,
-    rate_hz: Option<f64>,
-    bytes: usize,
+    file: &FormatInput<'_>,
     limits: &Limits,
 ) -> Result<Option<Loaded>, ParseError> {
     let numbers = |key: &str| archive.numbers.get(key);
@@ -339,7 +318,7 @@ fn skeleton(
             .map_or_else(Vec3::zeros, Vec3::from_column_slice),
         tip: None,
     };
-    builder::check_size(frames, joints, 0, bytes, limits)?;
+    builder::check_size(frames, joints, 0, file.bytes.len(), limits)?;
     let mut builder = ClipBuilder::new((0..joints).map(joint).collect());
     let rows = rotations.values.chunks_exact(4 * joints);
     for (rotations, places) in rows.zip(places.values.chunks_exact(3 * joints)) {
@@ -358,8 +337,8 @@ fn skeleton(
         .first(RATE)
         .and_then(|rate| rate.values.first().copied());
     let usable = |rate: &f64| (1e-3..=1e5).contains(rate);
-    let rate_hz = rate_hz.or(stated.filter(usable)).unwrap_or(ASSUMED_HZ);
-    let clip = builder.finish(name.to_owned(), rate_hz)?;
+    let rate_hz = file.rate_hz.or(stated.filter(usable)).unwrap_or(ASSUMED_HZ);
+    let clip = builder.finish(file.name.to_owned(), rate_hz)?;
     Ok(Some(Loaded {
         clips: vec![clip],
         warnings: Vec::new(),

@@ -5,6 +5,7 @@ mod point;
 
 pub(super) use self::point::{Point, SHORT_GAP_SECS, UNSEEN};
 
+use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 
 use self::gaps::{Filled, union};
@@ -409,6 +410,15 @@ pub(super) fn check_size(
     let expected = format!("at most {most} positions in {bytes} bytes");
     let found = format!("{points} points in {frames} frames");
     Err(ParseError::new(Place::File, expected, found))
+}
+
+/// The clip as one of points, or where its joints are in the world.
+pub(super) fn as_points(clip: &Clip) -> Cow<'_, Clip> {
+    if clip.has_rotations() {
+        Cow::Owned(clip.to_points(None))
+    } else {
+        Cow::Borrowed(clip)
+    }
 }
 
 /// The name of a clip's unit in files of points, and the factor from the clip's unit to it: 1, unless only millimetres

@@ -105,6 +105,16 @@ pub(super) struct TimedPoints {
 }
 
 impl TimedPoints {
+    /// Points whose unit of length the file does not say.
+    pub(super) fn of_any_unit(points: Vec<Point>, stamps: Stamps, clock: Clock) -> Self {
+        Self {
+            points,
+            stamps,
+            clock,
+            metres_per_unit: None,
+        }
+    }
+
     /// Clips of the points at the rate that times and clock say; a point at the origin was not seen. As
     /// [`PointTable::into_loaded`].
     ///

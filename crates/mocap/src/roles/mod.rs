@@ -17,7 +17,7 @@ mod tree;
 mod trunk;
 mod words;
 
-pub use crate::role::{ARMS, LEGS, Role, RoleMap};
+pub use crate::role::{ARMS, BODY_LINES, LEGS, Role, RoleMap};
 pub use check::check;
 #[cfg(feature = "formats")]
 pub(crate) use check::check_named;

@@ -19,21 +19,13 @@ pub struct Errors {
 
 impl Errors {
     pub(super) fn as_array(&self) -> [f64; 6] {
-        let Self {
-            max_angle_rad,
-            mean_angle_rad,
-            max_position_metres,
-            mean_position_metres,
-            max_joint_position_metres,
-            mean_joint_position_metres,
-        } = *self;
         [
-            max_angle_rad,
-            mean_angle_rad,
-            max_position_metres,
-            mean_position_metres,
-            max_joint_position_metres,
-            mean_joint_position_metres,
+            self.max_angle_rad,
+            self.mean_angle_rad,
+            self.max_position_metres,
+            self.mean_position_metres,
+            self.max_joint_position_metres,
+            self.mean_joint_position_metres,
         ]
     }
 

@@ -12,9 +12,9 @@ use morec::features::KeyPose;
 use morec::index::{MotionIndex, Provenance};
 use morec::live::Detection;
 use morec::roles::Role;
-use morec::synth::{LimbSide, Person, Script, SyntheticTake};
 use morec_capi::*;
 
+pub use crate::made::performance as take;
 use crate::made::{self, Timed};
 
 /// An index file's bytes, of the model of all gestures.
@@ -50,21 +50,6 @@ pub fn svrdm_index() -> Vec<u8> {
 fn committed(name: &str) -> Vec<u8> {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../morec/testdata/index");
     std::fs::read(PathBuf::from(folder).join(name)).unwrap()
-}
-
-/// A person who performs some gestures.
-pub fn take(rate_hz: f64) -> SyntheticTake {
-    let person = Person {
-        hand: LimbSide::Right,
-        ..Person::draw(90, 1)
-    };
-    let script = Script::new(90, person)
-        .rest(0.5)
-        .play("push")
-        .rest(1.5)
-        .play("bow")
-        .rest(0.8);
-    script.film("performance", rate_hz).unwrap()
 }
 
 /// The text of the last failure on this thread.

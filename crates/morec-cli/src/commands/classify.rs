@@ -80,19 +80,13 @@ fn classify_all(
     let mut progress = SlowProgress::new(paths.len(), "classifying");
     let (mut failed, mut none) = (false, Vec::new());
     for path in paths {
-        match classify_file(path, index, classifier, &options, args) {
-            Ok(clips) => {
-                for (clip, found) in clips {
-                    write_line(out, args.form, &clip, &index.model, &found)?;
-                    none.extend(found.class.is_none().then_some(clip));
-                }
-            }
-            Err(error) => {
-                failed = true;
-                progress.suspend(|| eprintln!("morec: {error:#}"));
-            }
+        let found = classify_file(path, index, classifier, &options, args);
+        let clips = progress.step_of(found);
+        failed |= clips.is_none();
+        for (clip, found) in clips.into_iter().flatten() {
+            write_line(out, args.form, &clip, &index.model, &found)?;
+            none.extend(found.class.is_none().then_some(clip));
         }
-        progress.step();
     }
     out.flush()?;
     drop(progress);

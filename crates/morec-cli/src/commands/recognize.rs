@@ -166,21 +166,17 @@ fn recognize_all(
     let mut progress = SlowProgress::new(paths.len(), "recognising");
     let recognizers = RecognizerCache::new(&index.model);
     for path in paths {
-        match recognize_file(path, index, &recognizers, options, args, &mut stats) {
-            Ok(found) => {
-                if found.is_empty() {
-                    without.push(path.display().to_string());
-                }
-                found
-                    .iter()
-                    .try_for_each(|f| write_found(out, args, f, index))?;
-            }
-            Err(error) => {
-                failed = true;
-                progress.suspend(|| eprintln!("morec: {error:#}"));
-            }
+        let found = recognize_file(path, index, &recognizers, options, args, &mut stats);
+        let Some(found) = progress.step_of(found) else {
+            failed = true;
+            continue;
+        };
+        if found.is_empty() {
+            without.push(path.display().to_string());
         }
-        progress.step();
+        found
+            .iter()
+            .try_for_each(|f| write_found(out, args, f, index))?;
     }
     out.flush()?;
     drop(progress);

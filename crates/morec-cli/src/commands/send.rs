@@ -155,6 +155,12 @@ trait Receiver {
     fn summary(&self) -> String;
 }
 
+/// What the network did to packets, for the report.
+fn on_purpose(network: &Network) -> String {
+    let (lost, overtaken) = (network.lost, network.overtaken);
+    format!("; lost {lost} and delayed {overtaken} of them on purpose")
+}
+
 struct ToVmc {
     socket: UdpSocket,
     to: std::net::SocketAddr,
@@ -201,13 +207,8 @@ impl Receiver for ToVmc {
     }
 
     fn summary(&self) -> String {
-        let Network {
-            lost, overtaken, ..
-        } = self.network;
-        format!(
-            " in {} packets; lost {lost} and delayed {overtaken} of them on purpose",
-            self.packets
-        )
+        let on_purpose = on_purpose(&self.network);
+        format!(" in {} packets{on_purpose}", self.packets)
     }
 }
 
@@ -253,9 +254,6 @@ impl Receiver for ToAxis {
     }
 
     fn summary(&self) -> String {
-        let Network {
-            lost, overtaken, ..
-        } = self.network;
-        format!("; lost {lost} and delayed {overtaken} of them on purpose")
+        on_purpose(&self.network)
     }
 }

@@ -6,16 +6,7 @@ use serde_json::Value;
 #[test]
 fn cut_clips_are_named_and_others_are_not() {
     let (folder, _) = studio(3);
-    let train = [
-        "train",
-        "--clips",
-        "clips",
-        "--labels",
-        "labels.tsv",
-        "-o",
-        "a.index",
-    ];
-    folder.morec(&train).ok();
+    folder.train("a.index", &[]).ok();
     let table = folder.morec(&["classify", "a.index", "clips"]).ok();
     let lines: Vec<&str> = table.lines().collect();
     assert!(

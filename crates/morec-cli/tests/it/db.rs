@@ -82,37 +82,18 @@ fn from_clips_to_labels_and_back() {
         );
     }
 
-    let over = folder.morec(&[
-        "db",
-        "label",
-        "m.mdb",
-        "--clip",
-        &takes[0].clip.name,
-        "--class",
-        "bow",
-        "--start",
-        "1",
-        "--stop",
-        "900",
-    ]);
+    let bow = |start: &str, stop: &str| {
+        let what = ["--clip", &takes[0].clip.name, "--class", "bow"];
+        let span = ["--start", start, "--stop", stop];
+        folder.morec(&[&["db", "label", "m.mdb"], &what[..], &span].concat())
+    };
+    let over = bow("1", "900");
     assert!(
         over.code == Some(0) && over.err.contains("cut there"),
         "{}",
         over.err
     );
-    let beyond = folder.morec(&[
-        "db",
-        "label",
-        "m.mdb",
-        "--clip",
-        &takes[0].clip.name,
-        "--class",
-        "bow",
-        "--start",
-        "900",
-        "--stop",
-        "901",
-    ]);
+    let beyond = bow("900", "901");
     assert!(
         beyond.out.contains("0 samples added") && beyond.err.contains("left out"),
         "{}",
@@ -135,47 +116,21 @@ fn from_clips_to_labels_and_back() {
         label.span.start_secs.to_string(),
         label.span.stop_secs.to_string(),
     );
-    let hits = db(&[
-        "search",
-        name,
-        "--start",
-        &start,
-        "--stop",
-        &stop,
-        "--limit",
-        "3",
-        "--report",
-        "hits.html",
-    ]);
+    let search = |example: &str, limit: &str, more: &[&str]| {
+        let span = ["--start", &start, "--stop", &stop, "--limit", limit];
+        db(&[&["search", example], &span[..], more].concat())
+    };
+    let hits = search(name, "3", &["--report", "hits.html"]);
     assert_eq!(hits["hits"].as_array().unwrap().len(), 3);
     assert_eq!(strips("hits.html"), 4, "the example and its hits");
-    let outside = db(&[
-        "search",
-        &format!("clips/{name}.bvh"),
-        "--start",
-        &start,
-        "--stop",
-        &stop,
-        "--limit",
-        "1",
-    ]);
+    let outside = search(&format!("clips/{name}.bvh"), "1", &[]);
     assert_eq!(
         outside["hits"][0]["clip"],
         Value::from(name.as_str()),
         "a file finds itself"
     );
 
-    let learned = db(&[
-        "search",
-        name,
-        "--start",
-        &start,
-        "--stop",
-        &stop,
-        "--limit",
-        "3",
-        "--learned",
-    ]);
+    let learned = search(name, "3", &["--learned"]);
     assert_eq!(
         (
             &learned["learned"]["classes"],

@@ -278,18 +278,7 @@ fn what_is_no_human_body_is_told() {
 #[test]
 fn recognise_is_recognize_and_names_files_in_which_nothing_is_found() {
     let (folder, takes) = crate::db::studio(2);
-    let train = [
-        "train",
-        "--clips",
-        "clips",
-        "--labels",
-        "labels.tsv",
-        "--everyday",
-        "never",
-        "-o",
-        "x.index",
-    ];
-    folder.morec(&train).ok();
+    folder.train("x.index", &["--everyday", "never"]).ok();
     // A clip of nothing but standing: the first frame of a take again and again.
     let mut clip = takes[0].clip.clone();
     let joints = clip.skeleton.len();
@@ -368,31 +357,18 @@ fn what_inspect_calls_an_error_is_said_wherever_the_clip_is_read() {
         inspected.contains("  error ") && inspected.contains(error),
         "{inspected}"
     );
-    let train = [
-        "train",
+    let teaching = [
         "--clips",
         "clips",
         "--labels",
         "labels.tsv",
         "--everyday",
         "never",
-        "-o",
-        "x.index",
     ];
     for args in [
-        &train[..],
+        &[&["train", "-o", "x.index"], &teaching[..]].concat()[..],
         &["recognize", "x.index", &clip],
-        &[
-            "crossval",
-            "--clips",
-            "clips",
-            "--labels",
-            "labels.tsv",
-            "--everyday",
-            "never",
-            "--by",
-            "half",
-        ],
+        &[&["crossval", "--by", "half"], &teaching[..]].concat(),
         &["cut", &clip],
         &["play", &clip, "-o", "clip.html"],
         &["db", "import", "m.mdb", "clips"],

@@ -45,6 +45,18 @@ impl Folder {
         self.morec_fed(args, None)
     }
 
+    /// Trains `index` from this folder's clips and labels.
+    pub fn train(&self, index: &str, more: &[&str]) -> Ran {
+        let args = ["train", "--clips", "clips", "--labels", "labels.tsv", "-o"];
+        self.morec(&[&args[..], &[index], more].concat())
+    }
+
+    /// `morec db check` finds no fault in a database.
+    pub fn is_whole(&self, db: &str) {
+        let said = self.morec(&["db", "check", db]).ok();
+        assert!(said.contains("whole"), "{said}");
+    }
+
     /// Runs `morec` with a file of this folder as its standard input.
     pub fn morec_fed(&self, args: &[&str], input: Option<&str>) -> Ran {
         let stdin = match input {

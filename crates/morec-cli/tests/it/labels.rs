@@ -131,12 +131,7 @@ fn changes_of_every_kind_are_taken_back_by_number() {
     assert_eq!((&info["segments"], &info["clips"]), (&0.into(), &2.into()));
     assert_eq!(json(&folder, &["db", "classes", "m.mdb"]), classes);
     folder.morec(&["db", "redo", "m.mdb", &number]).ok();
-    assert!(
-        folder
-            .morec(&["db", "check", "m.mdb"])
-            .ok()
-            .contains("whole")
-    );
+    folder.is_whole("m.mdb");
 }
 
 #[test]
@@ -503,26 +498,16 @@ fn labels_that_count_otherwise_are_read_wherever_labels_are() {
             "--labels",
             labels,
         ];
-        folder.morec(&[&args[..], more].concat()).ok()
+        folder.morec(&[&args[..], more].concat())
     };
-    let plain = evaluate("plain.tsv", &[]);
+    let evaluated = |labels: &str, more: &[&str]| evaluate(labels, more).ok();
+    let plain = evaluated("plain.tsv", &[]);
     assert!(plain.contains("1 of 1"), "{plain}");
-    assert_eq!(evaluate("late.tsv", &["--offset", "-2.5"]), plain);
-    assert_eq!(evaluate("video.tsv", &["--label-rate", "25"]), plain);
+    assert_eq!(evaluated("late.tsv", &["--offset", "-2.5"]), plain);
+    assert_eq!(evaluated("video.tsv", &["--label-rate", "25"]), plain);
     let grid = format!("{clip}.TextGrid");
-    assert_eq!(evaluate(&grid, &["--tier", "hand"]), plain);
-    assert_ne!(evaluate(&grid, &[]), plain);
-    let args = [
-        "evaluate",
-        "--found",
-        "found.tsv",
-        "--clips",
-        "clips",
-        "--labels",
-        "video.tsv",
-        "--offset",
-        "1",
-    ];
-    let refused = folder.morec(&args).fails();
+    assert_eq!(evaluated(&grid, &["--tier", "hand"]), plain);
+    assert_ne!(evaluated(&grid, &[]), plain);
+    let refused = evaluate("video.tsv", &["--offset", "1"]).fails();
     assert!(refused.contains("--label-rate"), "{refused}");
 }

@@ -308,8 +308,7 @@ fn a_clip_ends_by_itself_and_what_cannot_be_opened_says_why() {
 #[cfg(unix)]
 fn a_motion_runs_the_command_of_its_class_and_no_shell() {
     let (folder, takes) = crate::db::studio(3);
-    let train = ["train", "--clips", "clips", "--labels", "labels.tsv", "-o"];
-    folder.morec(&[&train[..], &["i.index"]].concat()).ok();
+    folder.train("i.index", &[]).ok();
     let listen = format!("clip://clips/{}.bvh?speed=0", takes[0].clip.name);
     let live = ["live", "i.index", "--listen", &listen];
     let events = folder.morec(&[&live[..], &["--emit", "json:-"]].concat());
@@ -348,8 +347,7 @@ fn a_motion_runs_the_command_of_its_class_and_no_shell() {
 #[test]
 fn progress_is_lines_of_every_class_and_no_lines_in_the_terminal() {
     let (folder, takes) = crate::db::studio(3);
-    let train = ["train", "--clips", "clips", "--labels", "labels.tsv", "-o"];
-    folder.morec(&[&train[..], &["i.index"]].concat()).ok();
+    folder.train("i.index", &[]).ok();
     let listen = format!("clip://clips/{}.bvh?speed=0", takes[0].clip.name);
     let live = ["live", "i.index", "--listen", &listen];
     let plain = folder.morec(&live).ok();
@@ -377,8 +375,7 @@ fn progress_is_lines_of_every_class_and_no_lines_in_the_terminal() {
 #[cfg(target_os = "linux")]
 fn a_record_that_lacks_events_ends_with_a_code() {
     let (folder, takes) = crate::db::studio(3);
-    let train = ["train", "--clips", "clips", "--labels", "labels.tsv", "-o"];
-    folder.morec(&[&train[..], &["i.index"]].concat()).ok();
+    folder.train("i.index", &[]).ok();
     let listen = format!("clip://clips/{}.bvh?speed=0", takes[0].clip.name);
     let live = |emit| folder.morec(&["live", "i.index", "--listen", &listen, "--emit", emit]);
     let whole = live("json:events.jsonl");

@@ -140,16 +140,7 @@ fn two_mice_teach_what_a_third_does_and_no_height_is_asked_for() {
     let inspected = folder.morec(&[&["inspect", "new/mouse_3.csv"], &read[..]].concat());
     let said = inspected.ok();
     assert!(!said.contains("human"), "{said}");
-    let train = [
-        "train",
-        "--clips",
-        "clips",
-        "--labels",
-        "labels.tsv",
-        "-o",
-        "mouse.index",
-    ];
-    folder.morec(&[&train[..], &read[..]].concat()).ok();
+    folder.train("mouse.index", &read).ok();
     let found = folder.morec(&[&["recognize", "mouse.index", "new"], &read[2..]].concat());
     let found = found.ok();
     std::fs::write(folder.path().join("found.tsv"), &found).unwrap();

@@ -48,7 +48,7 @@ fn inputs_are_no_outputs() {
     spares(&folder, &clip, &plot);
     spares(&folder, &clip, &["smooth", &clip, "-o", &clip]);
 
-    folder.morec(&[&train[..], &["i.index"]].concat()).ok();
+    folder.train("i.index", &[]).ok();
     spares(
         &folder,
         &clip,
@@ -59,12 +59,7 @@ fn inputs_are_no_outputs() {
     // By another name of the same file, too.
     std::fs::hard_link(folder.path().join("m.mdb"), folder.path().join("link")).unwrap();
     spares(&folder, "m.mdb", &["db", "report", "m.mdb", "-o", "link"]);
-    assert!(
-        folder
-            .morec(&["db", "check", "m.mdb"])
-            .ok()
-            .contains("whole")
-    );
+    folder.is_whole("m.mdb");
 }
 
 #[test]

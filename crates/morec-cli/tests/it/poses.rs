@@ -171,7 +171,7 @@ fn a_database_is_cut_as_its_clips_are() {
 #[test]
 fn samples_are_grouped_and_held_against_their_classes() {
     let folder = folder();
-    let group = |more: &[&str]| {
+    let text = |more: &[&str]| {
         let common = [
             "group",
             "--clips",
@@ -180,12 +180,12 @@ fn samples_are_grouped_and_held_against_their_classes() {
             "kwas",
             "--pivots",
             "roles",
-            "--json",
             "--labels",
             "labels.tsv",
         ];
-        json(&folder.morec(&[&common, more].concat()).ok())
+        folder.morec(&[&common, more].concat()).ok()
     };
+    let group = |more: &[&str]| json(&text(&[more, &["--json"]].concat()));
     let samples = |found: &Value| {
         found["clusters"]
             .as_array()
@@ -218,21 +218,7 @@ fn samples_are_grouped_and_held_against_their_classes() {
         samples(&group(&["--classes", "bow", "--normalised"])),
         2usize
     );
-    let text = folder
-        .morec(&[
-            "group",
-            "--clips",
-            "clips",
-            "--method",
-            "kwas",
-            "--pivots",
-            "roles",
-            "--labels",
-            "labels.tsv",
-            "--tau",
-            "0",
-        ])
-        .ok();
+    let text = text(&["--tau", "0"]);
     assert!(
         text.contains("6 samples in 1 cluster;") && text.contains("bow 2, wave 4"),
         "{text}"

@@ -36,6 +36,13 @@ fn clip(folder: &Folder, path: &str) -> morec::clip::Clip {
         .remove(0)
 }
 
+/// Between rotations of the same joints in the same frames, radians.
+fn largest_angle(before: &morec::clip::Clip, after: &morec::clip::Clip) -> f64 {
+    assert_eq!(after.frames, before.frames);
+    let pairs = before.rotations.iter().zip(&after.rotations);
+    pairs.map(|(a, b)| a.angle_to(b)).fold(0.0, f64::max)
+}
+
 fn json(text: &str) -> serde_json::Value {
     serde_json::from_str(text).unwrap()
 }
@@ -57,13 +64,7 @@ fn a_smoothed_clip_is_within_the_thresholds_that_are_printed() {
     let printed = json(&folder.morec(&args).ok());
     let errors = &printed[0]["clips"][0]["errors"];
     let (before, after) = (clip(&folder, "clips/0.bvh"), clip(&folder, "out.bvh"));
-    assert_eq!(after.frames, before.frames);
-    let angles = before
-        .rotations
-        .iter()
-        .zip(&after.rotations)
-        .map(|(a, b)| a.angle_to(b));
-    let most = angles.fold(0.0, f64::max);
+    let most = largest_angle(&before, &after);
     let stated = errors["max_angle_rad"].as_f64().unwrap();
     assert!(
         (most - stated).abs() < 1e-5 && stated <= 1f64.to_radians(),
@@ -102,13 +103,7 @@ fn the_stored_form_is_read_like_any_clip() {
         clip(&folder, "clips/0.bvh").resampled(60.0).unwrap(),
         clip(&folder, "again.bvh"),
     );
-    assert_eq!(after.frames, before.frames);
-    let angles = before
-        .rotations
-        .iter()
-        .zip(&after.rotations)
-        .map(|(a, b)| a.angle_to(b));
-    assert!(angles.fold(0.0, f64::max) < 0.6f64.to_radians());
+    assert!(largest_angle(&before, &after) < 0.6f64.to_radians());
 }
 
 #[test]

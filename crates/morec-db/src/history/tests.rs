@@ -3,7 +3,7 @@
 use morec::TimeSpan;
 use rusqlite::Connection;
 
-use crate::labels::{NewSample, SampleFilter, SampleState};
+use crate::labels::{NewSample, SampleFilter};
 use crate::testing::{database_of_waves, waves, write_bvh};
 use crate::{
     APPLICATION_ID, ClipFilter, ClipId, ClipUpdate, DbError, MotionDb, SCHEMA, Segment, SegmentKind,
@@ -34,15 +34,7 @@ fn dump(db: &MotionDb) -> Vec<String> {
 }
 
 fn sample(clip: i64, class: &str, start: f64) -> NewSample {
-    NewSample {
-        clip: ClipId(clip),
-        class: class.to_owned(),
-        start_secs: start,
-        stop_secs: start + 0.5,
-        whole_clip: false,
-        state: SampleState::Accepted,
-        score: None,
-    }
+    NewSample::accepted(ClipId(clip), class, TimeSpan::new(start, start + 0.5))
 }
 
 /// A change of each kind, one after the other.

@@ -84,6 +84,21 @@ pub struct NewSample {
     pub score: Option<f64>,
 }
 
+impl NewSample {
+    /// An accepted sample of part of a clip, without a score.
+    pub fn accepted(clip: ClipId, class: &str, span: TimeSpan) -> Self {
+        Self {
+            clip,
+            class: class.to_owned(),
+            start_secs: span.start_secs,
+            stop_secs: span.stop_secs,
+            whole_clip: false,
+            state: SampleState::Accepted,
+            score: None,
+        }
+    }
+}
+
 impl From<&DbSample> for NewSample {
     fn from(sample: &DbSample) -> Self {
         Self {

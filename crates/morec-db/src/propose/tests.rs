@@ -16,18 +16,6 @@ fn ids(db: &MotionDb, takes: &[SyntheticTake]) -> Vec<ClipId> {
         .collect()
 }
 
-fn sample(clip: ClipId, class: &str, span: TimeSpan) -> NewSample {
-    NewSample {
-        clip,
-        class: class.to_owned(),
-        start_secs: span.start_secs,
-        stop_secs: span.stop_secs,
-        whole_clip: false,
-        state: SampleState::Accepted,
-        score: None,
-    }
-}
-
 /// The label at half overlap with a proposal, as its take and place there.
 fn under(takes: &[SyntheticTake], ids: &[ClipId], p: &Proposal) -> Option<(usize, usize)> {
     let take = ids.iter().position(|id| *id == p.clip)?;
@@ -41,7 +29,7 @@ fn first_labels(takes: &[SyntheticTake], ids: &[ClipId]) -> Vec<NewSample> {
     takes[0]
         .labels
         .iter()
-        .map(|l| sample(ids[0], l.class, l.span))
+        .map(|l| NewSample::accepted(ids[0], l.class, l.span))
         .collect()
 }
 
@@ -124,7 +112,7 @@ fn answers_lead_to_every_sample() {
             .position(|l| l.class == class)
             .unwrap();
         let label = &takes[0].labels[at];
-        db.add_samples(&[sample(ids[0], class, label.span)], "test")
+        db.add_samples(&[NewSample::accepted(ids[0], class, label.span)], "test")
             .unwrap();
         found.insert((0, at));
     }
@@ -173,7 +161,7 @@ fn classes_of_whole_clips_propose_whole_clips() {
     let secs = |at: usize| takes[at].clip.duration_secs();
     let whole = |at: usize| NewSample {
         whole_clip: true,
-        ..sample(ids[at], "take", TimeSpan::new(0.0, secs(at)))
+        ..NewSample::accepted(ids[at], "take", TimeSpan::new(0.0, secs(at)))
     };
     db.add_samples(&[whole(0)], "test").unwrap();
     let proposals = db.propose(&ProposeOptions::default(), &()).unwrap();
@@ -254,8 +242,8 @@ fn an_activity_is_proposed_as_the_whole_stretch_that_is_repeated() {
     let taught = waved(&takes[0]);
     let bow = &takes[0].labels[0];
     let first = [
-        sample(ids[0], "wave", taught),
-        sample(ids[0], "bow", bow.span),
+        NewSample::accepted(ids[0], "wave", taught),
+        NewSample::accepted(ids[0], "bow", bow.span),
     ];
     db.add_samples(&first, "test").unwrap();
     let proposals = db.propose(&ProposeOptions::default(), &()).unwrap();

@@ -4,7 +4,7 @@ use morec::features::{FeatureParams, Rows};
 
 use super::layout::{DIM, mirrored, to_canonical};
 use super::*;
-use crate::labels::{NewSample, SampleFilter, SampleState};
+use crate::labels::{NewSample, SampleFilter};
 use crate::rows::ClipRows;
 use morec::files::FileReader;
 
@@ -113,15 +113,11 @@ fn label(db: &mut crate::MotionDb, takes: &[morec::synth::SyntheticTake]) {
     let mut samples = Vec::new();
     for take in takes {
         let clip = db.find_clip(&take.clip.name).unwrap().id;
-        samples.extend(take.labels.iter().map(|l| NewSample {
-            clip,
-            class: l.class.to_owned(),
-            start_secs: l.span.start_secs,
-            stop_secs: l.span.stop_secs,
-            whole_clip: false,
-            state: SampleState::Accepted,
-            score: None,
-        }));
+        samples.extend(
+            take.labels
+                .iter()
+                .map(|l| NewSample::accepted(clip, l.class, l.span)),
+        );
     }
     db.add_samples(&samples, "test").unwrap();
 }

@@ -27,6 +27,23 @@ pub(super) fn secs(value: Option<f64>, signed: bool) -> String {
     }
 }
 
+/// Writes `rows` by `push`; those after the first `shown` unfold.
+pub(super) fn unfolding<T>(
+    out: &mut String,
+    rows: &[T],
+    shown: usize,
+    push: impl Fn(&mut String, &[T]),
+) {
+    let (first, rest) = rows.split_at(rows.len().min(shown));
+    push(out, first);
+    if !rest.is_empty() {
+        let summary = format!("<details><summary>{} more</summary>\n", rest.len());
+        out.push_str(&summary);
+        push(out, rest);
+        out.push_str("</details>\n");
+    }
+}
+
 /// `body` behind a table of its sections, which are named by `<h2>`; `motion`: one that follows it has the clips.
 pub(super) fn with_contents(body: &str, motion: bool) -> String {
     let mut sections = body.split("<h2>");

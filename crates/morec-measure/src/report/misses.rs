@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::html::Text;
+use super::html::{Text, unfolding};
 use crate::explain::Miss;
 
 /// Rows that are shown at once; the others unfold.
@@ -28,16 +28,7 @@ pub(super) fn push(out: &mut String, misses: &[Miss]) {
         misses.len(),
         counted.join(", ")
     ));
-    let (first, rest) = misses.split_at(misses.len().min(SHOWN));
-    push_table(out, first);
-    if !rest.is_empty() {
-        out.push_str(&format!(
-            "<details><summary>{} more</summary>\n",
-            rest.len()
-        ));
-        push_table(out, rest);
-        out.push_str("</details>\n");
-    }
+    unfolding(out, misses, SHOWN, push_table);
 }
 
 fn push_table(out: &mut String, misses: &[Miss]) {

@@ -1,6 +1,6 @@
 //! How well motions were performed: the angle from the nearest sample over time, and the bones that differ most.
 
-use super::html::Text;
+use super::html::{Text, unfolding};
 use crate::explain::{BoneDeviation, Performance};
 use crate::plot::Chart;
 
@@ -30,16 +30,7 @@ pub(super) fn push(out: &mut String, performances: &[Performance]) {
     for performance in sorted.iter().take(DRAWN) {
         push_figure(out, performance);
     }
-    let (first, rest) = sorted.split_at(sorted.len().min(SHOWN));
-    push_table(out, first);
-    if !rest.is_empty() {
-        out.push_str(&format!(
-            "<details><summary>{} more</summary>\n",
-            rest.len()
-        ));
-        push_table(out, rest);
-        out.push_str("</details>\n");
-    }
+    unfolding(out, &sorted, SHOWN, push_table);
 }
 
 /// A bone's name in words.

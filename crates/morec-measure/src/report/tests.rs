@@ -1,27 +1,16 @@
 //! Properties that a reader of the report may rely on.
 
 use super::*;
-use crate::eval::timelines;
+use crate::eval::tests::truth;
+use crate::eval::{self, timelines};
 use crate::explain::{BoneDeviation, MotionDeviation, Reason};
 use morec::TimeSpan;
 use morec::labels::{ClipDetection, GroundTruth, StreamInfo};
 
-fn truth(clip: &str, class: &str, start_secs: f64, stop_secs: f64) -> GroundTruth {
-    GroundTruth {
-        clip: clip.into(),
-        class: class.into(),
-        span: TimeSpan::new(start_secs, stop_secs),
-    }
-}
-
 fn found(clip: &str, class: &str, start_secs: f64, stop_secs: f64) -> ClipDetection {
     ClipDetection {
-        clip: clip.into(),
-        class: class.into(),
-        span: TimeSpan::new(start_secs, stop_secs),
         score: Some(0.5),
-        reported_secs: None,
-        repetitions: None,
+        ..eval::tests::found(clip, class, start_secs, stop_secs)
     }
 }
 

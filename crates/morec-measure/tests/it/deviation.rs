@@ -10,7 +10,6 @@ use morec::live::{
 };
 use morec::math::{Quat, Vec3};
 use morec::roles::{Role, RoleMap};
-use morec::synth::{LimbSide, Person, Script};
 use morec::templates::TemplateModel;
 use morec_measure::explain::deviation;
 
@@ -57,16 +56,7 @@ fn worse(poses: &[Timed], degrees: f64) -> Vec<Timed> {
 #[test]
 fn a_gesture_that_ends_is_as_far_off_as_the_clip_says_later() {
     let model = made::model();
-    let person = Person {
-        hand: LimbSide::Right,
-        ..Person::draw(90, 1)
-    };
-    let script = Script::new(90, person)
-        .rest(0.5)
-        .play("push")
-        .rest(1.5)
-        .play("bow");
-    let take = script.rest(0.8).film("session", 60.0).unwrap();
+    let take = made::performance(60.0);
     let (_, poses) = made::poses(&take);
     assert!(
         played(&model, &poses, EventOptions::default())

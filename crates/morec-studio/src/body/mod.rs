@@ -11,7 +11,7 @@ use morec::clip::Clip;
 use morec::features::{ALL_BONES, BoneSet, Hand, Profile};
 use morec::kinematics::WorldPose;
 use morec::math::Vec3;
-use morec::roles::{Role, RoleMap};
+use morec::roles::{BODY_LINES, Role, RoleMap};
 
 pub use aligned::Aligned;
 pub use camera::Camera;
@@ -48,29 +48,6 @@ pub struct Body {
     pub is_hand: bool,
 }
 
-/// Bones between roles, for skeletons whose joints do not hang together (clips of points, streams of roles).
-const ROLE_BONES: [(Role, Role); 16] = {
-    use Role::*;
-    [
-        (Hips, LeftThigh),
-        (LeftThigh, LeftShin),
-        (LeftShin, LeftFoot),
-        (Hips, RightThigh),
-        (RightThigh, RightShin),
-        (RightShin, RightFoot),
-        (Hips, Torso),
-        (Torso, Neck),
-        (Hips, Neck),
-        (Neck, Head),
-        (Neck, LeftArm),
-        (LeftArm, LeftForearm),
-        (LeftForearm, LeftHand),
-        (Neck, RightArm),
-        (RightArm, RightForearm),
-        (RightForearm, RightHand),
-    ]
-};
-
 impl Body {
     /// The body of a clip, measured in frame `frame`.
     pub fn of(clip: &Clip, roles: &RoleMap, frame: usize) -> Self {
@@ -97,16 +74,17 @@ impl Body {
             });
         };
         if flat {
-            let bones = ROLE_BONES.iter().filter(|(from, to)| {
-                let chest = roles.joint(Role::Torso).is_some();
+            let chest = roles.joint(Role::Torso);
+            let bones = BODY_LINES.into_iter().map(|line| match (line, chest) {
                 // The trunk goes by the chest if there is one.
-                !(chest && (*from, *to) == (Role::Hips, Role::Neck))
+                ((Role::Hips, Role::Neck), Some(_)) => (Role::Torso, Role::Neck),
+                _ => line,
             });
             let is_known = |role: Role| roles.joint(role).is_some();
             let hands = Hand::BOTH.into_iter().flat_map(|hand| hand.lines(is_known));
             let custom = BoneSet::CUSTOM.indices().map(|bone| ALL_BONES[bone]);
             let custom = custom.map(|bone| (bone.from, bone.to));
-            for (from, to) in bones.copied().chain(hands).chain(custom) {
+            for (from, to) in bones.chain(hands).chain(custom) {
                 if let (Some(from), Some(to)) = (roles.joint(from), roles.joint(to)) {
                     add(from, to);
                 }

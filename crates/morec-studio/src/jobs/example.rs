@@ -6,7 +6,7 @@ use morec::files::FileReader;
 use morec::formats::bvh;
 use morec::progress::Progress;
 use morec::synth::{DatabaseSpec, SyntheticTake, database};
-use morec_db::labels::{NewSample, SampleState};
+use morec_db::labels::NewSample;
 use morec_db::{ClipUpdate, MotionDb};
 
 use super::import::ImportSummary;
@@ -83,15 +83,11 @@ fn describe(db: &mut MotionDb, takes: &[SyntheticTake]) -> Result<(), morec_db::
         };
         db.update_clips(&[clip], &update)?;
         if number + 1 < takes.len() {
-            labels.extend(take.labels.iter().map(|label| NewSample {
-                clip,
-                class: label.class.to_owned(),
-                start_secs: label.span.start_secs,
-                stop_secs: label.span.stop_secs,
-                whole_clip: false,
-                state: SampleState::Accepted,
-                score: None,
-            }));
+            labels.extend(
+                take.labels
+                    .iter()
+                    .map(|label| NewSample::accepted(clip, label.class, label.span)),
+            );
         }
     }
     db.add_samples(&labels, BY)?;

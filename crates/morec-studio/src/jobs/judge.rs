@@ -6,7 +6,7 @@ use std::path::Path;
 use morec::TimeSpan;
 use morec::labels::{ClipDetection, GroundTruth, Sample};
 use morec::train::TrainClip;
-use morec_measure::crossval::{CrossvalData, Tested};
+use morec_measure::crossval::Tested;
 use morec_measure::eval::{
     DetectionVerdict, EvalError, Evaluation, GroundTruthVerdict, Timeline, timelines,
 };
@@ -16,7 +16,7 @@ use morec_ops::{
 };
 
 use super::progress::{JobError, JobProgress};
-use super::train::material;
+use super::train::{material, tested};
 
 /// Result of a cross-validation.
 pub struct CrossvalResult {
@@ -165,18 +165,11 @@ pub fn judge(
 ) -> Result<Box<CrossvalResult>, JobError> {
     let judged = || -> Result<_, OperationError> {
         let data = material(path, &train.classes)?;
-        let tested = CrossvalData {
-            clips: &data.clips,
-            samples: &data.samples,
-            classes: &data.classes,
-            unknown: &[],
-            tests: None,
-        };
         let how = CrossvalSettings {
             by,
             ..CrossvalSettings::default()
         };
-        let tested = how.crossval(&tested, train, progress)?.tested;
+        let tested = how.crossval(&tested(&data), train, progress)?.tested;
         let untested = untested(by, &data.clips, &data.samples);
         let unlearned = Unlearned::of_folds(how.fold_by(), &data.clips, &data.samples);
         let tested = without(tested, &untested);

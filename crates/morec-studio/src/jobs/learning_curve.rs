@@ -2,11 +2,10 @@
 
 use std::path::Path;
 
-use morec_measure::crossval::CrossvalData;
 use morec_ops::{CrossvalSettings, LearningCurve, OperationError, TrainSettings};
 
 use super::progress::{JobError, JobProgress};
-use super::train::material;
+use super::train::{material, tested};
 
 /// Cross-validates the database at `path` with ever more samples and people.
 pub fn learn(
@@ -17,14 +16,7 @@ pub fn learn(
 ) -> Result<LearningCurve, JobError> {
     let curve = || -> Result<_, OperationError> {
         let data = material(path, &train.classes)?;
-        let tested = CrossvalData {
-            clips: &data.clips,
-            samples: &data.samples,
-            classes: &data.classes,
-            unknown: &[],
-            tests: None,
-        };
-        how.learning_curve(&tested, train, progress)
+        how.learning_curve(&tested(&data), train, progress)
     };
     curve().map_err(|error| JobError::of("No learning curve", error))
 }

@@ -7,7 +7,7 @@ use morec::files::FileReader;
 use morec::formats::bvh;
 use morec::import::ImportOptions;
 use morec::live::Recording;
-use morec_db::labels::{LabelOptions, NewSample, SampleState};
+use morec_db::labels::{LabelOptions, NewSample};
 use morec_db::{BACKGROUND, ClipId, ClipUpdate, ImportOutcome, MotionDb};
 
 use super::progress::JobError;
@@ -98,15 +98,14 @@ fn taught(place: &DbPlace, folder: &Path, lesson: &Lesson) -> Result<Taught, Str
     };
     let id = db.find_clip(&name).map_err(|e| e.to_string())?.id;
     if let Some(Meaning::Class(class)) = &lesson.meaning {
-        let sample = NewSample {
-            clip: id,
-            class: class.clone(),
-            start_secs: lesson.extent.start_secs.max(0.0),
-            stop_secs: lesson.extent.stop_secs.min(secs),
-            whole_clip: false,
-            state: SampleState::Accepted,
-            score: None,
-        };
+        let sample = NewSample::accepted(
+            id,
+            &class,
+            TimeSpan::new(
+                lesson.extent.start_secs.max(0.0),
+                lesson.extent.stop_secs.min(secs),
+            ),
+        );
         let options = LabelOptions {
             by: BY.to_owned(),
             annotators: vec![lesson.annotator.clone()],

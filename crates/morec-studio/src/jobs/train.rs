@@ -7,6 +7,7 @@ use std::time::Instant;
 use morec::index::MotionIndex;
 use morec::train::{TrainingData, TrainingReport};
 use morec_db::MotionDb;
+use morec_measure::crossval::CrossvalData;
 use morec_ops::{MaterialBeside, OperationError, TrainSettings, training_data};
 
 use super::progress::{JobError, JobProgress};
@@ -26,6 +27,17 @@ pub fn material(path: &Path, classes: &[String]) -> Result<TrainingData, Operati
         classes,
         MaterialBeside::default(),
     )
+}
+
+/// The same for a cross-validation of its labels.
+pub fn tested(data: &TrainingData) -> CrossvalData<'_> {
+    CrossvalData {
+        clips: &data.clips,
+        samples: &data.samples,
+        classes: &data.classes,
+        unknown: &[],
+        tests: None,
+    }
 }
 
 /// Trains an index of the database at `path`.

@@ -261,12 +261,7 @@ fn difference(ui: &mut Ui, compared: &ComparedAnnotators, at: usize, on: bool) -
     let size = Vec2::new((ui.available_width() - BUTTONS).max(80.0), ROW - 4.0);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
     widgets::named(&response, WidgetType::SelectableLabel, &text, on);
-    if on {
-        let fill = ui.visuals().selection.bg_fill;
-        ui.painter().rect_filled(rect, 3.0, fill);
-    } else if response.hovered() {
-        ui.painter().rect_filled(rect, 3.0, c.tint(c.accent, 0.10));
-    }
+    widgets::row_ground(ui, rect, &response, on);
     let inner = rect.shrink2(Vec2::new(4.0, 0.0));
     widgets::text_in(ui, inner, &text, 12.5, c.text, false);
     response.on_hover_text(text)

@@ -23,17 +23,13 @@ pub fn show(ui: &mut Ui, state: &State, sample: &DbSample, (list, at): (&List, u
     let (rect, response) =
         ui.allocate_exact_size(Vec2::new(COLUMN - 8.0, HEIGHT), Sense::click_and_drag());
     let selected = state.timeline.selected.contains(&sample.id);
-    let kind = if sample.state == Judged::Proposed {
-        "proposed "
-    } else {
-        ""
-    };
+    let class = format::class(sample);
     widgets::named(
         &response,
         WidgetType::Button,
         format!(
-            "{kind}{} in {} at {:.2} s",
-            sample.class, sample.clip_name, sample.start_secs
+            "{class} in {} at {:.2} s",
+            sample.clip_name, sample.start_secs
         ),
         selected,
     );

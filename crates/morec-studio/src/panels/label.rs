@@ -82,12 +82,7 @@ fn clips(ui: &mut Ui, state: &State, out: Out) {
                     format!("Show {}", clip.name),
                     on,
                 );
-                if on {
-                    ui.painter()
-                        .rect_filled(rect, 3.0, ui.visuals().selection.bg_fill);
-                } else if response.hovered() {
-                    ui.painter().rect_filled(rect, 3.0, c.tint(c.accent, 0.10));
-                }
+                widgets::row_ground(ui, rect, &response, on);
                 let inner = rect.shrink2(Vec2::new(6.0, 0.0));
                 let left =
                     Rect::from_min_max(inner.min, egui::pos2(inner.right() - 34.0, inner.bottom()));

@@ -44,12 +44,7 @@ pub fn list(ui: &mut Ui, state: &State, out: Out) {
             let what = report.kind.title();
             let called = format!("Report {}: {what}, {}", report.id, report.title);
             widgets::named(&response, WidgetType::SelectableLabel, &called, on);
-            if on {
-                let fill = ui.visuals().selection.bg_fill;
-                ui.painter().rect_filled(rect, 3.0, fill);
-            } else if response.hovered() {
-                ui.painter().rect_filled(rect, 3.0, c.tint(c.accent, 0.10));
-            }
+            widgets::row_ground(ui, rect, &response, on);
             let inner = rect.shrink2(Vec2::new(4.0, 0.0));
             let text = format!("{what}: {}", report.title);
             widgets::text_in(ui, inner, &text, 12.0, c.text, false);

@@ -6,6 +6,7 @@ use morec_db::labels::{DbSample, SampleState as Judged};
 
 use super::scale::{NAMES, Scale};
 use super::{Out, carried, widgets};
+use crate::format;
 use crate::state::{Command, Drag, Grip, PlayCommand, State, TimelineCommand};
 use crate::theme::Colours;
 
@@ -229,15 +230,11 @@ fn label(
         ui.id().with(sample.id),
         Sense::click_and_drag(),
     );
-    let kind = if sample.state == Judged::Proposed {
-        "proposed "
-    } else {
-        ""
-    };
+    let class = format::class(sample);
     widgets::named(
         &response,
         WidgetType::Button,
-        format!("{kind}{} {start:.2}–{stop:.2} s", sample.class),
+        format!("{class} {start:.2}–{stop:.2} s"),
         selected,
     );
     if sample.state == Judged::Proposed {

@@ -146,6 +146,17 @@ pub fn text_in(ui: &Ui, rect: Rect, text: &str, size: f32, colour: Color32, righ
     ui.painter().galley(egui::pos2(x, y), galley, colour);
 }
 
+/// The ground of a row in a list: chosen if `on`, under the pointer, or neither.
+pub fn row_ground(ui: &Ui, rect: Rect, response: &Response, on: bool) {
+    let c = Colours::now(ui);
+    if on {
+        let fill = ui.visuals().selection.bg_fill;
+        ui.painter().rect_filled(rect, 3.0, fill);
+    } else if response.hovered() {
+        ui.painter().rect_filled(rect, 3.0, c.tint(c.accent, 0.10));
+    }
+}
+
 /// Names a painted part for screen readers and tests.
 pub fn named(response: &Response, kind: WidgetType, name: impl ToString, selected: bool) {
     response.widget_info(|| WidgetInfo::selected(kind, true, selected, name.to_string()));

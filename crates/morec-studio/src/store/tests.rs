@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
+use morec::TimeSpan;
 use morec::rng::Rng;
 use morec_db::labels::{NewSample, SampleState};
 use morec_db::{ClipFilter, ClipUpdate, DbError, MotionDb};
@@ -14,14 +15,12 @@ use super::{Edit, Snapshot, UNLIKELY, background};
 fn labelled(folder: &Path) -> MotionDb {
     let mut db = MotionDb::open(&crate::tests::made(folder, 0)).unwrap();
     let clips = db.clips(&ClipFilter::default()).unwrap();
-    let sample = |n: usize| NewSample {
-        clip: clips[n % clips.len()].id,
-        class: ["wave", "bow"][n % 2].to_owned(),
-        start_secs: 0.1 * n as f64,
-        stop_secs: 0.1 * n as f64 + 0.5,
-        whole_clip: false,
-        state: SampleState::Accepted,
-        score: None,
+    let sample = |n: usize| {
+        NewSample::accepted(
+            clips[n % clips.len()].id,
+            ["wave", "bow"][n % 2],
+            TimeSpan::new(0.1 * n as f64, 0.1 * n as f64 + 0.5),
+        )
     };
     let samples: Vec<NewSample> = (0..20).map(sample).collect();
     db.add_samples(&samples, "test").unwrap();

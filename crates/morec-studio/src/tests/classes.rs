@@ -1,22 +1,16 @@
 //! Classes are named, renamed, removed; samples are dragged between them; groups follow a slider.
 
 use egui::Key;
+use morec::TimeSpan;
 use morec::cluster::KwasParams;
 use morec::features::Rows;
 use morec_db::MotionDb;
 use morec_db::labels::{NewSample, SampleState as Judged};
 use morec_ops::{GroupMethod, GroupSettings, Shapes, largest_first};
 
-use super::{Person, made};
+use super::{Person, labelling, made};
 use crate::jobs::group::{self, ClusteredItems, GroupDepth};
 use crate::state::{ClassCommand, Command, Panel, PlayCommand};
-
-fn labelling(labelled: usize) -> (tempfile::TempDir, Person) {
-    let folder = tempfile::tempdir().unwrap();
-    let mut person = Person::before(&[made(folder.path(), labelled)]);
-    person.goes_to(Panel::Label);
-    (folder, person)
-}
 
 #[test]
 fn a_class_is_added_renamed_removed_and_what_is_in_the_database_is_undone() {
@@ -161,15 +155,11 @@ fn a_label_that_holds_no_tick_is_left_out_of_groups() {
     let (_folder, mut person) = labelling(2);
     let path = person.state().store.as_ref().unwrap().path().to_owned();
     let mut db = MotionDb::open(&path).unwrap();
-    let shortest = NewSample {
-        clip: db.clips(&Default::default()).unwrap()[0].id,
-        class: "wave".to_owned(),
-        start_secs: 0.001,
-        stop_secs: 0.012,
-        whole_clip: false,
-        state: Judged::Accepted,
-        score: None,
-    };
+    let shortest = NewSample::accepted(
+        db.clips(&Default::default()).unwrap()[0].id,
+        "wave",
+        TimeSpan::new(0.001, 0.012),
+    );
     db.add_samples(&[shortest], "test").unwrap();
     person.goes_to(Panel::Classes);
     person.click("Group labels");
@@ -186,12 +176,7 @@ fn a_label_that_holds_no_tick_is_left_out_of_groups() {
 #[test]
 fn cuts_are_grouped_and_a_group_becomes_labels() {
     let (_folder, mut person) = labelling(0);
-    person.click("Cut all clips");
-    person.click("By kernel change points");
-    person.settle();
-    person.goes_to(Panel::Classes);
-    person.click("Group cuts");
-    person.settle();
+    person.groups_cuts();
     let groups = person.state().classes.groups.clone().unwrap();
     assert!(groups.items.iter().all(|item| item.sample.is_none()));
     let depth = person.state().classes.depth.clone();
@@ -245,26 +230,27 @@ fn a_group_is_shown_from_its_outliers_to_what_is_usual() {
     );
 }
 
-#[test]
-fn the_most_doubtful_proposal_is_shown_first_and_the_next_after_each_answer() {
+/// Somebody before a database with proposals of a second, by start and score.
+fn proposed(proposals: &[(f64, f64)]) -> (tempfile::TempDir, Person) {
     let folder = tempfile::tempdir().unwrap();
     let path = made(folder.path(), 1);
     let mut db = MotionDb::open(&path).unwrap();
     let clip = db.find_clip("ben_1").unwrap().id;
-    let proposal = |(start_secs, score): (f64, f64)| NewSample {
-        clip,
-        class: "wave".to_owned(),
-        start_secs,
-        stop_secs: start_secs + 1.0,
-        whole_clip: false,
+    let proposal = |&(start_secs, score): &(f64, f64)| NewSample {
         state: Judged::Proposed,
         score: Some(score),
+        ..NewSample::accepted(clip, "wave", TimeSpan::new(start_secs, start_secs + 1.0))
     };
-    // The most informative proposal is neither the first in time nor the likeliest.
-    let proposals = [(1.0, 0.97), (3.0, 0.12), (5.0, 0.55), (7.0, 0.75)].map(proposal);
+    let proposals: Vec<NewSample> = proposals.iter().map(proposal).collect();
     db.add_samples(&proposals, "test").unwrap();
     drop(db);
-    let mut person = Person::before(&[path]);
+    (folder, Person::before(&[path]))
+}
+
+#[test]
+fn the_most_doubtful_proposal_is_shown_first_and_the_next_after_each_answer() {
+    // The most informative proposal is neither the first in time nor the likeliest.
+    let (_folder, mut person) = proposed(&[(1.0, 0.97), (3.0, 0.12), (5.0, 0.55), (7.0, 0.75)]);
     person.goes_to(Panel::Label);
     let selected = |person: &Person| {
         let selected = person.state().selected();
@@ -418,14 +404,12 @@ fn a_column_scrolls_while_a_sample_is_dragged_near_its_lower_or_upper_edge() {
     let path = made(folder.path(), 1);
     let mut db = MotionDb::open(&path).unwrap();
     let clip = db.find_clip("ben_1").unwrap().id;
-    let step = |at: usize| NewSample {
-        clip,
-        class: "step".to_owned(),
-        start_secs: 0.5 * at as f64,
-        stop_secs: 0.5 * at as f64 + 0.4,
-        whole_clip: false,
-        state: Judged::Accepted,
-        score: None,
+    let step = |at: usize| {
+        NewSample::accepted(
+            clip,
+            "step",
+            TimeSpan::new(0.5 * at as f64, 0.5 * at as f64 + 0.4),
+        )
     };
     let steps: Vec<NewSample> = (0..40).map(step).collect();
     db.add_samples(&steps, "test").unwrap();
@@ -461,30 +445,13 @@ fn a_column_scrolls_while_a_sample_is_dragged_near_its_lower_or_upper_edge() {
 
 #[test]
 fn proposals_are_answered_at_once_by_a_threshold_and_those_at_0_are_not_shown() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = made(folder.path(), 1);
-    let mut db = MotionDb::open(&path).unwrap();
-    let clip = db.find_clip("ben_1").unwrap().id;
-    let proposal = |(start_secs, score): (f64, f64)| NewSample {
-        clip,
-        class: "wave".to_owned(),
-        start_secs,
-        stop_secs: start_secs + 1.0,
-        whole_clip: false,
-        state: Judged::Proposed,
-        score: Some(score),
-    };
-    let proposals = [
+    let (_folder, mut person) = proposed(&[
         (1.0, 0.97),
         (3.0, 0.12),
         (5.0, 0.004),
         (7.0, 0.85),
         (9.0, 0.5),
-    ]
-    .map(proposal);
-    db.add_samples(&proposals, "test").unwrap();
-    drop(db);
-    let mut person = Person::before(&[path]);
+    ]);
     person.goes_to(Panel::Classes);
     let before = person.labels().len();
     assert_eq!(person.state().doubtful().len(), 4, "0 % is not shown");

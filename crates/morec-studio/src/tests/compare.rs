@@ -2,16 +2,14 @@
 
 use egui::Key;
 
-use super::{Person, made, takes};
+use super::{Person, before, labelling, takes};
 use crate::body::Aligned;
 use crate::state::compare::Placement;
 use crate::state::{Command, Panel, TimelineCommand};
 
 /// The first wave of the first clip is selected.
 fn with_a_wave() -> (tempfile::TempDir, Person) {
-    let folder = tempfile::tempdir().unwrap();
-    let mut person = Person::before(&[made(folder.path(), 1)]);
-    person.goes_to(Panel::Label);
+    let (folder, mut person) = labelling(1);
     let label = person.state().shown_samples().iter();
     let wave = label.clone().find(|s| s.class == "wave").unwrap();
     let name = format!("wave {:.2}–{:.2} s", wave.start_secs, wave.stop_secs);
@@ -146,9 +144,7 @@ fn without_a_selection_there_is_a_sentence() {
 
 #[test]
 fn a_hit_becomes_a_new_class_before_there_is_any() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut person = Person::before(&[made(folder.path(), 0)]);
-    person.goes_to(Panel::Label);
+    let (_folder, mut person) = labelling(0);
     let range = Some((2.0, 3.5));
     person.command(Command::Timeline(TimelineCommand::Range(range)));
     person.key(Key::F);
@@ -188,9 +184,7 @@ fn how_far_off_is_drawn_and_a_bone_goes_to_its_worst_moment() {
 
 #[test]
 fn a_recognised_motion_is_held_beside_the_nearest_label_of_its_class() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut person = Person::before(&[made(folder.path(), 3)]);
-    person.goes_to(Panel::Train);
+    let (_folder, mut person) = before(Panel::Train, 3);
     person.click("Start training");
     person.settle();
     person.goes_to(Panel::Label);

@@ -2,7 +2,7 @@
 
 use egui::Key;
 
-use super::{Person, made, takes};
+use super::{labelling, takes};
 use crate::state::{Command, Panel, PlayCommand};
 
 /// The bound of the project's own measure.
@@ -10,9 +10,7 @@ const AT_MOST: usize = 40;
 
 #[test]
 fn three_gestures_of_a_played_clip_are_recognised_live_after_few_clicks_and_keys() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut person = Person::before(&[made(folder.path(), 0)]);
-    person.goes_to(Panel::Label);
+    let (_folder, mut person) = labelling(0);
     let take = &takes()[0];
     assert_eq!(
         person.state().player.motion.as_ref().unwrap().clip.name,

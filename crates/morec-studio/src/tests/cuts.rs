@@ -2,15 +2,8 @@
 
 use egui::{Key, Modifiers, vec2};
 
-use super::{Person, made};
+use super::{Person, labelling};
 use crate::state::{ClassCommand, Command, CutCommand, Panel, PlayCommand};
-
-fn labelling() -> (tempfile::TempDir, Person) {
-    let folder = tempfile::tempdir().unwrap();
-    let mut person = Person::before(&[made(folder.path(), 1)]);
-    person.goes_to(Panel::Label);
-    (folder, person)
-}
 
 /// A cut with room to its right, and its name.
 fn some_cut(person: &Person) -> (f64, String) {
@@ -22,7 +15,7 @@ fn some_cut(person: &Person) -> (f64, String) {
 
 #[test]
 fn a_cut_is_dragged_into_place_and_cutting_again_leaves_it() {
-    let (_folder, mut person) = labelling();
+    let (_folder, mut person) = labelling(1);
     let found = person.state().cuts();
     assert!(!found.is_empty());
     let (cut, name) = some_cut(&person);
@@ -64,7 +57,7 @@ fn a_cut_is_dragged_into_place_and_cutting_again_leaves_it() {
 
 #[test]
 fn a_cut_is_removed_and_another_added() {
-    let (_folder, mut person) = labelling();
+    let (_folder, mut person) = labelling(1);
     let found = person.state().cuts();
     let (_, name) = some_cut(&person);
     let at = person.place(&name).center();
@@ -85,7 +78,7 @@ fn a_cut_is_removed_and_another_added() {
 
 #[test]
 fn a_cut_is_made_at_the_playhead_and_moved_by_keys() {
-    let (_folder, mut person) = labelling();
+    let (_folder, mut person) = labelling(1);
     let found = person.state().cuts();
     let (cut, name) = some_cut(&person);
     let frame = 1.0 / person.state().player.rate_hz();
@@ -118,7 +111,7 @@ fn a_cut_is_made_at_the_playhead_and_moved_by_keys() {
 
 #[test]
 fn of_many_classes_those_of_the_clip_have_a_track() {
-    let (_folder, mut person) = labelling();
+    let (_folder, mut person) = labelling(1);
     let class = |n: usize| Command::Classes(ClassCommand::Add(format!("other {n}")));
     let few = person.state().classes.order.len();
     assert!((1..=8).contains(&few));
@@ -141,7 +134,7 @@ fn of_many_classes_those_of_the_clip_have_a_track() {
 
 #[test]
 fn a_channel_is_shown_with_its_keyframes() {
-    let (_folder, mut person) = labelling();
+    let (_folder, mut person) = labelling(1);
     person.click("Channel");
     person.click("Hips: position");
     person.settle();
@@ -160,7 +153,7 @@ fn a_channel_is_shown_with_its_keyframes() {
 
 #[test]
 fn playing_stays_inside_the_segment_between_the_cuts() {
-    let (_folder, mut person) = labelling();
+    let (_folder, mut person) = labelling(1);
     let cuts = person.state().cuts();
     let pair = cuts
         .windows(2)

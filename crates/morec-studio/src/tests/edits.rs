@@ -3,16 +3,8 @@
 use egui::{Key, pos2};
 use morec_db::labels::SampleState as Judged;
 
-use super::{Person, made, takes};
+use super::{Person, beginning, labelling, made, takes};
 use crate::state::{Command, FileCommand, Panel};
-
-fn labelling(labelled: usize) -> (tempfile::TempDir, Person) {
-    let folder = tempfile::tempdir().unwrap();
-    let path = made(folder.path(), labelled);
-    let mut person = Person::before(&[path]);
-    person.goes_to(Panel::Label);
-    (folder, person)
-}
 
 #[test]
 fn clips_are_imported_and_an_import_is_undone() {
@@ -21,14 +13,8 @@ fn clips_are_imported_and_an_import_is_undone() {
     let path = made(folder.path(), 0);
     let mut person = Person::before(&[path]);
     std::fs::copy(folder.path().join("ada_1.bvh"), new.path().join("copy.bvh")).unwrap();
-    let mut clip = takes()[1].clip.clone();
-    clip.frames /= 2;
-    clip.rotations.truncate(clip.frames * clip.skeleton.len());
-    clip.tracks
-        .iter_mut()
-        .for_each(|t| t.positions.truncate(clip.frames));
-    let mut bytes = Vec::new();
-    morec::formats::bvh::write(&clip, &mut bytes).unwrap();
+    let take = &takes()[1];
+    let bytes = beginning(take, take.clip.frames / 2);
     std::fs::write(new.path().join("half.bvh"), bytes).unwrap();
     std::fs::write(new.path().join("broken.bvh"), "HIERARCHY\nROOT nobody").unwrap();
     // What a drop of a folder on the window does.
@@ -75,13 +61,11 @@ fn a_label_is_dragged_and_put_back() {
     let middle = person.place(&name).center();
     person.drag(middle, middle + egui::vec2(60.0, 0.0));
     person.settle();
-    let moved = person
-        .state()
-        .shown_samples()
-        .iter()
-        .find(|s| s.id == label.id)
-        .unwrap()
-        .clone();
+    let now = |person: &Person| {
+        let mut shown = person.state().shown_samples().iter();
+        shown.find(|s| s.id == label.id).unwrap().clone()
+    };
+    let moved = now(&person);
     let (was, is) = (
         label.stop_secs - label.start_secs,
         moved.stop_secs - moved.start_secs,
@@ -101,13 +85,7 @@ fn a_label_is_dragged_and_put_back() {
     let end = pos2(rect.right() - 2.0, rect.center().y);
     person.drag(end, end + egui::vec2(-12.0, 0.0));
     person.settle();
-    let shorter = person
-        .state()
-        .shown_samples()
-        .iter()
-        .find(|s| s.id == label.id)
-        .unwrap()
-        .clone();
+    let shorter = now(&person);
     assert!((shorter.start_secs - label.start_secs).abs() < 1e-6);
     assert!(shorter.stop_secs < label.stop_secs);
     person.undo();

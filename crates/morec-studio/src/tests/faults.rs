@@ -1,6 +1,7 @@
 //! Faults give a sentence in place, and nothing is lost.
 
-use morec_db::labels::{NewSample, SampleState as Judged};
+use morec::TimeSpan;
+use morec_db::labels::NewSample;
 
 use super::{Person, made};
 use crate::state::{Command, FileCommand, Panel};
@@ -107,14 +108,12 @@ fn a_full_disk_is_said_and_what_was_there_stays() {
     let store = person.window.state_mut().state.store.as_mut().unwrap();
     store.fill();
     let clip = store.snapshot.clips[0].id;
-    let many = (0..20_000).map(|n| NewSample {
-        clip,
-        class: "wave".to_owned(),
-        start_secs: f64::from(n) * 1e-3,
-        stop_secs: f64::from(n) * 1e-3 + 0.5,
-        whole_clip: false,
-        state: Judged::Accepted,
-        score: None,
+    let many = (0..20_000).map(|n| {
+        NewSample::accepted(
+            clip,
+            "wave",
+            TimeSpan::new(f64::from(n) * 1e-3, f64::from(n) * 1e-3 + 0.5),
+        )
     });
     person.command(Command::Edit(Edit::Label(many.collect())));
     assert!(person.sees_part("The disk is full: the last change was rolled back"));

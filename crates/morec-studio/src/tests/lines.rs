@@ -8,8 +8,8 @@ use clap::Parser;
 use morec_db::ClipUpdate;
 use morec_db::labels::SampleState as Judged;
 
-use super::{Person, made};
-use crate::state::{Command, CutCommand, Panel, TimelineCommand};
+use super::{Person, labelling, made};
+use crate::state::{Command, CutCommand, TimelineCommand};
 use crate::store::Edit;
 
 /// One command a line; the tests of the command parse each of them.
@@ -197,9 +197,7 @@ fn each_edit_shows_the_command_that_does_the_same() {
 
 #[test]
 fn an_action_without_a_command_shows_none() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut person = Person::before(&[made(folder.path(), 1)]);
-    person.goes_to(Panel::Label);
+    let (_folder, mut person) = labelling(1);
     person.command(Command::Cuts(CutCommand::Add(1.5)));
     assert!(person.state().command_line.contains("--at"));
     person.command(Command::Cuts(CutCommand::Reset));

@@ -7,15 +7,13 @@ use morec::{ImportOptions, Labels, Trainer};
 use morec_db::MotionDb;
 use morec_ops::RecognizeSettings;
 
-use super::{Person, made, takes};
+use super::{Person, before, made, takes};
 use crate::state::live::Choice;
 use crate::state::{ClassCommand, Command, LiveCommand, Panel, TrainCommand};
 
 #[test]
 fn what_just_happened_is_marked_learned_and_recognised_and_undone() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut person = Person::before(&[made(folder.path(), 0)]);
-    person.goes_to(Panel::Live);
+    let (_folder, mut person) = before(Panel::Live, 0);
     person.click("Start");
     person.settle();
     let take = &takes()[0];
@@ -67,9 +65,7 @@ fn what_just_happened_is_marked_learned_and_recognised_and_undone() {
 
 #[test]
 fn a_take_is_recorded_into_the_database_after_a_countdown() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut person = Person::before(&[made(folder.path(), 0)]);
-    person.goes_to(Panel::Live);
+    let (_folder, mut person) = before(Panel::Live, 0);
     person.key(Key::Space);
     person.settle();
     person.key(Key::R);
@@ -103,9 +99,7 @@ fn a_take_is_recorded_into_the_database_after_a_countdown() {
 
 #[test]
 fn a_device_is_listened_to_and_its_absence_is_said() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut person = Person::before(&[made(folder.path(), 0)]);
-    person.goes_to(Panel::Live);
+    let (_folder, mut person) = before(Panel::Live, 0);
     let listen =
         |address: &str| Command::Live(LiveCommand::Choose(Choice::Network(address.to_owned())));
     person.command(listen("vmc://127.0.0.1:0"));
@@ -127,6 +121,28 @@ fn a_device_is_listened_to_and_its_absence_is_said() {
     person.click("Start");
     assert!(person.state().live.run.is_none());
     assert!(!person.state().notices.is_empty());
+}
+
+/// Somebody before the live panel that listens for lines of JSON, with their folder and the address.
+fn listening(labelled: usize) -> (tempfile::TempDir, Person, String) {
+    let (folder, mut person) = before(Panel::Live, labelled);
+    let choice = Choice::Network("json+tcp://127.0.0.1:0".to_owned());
+    person.command(Command::Live(LiveCommand::Choose(choice)));
+    person.click("Start");
+    let name = &person.state().live.run.as_ref().unwrap().name;
+    let address = name.trim_start_matches("json+tcp://").to_owned();
+    (folder, person, address)
+}
+
+/// Somebody before the live panel that recognises what the labels of so many people taught.
+fn recognising(labelled: usize) -> (tempfile::TempDir, Person) {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), labelled)]);
+    person.command(Command::Train(TrainCommand::Train));
+    person.goes_to(Panel::Live);
+    person.key(Key::Space);
+    person.settle();
+    (folder, person)
 }
 
 /// Sends the poses of a take as lines of JSON, as of two performers a metre apart.
@@ -160,14 +176,7 @@ fn send(address: &str, take: &morec::synth::SyntheticTake, frames: usize) -> std
 
 #[test]
 fn two_performers_are_seen_either_is_watched_and_a_lost_sender_is_said() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut person = Person::before(&[made(folder.path(), 0)]);
-    person.goes_to(Panel::Live);
-    let choice = Choice::Network("json+tcp://127.0.0.1:0".to_owned());
-    person.command(Command::Live(LiveCommand::Choose(choice)));
-    person.click("Start");
-    let name = person.state().live.run.as_ref().unwrap().name.clone();
-    let address = name.trim_start_matches("json+tcp://").to_owned();
+    let (_folder, mut person, address) = listening(0);
     let sender = std::thread::spawn(move || send(&address, &takes()[0], 120));
     let begun = std::time::Instant::now();
     let frames = |person: &Person| -> Vec<usize> {
@@ -198,12 +207,7 @@ fn two_performers_are_seen_either_is_watched_and_a_lost_sender_is_said() {
 
 #[test]
 fn the_last_minutes_are_looked_back_at_and_a_detection_is_selected_by_a_click() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut person = Person::before(&[made(folder.path(), 2)]);
-    person.command(Command::Train(TrainCommand::Train));
-    person.goes_to(Panel::Live);
-    person.key(Key::Space);
-    person.settle();
+    let (_folder, mut person) = recognising(2);
     let now = |person: &Person| person.state().live.now_secs();
     while now(&person) < 65.0 {
         person.frames(1);
@@ -264,12 +268,7 @@ fn the_last_minutes_are_looked_back_at_and_a_detection_is_selected_by_a_click() 
 
 #[test]
 fn somebody_else_is_recognised_more_generously_where_few_people_taught() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut person = Person::before(&[made(folder.path(), 1)]);
-    person.command(Command::Train(TrainCommand::Train));
-    person.goes_to(Panel::Live);
-    person.key(Key::Space);
-    person.settle();
+    let (_folder, mut person) = recognising(1);
     person.frames(60);
     person.click("Performer");
     person.click("another person");
@@ -284,12 +283,7 @@ fn somebody_else_is_recognised_more_generously_where_few_people_taught() {
 
 #[test]
 fn the_sensitivity_that_is_shown_last_is_the_one_that_is_tried() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut person = Person::before(&[made(folder.path(), 2)]);
-    person.command(Command::Train(TrainCommand::Train));
-    person.goes_to(Panel::Live);
-    person.key(Key::Space);
-    person.settle();
+    let (_folder, mut person) = recognising(2);
     while person.state().live.now_secs() < takes()[0].clip.duration_secs() - 0.5 {
         person.frames(1);
     }
@@ -309,9 +303,7 @@ fn the_sensitivity_that_is_shown_last_is_the_one_that_is_tried() {
 
 #[test]
 fn the_sensitivity_shows_what_the_minutes_would_have_held() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut person = Person::before(&[made(folder.path(), 2)]);
-    person.goes_to(Panel::Train);
+    let (_folder, mut person) = before(Panel::Train, 2);
     person.click("Start training");
     person.settle();
     person.goes_to(Panel::Live);
@@ -363,9 +355,7 @@ fn a_class_beyond_the_ninth_is_marked_by_the_key_that_it_was_given() {
 
 #[test]
 fn a_source_that_never_sends_redraws_nothing() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut person = Person::before(&[made(folder.path(), 0)]);
-    person.goes_to(Panel::Live);
+    let (_folder, mut person) = before(Panel::Live, 0);
     let listen = Choice::Network("vmc://127.0.0.1:0".to_owned());
     person.command(Command::Live(LiveCommand::Choose(listen)));
     person.click("Start");
@@ -417,14 +407,7 @@ fn an_index_of_another_kind_of_performer_is_said() {
 
 #[test]
 fn a_performer_who_is_gone_is_not_said_to_be_without_fault() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut person = Person::before(&[made(folder.path(), 0)]);
-    person.goes_to(Panel::Live);
-    let choice = Choice::Network("json+tcp://127.0.0.1:0".to_owned());
-    person.command(Command::Live(LiveCommand::Choose(choice)));
-    person.click("Start");
-    let name = person.state().live.run.as_ref().unwrap().name.clone();
-    let address = name.trim_start_matches("json+tcp://").to_owned();
+    let (_folder, mut person, address) = listening(0);
     let sender = std::thread::spawn(move || send(&address, &takes()[0], 60));
     drop(sender.join().unwrap());
     let begun = std::time::Instant::now();
@@ -444,9 +427,7 @@ fn a_performer_who_is_gone_is_not_said_to_be_without_fault() {
 
 #[test]
 fn a_clip_as_a_source_is_sought_and_sped_up() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut person = Person::before(&[made(folder.path(), 0)]);
-    person.goes_to(Panel::Live);
+    let (_folder, mut person) = before(Panel::Live, 0);
     person.key(Key::Space);
     person.settle();
     let position = |person: &Person| {
@@ -523,14 +504,8 @@ fn what_is_said_of_a_source_that_cannot_be_opened_goes_when_another_runs() {
 #[test]
 fn a_hand_is_seen_marked_kept_with_its_roles_and_spoils_no_training() {
     use std::io::Write;
-    let folder = tempfile::tempdir().unwrap();
-    let mut person = Person::before(&[made(folder.path(), 2)]);
-    person.goes_to(Panel::Live);
-    let choice = Choice::Network("json+tcp://127.0.0.1:0".to_owned());
-    person.command(Command::Live(LiveCommand::Choose(choice)));
-    person.click("Start");
-    let name = person.state().live.run.as_ref().unwrap().name.clone();
-    let mut stream = std::net::TcpStream::connect(name.trim_start_matches("json+tcp://")).unwrap();
+    let (folder, mut person, address) = listening(2);
+    let mut stream = std::net::TcpStream::connect(address).unwrap();
     for frame in 0..90 {
         let secs = f64::from(frame) / 30.0;
         let line = serde_json::json!({"t": secs, "hand": "right", "points": hand(secs)});

@@ -5,7 +5,8 @@ use std::sync::OnceLock;
 
 use egui::Key;
 use egui_kittest::kittest::Queryable;
-use morec_db::labels::{NewSample, SampleState as Judged};
+use morec::TimeSpan;
+use morec_db::labels::NewSample;
 
 use super::{Person, made};
 use crate::state::{Command, Panel, TrainCommand};
@@ -48,15 +49,11 @@ fn cross_validated() -> (tempfile::TempDir, Person) {
         .find(|s| s.class == "wave" && s.clip != clip);
     person.command(Command::Edit(Edit::Remove(vec![forgotten.unwrap().id])));
     // Nobody moves in the first second: what is labelled there cannot be recognised.
-    person.command(Command::Edit(Edit::Label(vec![NewSample {
+    person.command(Command::Edit(Edit::Label(vec![NewSample::accepted(
         clip,
-        class: "wave".to_owned(),
-        start_secs: 0.1,
-        stop_secs: 0.9,
-        whole_clip: false,
-        state: Judged::Accepted,
-        score: None,
-    }])));
+        "wave",
+        TimeSpan::new(0.1, 0.9),
+    )])));
     person.goes_to(Panel::Train);
     person.click("Cross-validate");
     person.settle();
@@ -210,14 +207,8 @@ fn a_class_of_one_person_is_named_as_not_tested_and_counts_for_nothing() {
     let mut person = Person::before(&[made(folder.path(), 3)]);
     let labels = person.labels().len();
     let clip = person.state().player.motion.as_ref().unwrap().id;
-    let hop = |start_secs: f64| NewSample {
-        clip,
-        class: "hop".to_owned(),
-        start_secs,
-        stop_secs: start_secs + 0.4,
-        whole_clip: false,
-        state: Judged::Accepted,
-        score: None,
+    let hop = |start_secs: f64| {
+        NewSample::accepted(clip, "hop", TimeSpan::new(start_secs, start_secs + 0.4))
     };
     person.command(Command::Edit(Edit::Label(vec![hop(0.1), hop(0.5)])));
     person.goes_to(Panel::Train);

@@ -43,9 +43,10 @@ use std::sync::OnceLock;
 
 use morec::formats::bvh;
 use morec::synth::{DatabaseSpec, SyntheticTake, database};
-use morec_db::labels::{NewSample, SampleState as Judged};
+use morec_db::labels::NewSample;
 use morec_db::{ClipUpdate, MotionDb};
 
+use crate::state::Panel;
 use person::Person;
 
 /// Three people, two gestures each twice.
@@ -71,6 +72,19 @@ pub fn files_of(takes: &[SyntheticTake]) -> Vec<(String, Vec<u8>)> {
         (format!("{}.bvh", take.clip.name), bytes)
     });
     written.collect()
+}
+
+/// The first frames of a take as a BVH file.
+pub fn beginning(take: &SyntheticTake, frames: usize) -> Vec<u8> {
+    let mut clip = take.clip.clone();
+    clip.frames = frames;
+    clip.rotations.truncate(frames * clip.skeleton.len());
+    clip.tracks
+        .iter_mut()
+        .for_each(|t| t.positions.truncate(frames));
+    let mut bytes = Vec::new();
+    bvh::write(&clip, &mut bytes).unwrap();
+    bytes
 }
 
 /// Writes files into a folder.
@@ -103,6 +117,19 @@ pub fn made(folder: &Path, labelled: usize) -> PathBuf {
     path
 }
 
+/// Somebody before a panel, with such a database in a folder.
+pub fn before(panel: Panel, labelled: usize) -> (tempfile::TempDir, Person) {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), labelled)]);
+    person.goes_to(panel);
+    (folder, person)
+}
+
+/// The same before the panel of labels.
+pub fn labelling(labelled: usize) -> (tempfile::TempDir, Person) {
+    before(Panel::Label, labelled)
+}
+
 /// Makes the database by an import of the files.
 fn imported(folder: &Path, labelled: usize) -> PathBuf {
     let files = clips_of(folder);
@@ -119,15 +146,10 @@ fn imported(folder: &Path, labelled: usize) -> PathBuf {
         };
         db.update_clips(&[clip], &about).unwrap();
         if number < labelled {
-            let labels = take.labels.iter().map(|l| NewSample {
-                clip,
-                class: l.class.to_owned(),
-                start_secs: l.span.start_secs,
-                stop_secs: l.span.stop_secs,
-                whole_clip: false,
-                state: Judged::Accepted,
-                score: None,
-            });
+            let labels = take
+                .labels
+                .iter()
+                .map(|l| NewSample::accepted(clip, l.class, l.span));
             db.add_samples(&labels.collect::<Vec<_>>(), "test").unwrap();
         }
     }

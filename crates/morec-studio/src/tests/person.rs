@@ -406,6 +406,16 @@ impl Person {
         self.settle();
     }
 
+    /// Cuts all clips and groups the pieces.
+    pub fn groups_cuts(&mut self) {
+        self.click("Cut all clips");
+        self.click("By kernel change points");
+        self.settle();
+        self.goes_to(Panel::Classes);
+        self.click("Group cuts");
+        self.settle();
+    }
+
     /// Clip, class, start and stop in hundredths of a second of every accepted label: what edits change.
     pub fn labels(&self) -> Vec<(i64, String, i64, i64)> {
         let store = self.state().store.as_ref().unwrap();

@@ -2,21 +2,20 @@
 
 use egui::{Key, Pos2, pos2};
 
-use super::{Person, made};
-use crate::state::{Command, Panel, PlayCommand, TimelineCommand};
-
-fn labelling(labelled: usize) -> (tempfile::TempDir, Person) {
-    let folder = tempfile::tempdir().unwrap();
-    let mut person = Person::before(&[made(folder.path(), labelled)]);
-    person.goes_to(Panel::Label);
-    (folder, person)
-}
+use super::{Person, labelling};
+use crate::state::{Command, PlayCommand, TimelineCommand};
 
 /// Where a moment lies on a track, while the whole clip is in view.
 fn at(person: &Person, track: &str, secs: f64) -> Pos2 {
     let ground = person.place(track);
     let share = (secs / person.state().player.secs()) as f32;
     pos2(ground.left() + share * ground.width(), ground.center().y)
+}
+
+/// Drags over the track of labels.
+fn select(person: &mut Person) {
+    let [from, to] = [0.2, 0.9].map(|secs| at(person, "Track Labels", secs));
+    person.drag(from, to);
 }
 
 /// The first segment between two cuts that is long enough to be clicked.
@@ -35,11 +34,7 @@ fn hundredths((start, stop): (f64, f64)) -> (i64, i64) {
 fn a_class_key_labels_the_selected_stretch_while_playing() {
     let (_folder, mut person) = labelling(0);
     person.command(Command::Timeline(TimelineCommand::Snap(false)));
-    let (from, to) = (
-        at(&person, "Track Labels", 0.2),
-        at(&person, "Track Labels", 0.9),
-    );
-    person.drag(from, to);
+    select(&mut person);
     let range = person.state().timeline.range.unwrap();
     person.key(Key::Space);
     person.wait(2.0);
@@ -65,11 +60,7 @@ fn a_class_key_labels_the_selected_stretch_while_playing() {
 #[test]
 fn a_label_that_was_just_made_does_not_catch_the_keys_of_what_is_played_next() {
     let (_folder, mut person) = labelling(0);
-    let (from, to) = (
-        at(&person, "Track Labels", 0.2),
-        at(&person, "Track Labels", 0.9),
-    );
-    person.drag(from, to);
+    select(&mut person);
     person.key(Key::Num1);
     person.settle();
     assert_eq!(
@@ -155,12 +146,7 @@ fn a_segment_is_dragged_to_a_class_in_the_list_and_onto_its_track() {
 #[test]
 fn classes_stand_beside_groups_and_take_what_is_dragged_there() {
     let (_folder, mut person) = labelling(1);
-    person.click("Cut all clips");
-    person.click("By kernel change points");
-    person.settle();
-    person.goes_to(Panel::Classes);
-    person.click("Group cuts");
-    person.settle();
+    person.groups_cuts();
     let before = person.labels();
     let depth = person.state().classes.depth.clone();
     let groups = person.state().classes.groups.clone().unwrap();
@@ -203,11 +189,7 @@ fn classes_stand_beside_groups_and_take_what_is_dragged_there() {
 #[test]
 fn typing_a_name_fires_no_shortcut() {
     let (_folder, mut person) = labelling(0);
-    let (from, to) = (
-        at(&person, "Track Labels", 0.2),
-        at(&person, "Track Labels", 0.9),
-    );
-    person.drag(from, to);
+    select(&mut person);
     person.key(Key::Num1);
     person.settle();
     let labels = person.labels();

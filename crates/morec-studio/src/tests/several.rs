@@ -3,7 +3,7 @@
 use egui::{Key, Modifiers};
 use morec_db::labels::SampleState as Judged;
 
-use super::{Person, made};
+use super::{Person, before, labelling, made};
 use crate::state::{Command, LiveCommand, Panel, SimilarCommand, TimelineCommand};
 
 fn of_class(person: &Person, class: &str) -> usize {
@@ -66,9 +66,7 @@ fn a_class_that_is_background_loses_its_labels_and_marks_clips_of_nothing_else()
 
 #[test]
 fn all_hits_of_a_likeness_become_labels_by_four_clicks_and_keys() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut person = Person::before(&[made(folder.path(), 1)]);
-    person.goes_to(Panel::Label);
+    let (_folder, mut person) = labelling(1);
     let begun = person.actions;
     let labelled = person.state().shown_samples().iter();
     let label = labelled.clone().find(|s| s.state == Judged::Accepted);
@@ -187,9 +185,7 @@ fn several_samples_are_chosen_with_ctrl_and_moved_by_one_key() {
 
 #[test]
 fn the_search_is_where_the_list_of_labelling_is() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut person = Person::before(&[made(folder.path(), 1)]);
-    person.goes_to(Panel::Label);
+    let (_folder, mut person) = labelling(1);
     person.key_with(Key::F, Modifiers::COMMAND);
     person.frames(3);
     person.window.event(egui::Event::Text("ben".to_owned()));
@@ -200,9 +196,7 @@ fn the_search_is_where_the_list_of_labelling_is() {
 
 #[test]
 fn a_class_that_a_key_made_asks_for_its_name_live() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut person = Person::before(&[made(folder.path(), 0)]);
-    person.goes_to(Panel::Live);
+    let (_folder, mut person) = before(Panel::Live, 0);
     person.click("Start");
     person.settle();
     while person.state().live.now_secs() < 3.0 {

@@ -3,16 +3,14 @@
 use egui::pos2;
 use morec_db::labels::SampleState as Judged;
 
-use super::{Person, made};
+use super::{Person, before};
 use crate::state::shelf::ShelfCommand;
 use crate::state::{Command, Panel};
 use crate::stretch::Stretch;
 
 /// The shelf of a database without a label.
 fn shelved() -> (tempfile::TempDir, Person) {
-    let folder = tempfile::tempdir().unwrap();
-    let mut person = Person::before(&[made(folder.path(), 0)]);
-    person.goes_to(Panel::Classes);
+    let (folder, mut person) = before(Panel::Classes, 0);
     person.click("Find what repeats");
     person.settle();
     assert!(person.sees("What repeats") && person.sees("Set 1"));

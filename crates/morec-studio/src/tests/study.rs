@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 
 use egui::Key;
 use morec::train::Everyday;
-use morec_db::labels::{DbSample, LabelOptions, NewSample, SampleState as Judged};
+use morec_db::labels::{DbSample, LabelOptions, NewSample};
 use morec_db::{MotionDb, ReportKind};
 use morec_ops::{CurveFigures, CurvePoint, GroupMethod, LearningCurve, time_budget};
 
-use super::{Person, made, takes};
+use super::{Person, before, made, takes};
 use crate::state::study::{AGREED, StudyView};
 use crate::state::{ClassCommand, Command, Panel, PlayCommand, TimelineCommand};
 
@@ -20,9 +20,7 @@ fn accepted(person: &Person) -> Vec<DbSample> {
 
 #[test]
 fn the_time_budget_follows_the_labels_plays_them_and_is_exported() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut person = Person::before(&[made(folder.path(), 3)]);
-    person.goes_to(Panel::Classes);
+    let (folder, mut person) = before(Panel::Classes, 3);
     person.click("Time budget");
     person.settle();
     assert!(person.state().command_line.starts_with("morec budget "));
@@ -75,15 +73,8 @@ fn by_two(folder: &Path) -> PathBuf {
     let mut db = MotionDb::open(&path).unwrap();
     for (number, take) in takes().iter().take(2).enumerate() {
         let clip = db.find_clip(&take.clip.name).unwrap().id;
-        let label = |l: &morec::labels::Mark<&'static str>| NewSample {
-            clip,
-            class: l.class.to_owned(),
-            start_secs: l.span.start_secs,
-            stop_secs: l.span.stop_secs,
-            whole_clip: false,
-            state: Judged::Accepted,
-            score: None,
-        };
+        let label =
+            |l: &morec::labels::Mark<&'static str>| NewSample::accepted(clip, l.class, l.span);
         let of_ann: Vec<NewSample> = take.labels.iter().map(label).collect();
         let mut of_ben = of_ann.clone();
         if number == 0 {
@@ -239,9 +230,7 @@ fn keys_decide_nothing_while_groups_cover_the_differences() {
 
 #[test]
 fn without_two_annotators_there_is_nothing_to_compare() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut person = Person::before(&[made(folder.path(), 1)]);
-    person.goes_to(Panel::Classes);
+    let (_folder, mut person) = before(Panel::Classes, 1);
     person.click("Compare annotators");
     person.settle();
     assert!(person.sees("Fewer than two annotators"));
@@ -252,9 +241,7 @@ fn without_two_annotators_there_is_nothing_to_compare() {
 
 #[test]
 fn the_learning_curve_is_measured_until_it_is_stopped_and_drawn_with_what_it_says() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut person = Person::before(&[made(folder.path(), 2)]);
-    person.goes_to(Panel::Train);
+    let (_folder, mut person) = before(Panel::Train, 2);
     person.click("Learning curve");
     person.frames(2);
     assert!(person.state().is_measuring_curve());

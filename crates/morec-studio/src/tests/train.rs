@@ -1,6 +1,6 @@
 //! Training and judging through the window.
 
-use super::{Person, made};
+use super::{Person, before, made};
 use crate::jobs::thesis::{GRID, TreeNodeView};
 use crate::state::{Command, LibraryCommand, Panel, TimelineCommand, TrainCommand};
 use crate::store::Edit;
@@ -9,9 +9,7 @@ use morec::train::thesis::SvrdmTrainParams;
 
 #[test]
 fn an_index_is_trained_kept_and_its_mistakes_are_found() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut person = Person::before(&[made(folder.path(), 3)]);
-    person.goes_to(Panel::Train);
+    let (_folder, mut person) = before(Panel::Train, 3);
     person.click("Start training");
     person.settle();
     let index = person.state().train.index.clone().unwrap();
@@ -70,9 +68,7 @@ fn an_index_is_trained_kept_and_its_mistakes_are_found() {
 
 #[test]
 fn classes_are_chosen_and_changed_labels_are_said() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut person = Person::before(&[made(folder.path(), 3)]);
-    person.goes_to(Panel::Train);
+    let (_folder, mut person) = before(Panel::Train, 3);
     person.click("clap");
     assert!(person.state().train.without.contains("clap"));
     person.click("Start training");
@@ -104,9 +100,7 @@ fn classes_are_chosen_and_changed_labels_are_said() {
 
 #[test]
 fn without_a_chosen_class_nothing_is_learned() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut person = Person::before(&[made(folder.path(), 3)]);
-    person.goes_to(Panel::Train);
+    let (_folder, mut person) = before(Panel::Train, 3);
     for class in ["bow", "clap", "wave"] {
         person.click(class);
     }
@@ -118,9 +112,7 @@ fn without_a_chosen_class_nothing_is_learned() {
 
 #[test]
 fn a_cross_validation_is_stopped_and_leaves_what_was_there() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut person = Person::before(&[made(folder.path(), 3)]);
-    person.goes_to(Panel::Train);
+    let (_folder, mut person) = before(Panel::Train, 3);
     person.click("Cross-validate");
     assert!(person.state().is_judging() && person.sees("Judging …"));
     person.click("Stop");
@@ -151,17 +143,13 @@ fn a_cross_validation_is_stopped_and_leaves_what_was_there() {
 
 #[test]
 fn classes_with_few_labels_are_named_to_be_taught_next() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut person = Person::before(&[made(folder.path(), 1)]);
-    person.goes_to(Panel::Train);
+    let (_folder, person) = before(Panel::Train, 1);
     assert!(person.sees("wave: 2 labels, add labels until there are at least three"));
 }
 
 #[test]
 fn the_method_of_2009_shows_its_branches_and_its_map() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut person = Person::before(&[made(folder.path(), 2)]);
-    person.goes_to(Panel::Train);
+    let (_folder, mut person) = before(Panel::Train, 2);
     person.click("Train it on these labels");
     person.settle();
     let thesis = person.state().train.thesis.clone().unwrap();
@@ -225,9 +213,7 @@ fn training_is_in_reach_in_a_small_window_with_many_classes() {
 
 #[test]
 fn the_figures_of_2009_are_set_and_its_plane_is_large_with_its_thresholds() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut person = Person::before(&[made(folder.path(), 2)]);
-    person.goes_to(Panel::Train);
+    let (_folder, mut person) = before(Panel::Train, 2);
     for name in [
         "Pivots",
         "Number of dimensions",
@@ -274,9 +260,7 @@ fn the_figures_of_2009_are_set_and_its_plane_is_large_with_its_thresholds() {
 
 #[test]
 fn whatever_is_chosen_of_the_method_of_2009_can_be_judged() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut person = Person::before(&[made(folder.path(), 2)]);
-    person.goes_to(Panel::Train);
+    let (_folder, mut person) = before(Panel::Train, 2);
     person.click("τ: share of variance");
     person.click("Cross-validate it");
     let line = person.state().command_line.clone();
@@ -305,9 +289,7 @@ fn whatever_is_chosen_of_the_method_of_2009_can_be_judged() {
 
 #[test]
 fn what_is_trained_of_2009_is_an_index_like_any_other() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut person = Person::before(&[made(folder.path(), 2)]);
-    person.goes_to(Panel::Train);
+    let (folder, mut person) = before(Panel::Train, 2);
     person.click("Train it on these labels");
     person.settle();
     let train = &person.state().train;
@@ -343,9 +325,7 @@ fn a_class_of_one_clip_does_not_stop_the_judging_of_2009() {
 
 #[test]
 fn the_method_of_2009_has_a_confusion_matrix() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut person = Person::before(&[made(folder.path(), 2)]);
-    person.goes_to(Panel::Train);
+    let (_folder, mut person) = before(Panel::Train, 2);
     person.click("Cross-validate it");
     let line = person.state().command_line.clone();
     assert!(line.ends_with(".mdb --method svrdm"), "{line}");
@@ -358,9 +338,7 @@ fn the_method_of_2009_has_a_confusion_matrix() {
 
 #[test]
 fn a_class_is_a_gesture_or_an_activity_and_it_can_be_said() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut person = Person::before(&[made(folder.path(), 3)]);
-    person.goes_to(Panel::Train);
+    let (_folder, mut person) = before(Panel::Train, 3);
     let store = person.state().store.as_ref().unwrap();
     let waves = store.snapshot.accepted().filter(|s| s.class == "wave");
     let longest = waves

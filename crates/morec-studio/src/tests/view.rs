@@ -6,20 +6,13 @@ use egui::{Color32, Key, Modifiers, Pos2, Shape};
 use egui_kittest::kittest::NodeT;
 use morec::roles::Role;
 
-use super::{Person, made, takes};
+use super::{Person, labelling, takes};
 use crate::body::LimbShape;
 use crate::state::{Command, FileCommand, Panel, PlayCommand, TrainCommand};
 
-fn labelling() -> (tempfile::TempDir, Person) {
-    let folder = tempfile::tempdir().unwrap();
-    let mut person = Person::before(&[made(folder.path(), 1)]);
-    person.goes_to(Panel::Label);
-    (folder, person)
-}
-
 #[test]
 fn the_performer_is_seen_from_each_side_nearer_and_farther() {
-    let (_folder, mut person) = labelling();
+    let (_folder, mut person) = labelling(1);
     let camera = |person: &Person| person.state().camera;
     person.click("Front");
     let front = camera(&person);
@@ -124,7 +117,7 @@ fn trail_is_right(person: &Person, at: f64, role: Role) {
 
 #[test]
 fn onion_skin_and_trail_are_of_the_right_moments_and_part_in_each_clip() {
-    let (folder, mut person) = labelling();
+    let (folder, mut person) = labelling(1);
     // A clip of another rig, in which every joint but the root has another number.
     let text = std::fs::read_to_string(folder.path().join("ben_1.bvh")).unwrap();
     let channels = text.find("CHANNELS").unwrap();
@@ -171,7 +164,7 @@ fn onion_skin_and_trail_are_of_the_right_moments_and_part_in_each_clip() {
 
 #[test]
 fn playing_is_steered_by_keys() {
-    let (_folder, mut person) = labelling();
+    let (_folder, mut person) = labelling(1);
     let speed = |person: &Person| {
         let player = &person.state().player;
         (player.playing, player.speed)
@@ -214,7 +207,7 @@ fn playing_is_steered_by_keys() {
 
 #[test]
 fn speeds_from_a_twentieth_to_eightfold_are_chosen_and_a_label_is_looped() {
-    let (_folder, mut person) = labelling();
+    let (_folder, mut person) = labelling(1);
     person.click("Playing speed");
     person.click("0.05×");
     assert_eq!(person.state().player.speed, 0.05);
@@ -237,7 +230,7 @@ fn speeds_from_a_twentieth_to_eightfold_are_chosen_and_a_label_is_looped() {
 
 #[test]
 fn panels_pages_and_themes_are_reached_by_keys_and_buttons() {
-    let (_folder, mut person) = labelling();
+    let (_folder, mut person) = labelling(1);
     for (panel, key) in Panel::ALL.into_iter().zip(crate::keys::CLASS_KEYS) {
         person.key_with(key, Modifiers::COMMAND);
         assert_eq!(person.state().panel, panel);
@@ -254,7 +247,7 @@ fn panels_pages_and_themes_are_reached_by_keys_and_buttons() {
 
 #[test]
 fn the_page_of_keys_has_room_in_a_small_window_and_a_shape_for_each_letter() {
-    let (_folder, mut person) = labelling();
+    let (_folder, mut person) = labelling(1);
     person.window.set_size(egui::vec2(1280.0, 720.0));
     person.key(Key::F1);
     person.frames(10);
@@ -291,7 +284,7 @@ fn each_letter_that_is_shown_has_a_shape() {
 
 #[test]
 fn a_step_in_the_middle_of_the_history_is_undone_by_its_name() {
-    let (_folder, mut person) = labelling();
+    let (_folder, mut person) = labelling(1);
     let before = person.labels();
     let ids: Vec<_> = person
         .state()

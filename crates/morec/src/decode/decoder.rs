@@ -289,7 +289,7 @@ impl Decoder {
     /// The candidate of a class at `tick` and its score, if its distance passes the threshold, and is no larger than any
     /// distance that counts nearby.
     fn gated(&self, tick: i64, class: usize) -> Option<(Candidate, f64)> {
-        let ClassDistance { distance, age, .. } = self.near(tick, class);
+        let distance = self.near(tick, class).distance;
         let threshold = self.thresholds[class];
         if distance >= threshold || distance >= self.gate(tick) {
             return None;
@@ -305,16 +305,8 @@ impl Decoder {
         if other < distance * self.params.rival_share {
             return None;
         }
-        let candidate = Candidate {
-            class: ClassId(class as u16),
-            tick,
-            age,
-            distance,
-            other,
-            negative: FAR,
-        };
         let score = 1.0 - f64::from(distance) / f64::from(threshold);
-        Some((candidate, score))
+        Some((self.candidate(tick, class, other, FAR), score))
     }
 
     /// The distance of the nearest match of another class that ends around `tick` and covers enough of the candidate.
@@ -351,15 +343,19 @@ impl Decoder {
                 other = other.min(self.near(t, rival).distance);
             }
         }
-        let candidate = Candidate {
+        Some((self.candidate(tick, class, other, negative), 0.0))
+    }
+
+    fn candidate(&self, tick: i64, class: usize, other: f32, negative: f32) -> Candidate {
+        let ClassDistance { distance, age, .. } = self.near(tick, class);
+        Candidate {
             class: ClassId(class as u16),
             tick,
             age,
             distance,
             other,
             negative,
-        };
-        Some((candidate, 0.0))
+        }
     }
 
     /// True if the stream ends before the peak at `tick` could be distinguished from a class still coming nearer.

@@ -1,6 +1,5 @@
 //! Status of a session, readable at any time without delaying recognition.
 
-use std::array;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, PoisonError, TryLockError};
 
@@ -206,25 +205,17 @@ impl SessionCounters {
     }
 
     fn read(&self) -> Status {
-        let [
-            packets,
-            malformed,
-            ignored,
-            not_motion,
-            incomplete,
-            late,
-            refused,
-            interruptions,
-        ] = array::from_fn(|i| self.source[i].load(Relaxed));
+        // As `source` puts them.
+        let count = |at: usize| self.source[at].load(Relaxed);
         let source = SourceCounts {
-            packets,
-            malformed,
-            ignored,
-            not_motion,
-            incomplete,
-            late,
-            refused,
-            interruptions,
+            packets: count(0),
+            malformed: count(1),
+            ignored: count(2),
+            not_motion: count(3),
+            incomplete: count(4),
+            late: count(5),
+            refused: count(6),
+            interruptions: count(7),
         };
         let bits = |cell: &AtomicU64| f64::from_bits(cell.load(Relaxed));
         let actor = |(i, cells): (usize, &PerformerCounters)| PerformerStatus {

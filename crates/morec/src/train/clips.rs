@@ -141,10 +141,8 @@ mod tests {
             ..TrainOptions::default()
         };
         let (model, report) = train_clips(&clips, &labelling, &options, &()).unwrap();
-        let joints = clips[0].clip.skeleton.joints();
-        let name = |role: Role| Some((role, joints[clips[0].roles.joint(role)?].name.clone()));
         let index = MotionIndex {
-            roles: Role::ALL.into_iter().filter_map(name).collect(),
+            roles: clips[0].role_names(),
             provenance: Provenance::default(),
             model: model.into(),
         };

@@ -286,12 +286,8 @@ impl TrainingData {
 
     /// Joint names by role, of the first labelled clip.
     pub fn role_names(&self) -> BTreeMap<Role, String> {
-        let Some(clip) = self.labelled().next() else {
-            return BTreeMap::new();
-        };
-        let joints = clip.clip.skeleton.joints();
-        let name = |role: Role| Some((role, joints[clip.roles.joint(role)?].name.clone()));
-        Role::ALL.into_iter().filter_map(name).collect()
+        let first = self.labelled().next();
+        first.map_or_else(BTreeMap::new, TrainClip::role_names)
     }
 }
 

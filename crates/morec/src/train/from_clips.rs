@@ -36,6 +36,15 @@ pub struct TrainClip {
     pub person: Option<String>,
 }
 
+impl TrainClip {
+    /// Joint names by role.
+    pub fn role_names(&self) -> BTreeMap<Role, String> {
+        let joints = self.clip.skeleton.joints();
+        let name = |role: Role| Some((role, joints[self.roles.joint(role)?].name.clone()));
+        Role::ALL.into_iter().filter_map(name).collect()
+    }
+}
+
 impl From<Take> for TrainClip {
     /// A labelled clip without a person.
     fn from(take: Take) -> Self {

@@ -54,10 +54,8 @@ fn trained(mapping: &str) -> MotionIndex {
         ..LabelSet::default()
     };
     let (model, _) = train_clips(&clips, &labelling, &TrainOptions::default(), &()).unwrap();
-    let joints = clips[0].clip.skeleton.joints();
-    let name = |role: Role| Some((role, joints[clips[0].roles.joint(role)?].name.clone()));
     let index = MotionIndex {
-        roles: Role::ALL.into_iter().filter_map(name).collect(),
+        roles: clips[0].role_names(),
         provenance: Provenance::default(),
         model: model.into(),
     };

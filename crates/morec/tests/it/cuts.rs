@@ -4,7 +4,6 @@ use std::sync::OnceLock;
 
 use morec::features::{BoneSet, MAX_GAP_SECS};
 use morec::live::{Detection, Recognizer};
-use morec::synth::{LimbSide, Person, Script};
 use proptest::prelude::*;
 
 use crate::engines::inline;
@@ -14,11 +13,7 @@ use crate::made::{self, Timed};
 fn stream() -> &'static (BoneSet, Vec<Timed>, Vec<Detection>) {
     static STREAM: OnceLock<(BoneSet, Vec<Timed>, Vec<Detection>)> = OnceLock::new();
     STREAM.get_or_init(|| {
-        let person = Person {
-            hand: LimbSide::Right,
-            ..Person::draw(88, 1)
-        };
-        let script = Script::new(88, person)
+        let script = made::right_handed(88, 1)
             .rest(0.5)
             .play("push")
             .rest(1.5)

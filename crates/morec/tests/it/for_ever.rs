@@ -5,9 +5,10 @@ use std::path::PathBuf;
 use morec::index::{INDEX_VERSION, MotionIndex};
 use morec::live::recognize_clip;
 use morec::roles::RoleMap;
-use morec::synth::{LimbSide, Person, Script, SyntheticTake};
+use morec::synth::SyntheticTake;
 use morec::train::thesis::SvrdmTrainParams;
 
+use crate::made;
 use crate::thesis_people::{index_of, trained};
 
 fn committed(name: &str) -> PathBuf {
@@ -22,11 +23,7 @@ fn read(name: &str) -> Vec<u8> {
 
 /// Somebody never seen, who performs two of the classes and something else.
 fn stream() -> SyntheticTake {
-    let person = Person {
-        hand: LimbSide::Right,
-        ..Person::draw(90, 3)
-    };
-    let script = Script::new(90, person)
+    let script = made::right_handed(90, 3)
         .rest(1.0)
         .play("wave")
         .rest(0.8)

@@ -8,7 +8,7 @@ use morec::features::Rows;
 use morec::index::{INDEX_VERSION, IndexError, MotionIndex, Provenance};
 use morec::live::Model;
 use morec::roles::Role;
-use morec::synth::{DatabaseSpec, LimbSide, Person, Script, SyntheticTake};
+use morec::synth::{DatabaseSpec, SyntheticTake};
 use morec::train::TrainParams;
 
 use crate::engines::inline;
@@ -150,11 +150,7 @@ fn a_newer_version_asks_for_a_newer_morec() {
 
 /// The stream of the compatibility test: both classes and something else, by somebody never seen.
 fn stream() -> SyntheticTake {
-    let person = Person {
-        hand: LimbSide::Right,
-        ..Person::draw(90, 3)
-    };
-    let script = Script::new(90, person)
+    let script = made::right_handed(90, 3)
         .rest(1.0)
         .play("push")
         .rest(0.8)

@@ -6,7 +6,7 @@ use morec::clip::Clip;
 use morec::features::{BoneSet, KeyPose, bones_of_clip, for_each_pose};
 use morec::labels::Sample;
 use morec::roles::RoleMap;
-use morec::synth::{DatabaseSpec, Person, Script, SyntheticTake, database, everyday};
+use morec::synth::{DatabaseSpec, LimbSide, Person, Script, SyntheticTake, database, everyday};
 use morec::templates::TemplateModel;
 use morec::train::{
     EVERYDAY_SEED, LabelSet, StreamKind, TrainClip, TrainOptions, TrainParams, train_clips,
@@ -23,6 +23,31 @@ pub fn poses(take: &SyntheticTake) -> (BoneSet, Vec<Timed>) {
         poses.push((time_secs, *pose))
     });
     (bones_of_clip(&take.clip, &roles, &(0..0)), poses)
+}
+
+/// What a right-handed person, the `number`-th that `seed` gives, is to perform: nothing yet.
+pub fn right_handed(seed: u64, number: usize) -> Script {
+    let person = Person {
+        hand: LimbSide::Right,
+        ..Person::draw(seed, number)
+    };
+    Script::new(seed, person)
+}
+
+/// Somebody never seen, who pushes and bows.
+#[allow(
+    dead_code,
+    reason = "not every program that includes this module plays it"
+)]
+pub fn performance(rate_hz: f64) -> SyntheticTake {
+    right_handed(90, 1)
+        .rest(0.5)
+        .play("push")
+        .rest(1.5)
+        .play("bow")
+        .rest(0.8)
+        .film("session", rate_hz)
+        .unwrap()
 }
 
 /// Trained on all gestures by six people, once for all tests.

@@ -3,19 +3,12 @@
 use std::sync::Arc;
 
 use morec::live::{Event, EventOptions, Frame, Performer, PerformerId, Phase, Rig};
-use morec::synth::{LimbSide, Person, Script};
 
 use crate::made::{self, Timed};
 
 /// Events of a push and a bow after it, at so many frames a second.
 fn told(progress: bool, hz: f64) -> Vec<Event> {
-    let person = Person {
-        hand: LimbSide::Right,
-        ..Person::draw(90, 1)
-    };
-    let script = Script::new(90, person).rest(0.5).play("push").rest(1.5);
-    let take = script.play("bow").rest(0.8).film("session", hz).unwrap();
-    let (_, poses): (_, Vec<Timed>) = made::poses(&take);
+    let (_, poses): (_, Vec<Timed>) = made::poses(&made::performance(hz));
     let options = EventOptions {
         progress,
         ..EventOptions::default()

@@ -10,24 +10,13 @@ use morec::live::{
 };
 use morec::math::Vec3;
 use morec::roles::Role;
-use morec::synth::{LimbSide, Person, Script};
 use morec::templates::TemplateModel;
 
 use crate::engines::{Played, ended, inline};
 use crate::made::{self, Timed};
 
 pub fn stream() -> Vec<Timed> {
-    let person = Person {
-        hand: LimbSide::Right,
-        ..Person::draw(90, 1)
-    };
-    let script = Script::new(90, person)
-        .rest(0.5)
-        .play("push")
-        .rest(1.5)
-        .play("bow")
-        .rest(0.8);
-    made::poses(&script.film("session", 60.0).unwrap()).1
+    made::poses(&made::performance(60.0)).1
 }
 
 fn all(mut reader: EventReader) -> Vec<Event> {

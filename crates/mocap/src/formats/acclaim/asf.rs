@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::skeleton::{AmcChannel, Asf, AsfBone, Root, composed};
-use super::text::{AsfLines, number, quoted, text, tokens};
+use super::text::{AsfLines, keyword, number, quoted, text, tokens};
 use crate::formats::{Limits, ParseError, Place, Warning};
 use crate::math::{Axis, Quat, Vec3};
 
@@ -110,12 +110,7 @@ impl<'a> AsfReader<'a> {
 
     fn unit(&mut self, line: u64, content: &[u8]) -> Result<(), ParseError> {
         let mut words = tokens(content);
-        match words
-            .next()
-            .unwrap_or_default()
-            .to_ascii_lowercase()
-            .as_slice()
-        {
+        match keyword(&mut words).as_slice() {
             b"length" => {
                 let length = one_number(line, words.next(), "the unit of length")?;
                 if length > 0.0 {
@@ -147,12 +142,7 @@ impl<'a> AsfReader<'a> {
 
     fn root_line(&mut self, line: u64, content: &[u8]) -> Result<(), ParseError> {
         let mut words = tokens(content);
-        match words
-            .next()
-            .unwrap_or_default()
-            .to_ascii_lowercase()
-            .as_slice()
-        {
+        match keyword(&mut words).as_slice() {
             b"order" => self.root_channels = channels(line, words)?,
             b"axis" => self.root_axes = axis_order(line, words.next())?,
             b"position" => {
@@ -179,12 +169,7 @@ impl<'a> AsfReader<'a> {
                 ));
             };
             let mut words = tokens(content);
-            match words
-                .next()
-                .unwrap_or_default()
-                .to_ascii_lowercase()
-                .as_slice()
-            {
+            match keyword(&mut words).as_slice() {
                 b"end" => break,
                 b"begin" => {
                     let expected = format!("`end` of the bone begun on line {begin}");

@@ -67,6 +67,11 @@ pub(super) fn tokens(line: &[u8]) -> impl Iterator<Item = &[u8]> {
     line.split(blank).filter(|token| !token.is_empty())
 }
 
+/// The next of the words, in lower case; empty after the last.
+pub(super) fn keyword<'a>(words: &mut impl Iterator<Item = &'a [u8]>) -> Vec<u8> {
+    words.next().unwrap_or_default().to_ascii_lowercase()
+}
+
 /// A token as text: UTF-8 where it is, Latin-1 where it is not.
 pub(super) fn text(token: &[u8]) -> Cow<'_, str> {
     match std::str::from_utf8(token) {

@@ -137,26 +137,17 @@ pub(super) fn table(
         characters,
         tally: RepairCounts::default(),
     };
-    let MotionTable {
-        characters, tally, ..
-    } = table.by_line(text, request, notes)?;
-    if tally.flows(width, request.declared) {
-        characters.iter_mut().for_each(Character::clear);
+    let table = table.by_line(text, request, notes)?;
+    if table.tally.flows(width, request.declared) {
+        table.characters.iter_mut().for_each(Character::clear);
         let words = "frames are not on one line each; the numbers are read as one sequence, because their count fits";
-        notes.add(Place::Line(tally.first_line), words);
-        let table = MotionTable {
-            width,
-            max_frames,
-            affordable,
-            limits: request.limits,
-            characters,
-            tally: RepairCounts::default(),
-        };
+        notes.add(Place::Line(table.tally.first_line), words);
+        let tally = RepairCounts::default();
         text.rewind()?;
-        table.by_stream(text, request, notes)?;
+        MotionTable { tally, ..table }.by_stream(text, request, notes)?;
         return Ok(Vec::new());
     }
-    tally.judge(width, request, notes)
+    table.tally.judge(width, request, notes)
 }
 
 /// Gives every row of the table to `take`: its numbers, its line, what it is.

@@ -50,7 +50,6 @@ pub fn read(
     rate_hz: Option<f64>,
     limits: &Limits,
 ) -> Result<Loaded, ParseError> {
-    let mut warnings = Vec::new();
     let Some(block) = bytes.first_chunk::<BLOCK>() else {
         let found = match bytes.len() {
             0 => "an empty file".to_owned(),
@@ -62,6 +61,7 @@ pub fn read(
             found,
         ));
     };
+    let mut warnings = Vec::new();
     let (start, processor) = parameter_section(bytes, block, &mut warnings)?;
     let header = C3dHeader::read(block, processor);
     let parameters = Parameters::read(bytes, start, processor, &mut warnings);

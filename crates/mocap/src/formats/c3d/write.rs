@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use super::super::points::named_unit;
+use super::super::points::{as_points, named_unit};
 use super::params::BLOCK;
 use crate::clip::Clip;
 use crate::math::Vec3;
@@ -18,13 +18,7 @@ const LABEL: usize = 32;
 /// # Errors
 /// An I/O error of `out`.
 pub fn write(clip: &Clip, out: &mut dyn Write) -> io::Result<()> {
-    let made;
-    let clip = if clip.has_rotations() {
-        made = clip.to_points(None);
-        &made
-    } else {
-        clip
-    };
+    let clip = &*as_points(clip);
     let (unit, factor) = named_unit(clip);
     let parameters = parameters(clip, unit);
     let blocks = parameters.len() / BLOCK;

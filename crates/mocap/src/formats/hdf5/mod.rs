@@ -11,6 +11,7 @@ mod pandas;
 use hdf5_pure::File;
 
 use self::contents::{Hdf5Contents, damaged};
+use super::descriptor::FormatInput;
 use super::npy::Array;
 use super::numpy::{self, ArrayArchive};
 use super::{Limits, Loaded, ParseError, Place, table};
@@ -25,32 +26,31 @@ pub fn read(
     rate_hz: Option<f64>,
     limits: &Limits,
 ) -> Result<Loaded, ParseError> {
-    read_as(bytes, name, rate_hz, limits, false)
+    read_as(&FormatInput::alone(bytes, name, rate_hz, limits))
 }
 
-/// [`read`]; with `planar`, of points in two dimensions too, whose z is 0.
-pub(super) fn read_as(
-    bytes: &[u8],
-    name: &str,
-    rate_hz: Option<f64>,
-    limits: &Limits,
-    planar: bool,
-) -> Result<Loaded, ParseError> {
-    let limits = limits.of_packed(bytes.len()).without(bytes.len())?;
-    let file = File::from_bytes(bytes.to_vec()).map_err(damaged)?;
+/// [`read`]; of points in two dimensions too if `planar` is set, whose z is 0.
+pub(super) fn read_as(input: &FormatInput<'_>) -> Result<Loaded, ParseError> {
+    let size = input.bytes.len();
+    let limits = input.limits.of_packed(size).without(size)?;
+    let file = File::from_bytes(input.bytes.to_vec()).map_err(damaged)?;
     let tree = Hdf5Contents::of(file, limits)?;
     if let Some(text) = pandas::as_csv(&tree)? {
         let limits = tree.limits.without(text.len())?;
-        return table::read_as(text.as_bytes(), name, rate_hz, &limits, planar);
+        return table::read_as(&FormatInput {
+            bytes: text.as_bytes(),
+            limits: &limits,
+            ..*input
+        });
     }
-    if let Some(timed) = nwb::series(&tree, rate_hz)? {
-        return timed.into_loaded(name, Vec::new(), &tree.limits);
+    if let Some(timed) = nwb::series(&tree, input.rate_hz)? {
+        return timed.into_loaded(input.name, Vec::new(), &tree.limits);
     }
     let archive = arrays(&tree)?;
     if !archive.numbers.contains_key(numpy::POSITION) {
         return Err(no_poses(&tree));
     }
-    numpy::of_arrays(&archive, bytes.len(), name, rate_hz, &tree.limits, planar)
+    numpy::of_arrays(&archive, input, &tree.limits)
 }
 
 /// Arrays by the keys that [`numpy`] knows: positions, names, times and rates wherever they are.

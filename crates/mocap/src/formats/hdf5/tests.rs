@@ -43,7 +43,12 @@ fn poses_of_every_writer_are_the_same() {
 fn places_in_a_picture_are_refused_but_for_a_custom_skeleton() {
     let error = read(PICTURE, "clip", None, &Limits::default()).unwrap_err();
     assert!(error.found.contains("two dimensions"), "{error}");
-    let loaded = read_as(PICTURE, "clip", None, &Limits::default(), true).unwrap();
+    let limits = Limits::default();
+    let loaded = read_as(&FormatInput {
+        planar: true,
+        ..FormatInput::alone(PICTURE, "clip", None, &limits)
+    })
+    .unwrap();
     let clip = &loaded.clips[0];
     assert_eq!((clip.frames, clip.skeleton.len()), (6, 8));
     assert!(

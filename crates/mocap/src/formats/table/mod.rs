@@ -24,7 +24,7 @@ pub(super) use self::columns::axis_of;
 use self::columns::is_value;
 use self::layout::{ColumnLayout, IN_PLANE, TableFrames, TableLine};
 use super::cells::{Decimal, clock, empty_rows, lines, number, split, utf8};
-use super::descriptor::FormatDescriptor;
+use super::descriptor::{FormatDescriptor, FormatInput};
 use super::points::{IN_A_PICTURE, Point, UNSEEN, check_size};
 use super::timing::{Clock, Stamps, TimedPoints};
 use super::{Limits, Loaded, ParseError, Place, Warning, opensim};
@@ -39,15 +39,7 @@ pub(super) const FORMAT: FormatDescriptor = FormatDescriptor {
         !h.is_binary() && (!opensim::is_table(h) || opensim::has_markers(h)) && looks_so(h.bytes)
     },
     up: None,
-    read: |file| {
-        read_as(
-            file.bytes,
-            file.name,
-            file.rate_hz,
-            file.limits,
-            file.planar,
-        )
-    },
+    read: read_as,
 };
 
 /// TableFrames a second of a table without times.
@@ -64,21 +56,16 @@ pub fn read(
     rate_hz: Option<f64>,
     limits: &Limits,
 ) -> Result<Loaded, ParseError> {
-    read_as(bytes, name, rate_hz, limits, false)
+    read_as(&FormatInput::alone(bytes, name, rate_hz, limits))
 }
 
-/// [`read`]; with `planar`, of points in two dimensions too, whose z is 0.
-pub(super) fn read_as(
-    bytes: &[u8],
-    name: &str,
-    rate_hz: Option<f64>,
-    limits: &Limits,
-    planar: bool,
-) -> Result<Loaded, ParseError> {
+/// [`read`]; of points in two dimensions too if `planar` is set, whose z is 0.
+pub(super) fn read_as(file: &FormatInput<'_>) -> Result<Loaded, ParseError> {
+    let (bytes, planar) = (file.bytes, file.planar);
     let text = utf8(bytes);
-    let rows = lines(&text, limits)?;
+    let rows = lines(&text, file.limits)?;
     let separator = separator(&rows);
-    let limits = &limits_beside(&rows, separator, limits)?;
+    let limits = &limits_beside(&rows, separator, file.limits)?;
     let mut cells: Vec<TableLine> = Vec::with_capacity(rows.len());
     for (line, row) in &rows {
         cells.push((*line, split(row, separator)));
@@ -109,7 +96,7 @@ pub(super) fn read_as(
         warnings.push(Warning::new(Place::File, note));
     }
     let clock = Clock {
-        given_hz: rate_hz,
+        given_hz: file.rate_hz,
         stated_hz: layout.rate_hz,
         assumed_hz: ASSUMED_HZ,
     };
@@ -119,7 +106,7 @@ pub(super) fn read_as(
         clock,
         metres_per_unit: layout.metres_per_unit,
     };
-    timed.into_loaded(name, warnings, limits)
+    timed.into_loaded(file.name, warnings, limits)
 }
 
 /// Adds the rows whose cells are all empty, as gaps, where a table has neither times nor frame numbers. Empty

@@ -55,7 +55,6 @@ pub fn read(
     rate_hz: Option<f64>,
     limits: &Limits,
 ) -> Result<Loaded, ParseError> {
-    let mut warnings = Vec::new();
     let rows = lines(bytes, limits)?;
     let Some((at, separator)) = names_row(&rows) else {
         let found = match rows.len() {
@@ -77,6 +76,7 @@ pub fn read(
             "none: the file contains no points",
         ));
     }
+    let mut warnings = Vec::new();
     if let Some(stated) = heading.points.filter(|&n| n != columns.len() as f64) {
         let text = format!(
             "{} points are named, the header states {stated}",

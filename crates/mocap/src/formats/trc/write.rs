@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use super::super::points::named_unit;
+use super::super::points::{as_points, named_unit};
 use crate::clip::Clip;
 
 /// Writes a clip as TRC: its points, or where its joints are in the world. Lengths stay as they are if their unit has a
@@ -11,13 +11,7 @@ use crate::clip::Clip;
 /// # Errors
 /// An I/O error of `out`.
 pub fn write(clip: &Clip, out: &mut dyn Write) -> io::Result<()> {
-    let made;
-    let clip = if clip.has_rotations() {
-        made = clip.to_points(None);
-        &made
-    } else {
-        clip
-    };
+    let clip = &*as_points(clip);
     let (unit, factor) = named_unit(clip);
     let (rate, frames, points) = (clip.rate_hz, clip.frames, clip.tracks.len());
     writeln!(out, "PathFileType\t4\t(X/Y/Z)\t{}.trc", cell(&clip.name))?;

@@ -46,7 +46,7 @@ pub(super) const JOINTS: PointSet = PointSet {
     more_roles: &[],
 };
 
-const fn landmarks(
+pub(super) const fn landmarks(
     name: &'static str,
     points: &'static str,
     roles: &'static [(&'static str, &'static str)],
@@ -60,6 +60,12 @@ const fn landmarks(
         more_roles: JOINTS.roles,
     }
 }
+
+const AZURE_KINECT: &[(&str, &str)] = &[
+    ("?_shoulder", "?clavicle"),
+    ("torso", "spinenavel|spinechest"),
+    ("head", "head"),
+];
 
 /// Each with the order of its points.
 pub(super) const SETS: [PointSet; 20] = [
@@ -135,11 +141,7 @@ pub(super) const SETS: [PointSet; 20] = [
         "pelvis spinenavel spinechest neck lclavicle lshoulder lelbow lwrist lhand lhandtip lthumb rclavicle \
          rshoulder relbow rwrist rhand rhandtip rthumb lhip lknee lankle lfoot rhip rknee rankle rfoot head nose \
          leye lear reye rear",
-        &[
-            ("?_shoulder", "?clavicle"),
-            ("torso", "spinenavel|spinechest"),
-            ("head", "head"),
-        ],
+        AZURE_KINECT,
     ),
     // Body tracking of Stereolabs' ZED SDK, BODY_34 and BODY_38.
     PointSet {
@@ -149,11 +151,7 @@ pub(super) const SETS: [PointSet; 20] = [
             "pelvis spinenavel spinechest neck lclavicle lshoulder lelbow lwrist lhand lhandtip lthumb rclavicle \
              rshoulder relbow rwrist rhand rhandtip rthumb lhip lknee lankle lfoot rhip rknee rankle rfoot head nose \
              leye lear reye rear lheel rheel",
-            &[
-                ("?_shoulder", "?clavicle"),
-                ("torso", "spinenavel|spinechest"),
-                ("head", "head"),
-            ],
+            AZURE_KINECT,
         )
     },
     PointSet {

@@ -3,6 +3,7 @@
 //! Where a joint has markers on both sides, it is their middle; where it has one, the marker stands for it: directions of
 //! bones are then a few degrees off, always alike. Hip joints come from the pelvis ([`PointJoint`](super::PointJoint)).
 
+use super::landmarks::landmarks;
 use super::set::PointSet;
 
 const fn markers(
@@ -11,12 +12,9 @@ const fn markers(
     roles: &'static [(&'static str, &'static str)],
 ) -> PointSet {
     PointSet {
-        name,
-        points,
         numbered: false,
-        by_name: true,
-        roles,
         more_roles: &[],
+        ..landmarks(name, points, roles)
     }
 }
 

@@ -59,34 +59,7 @@ fn every_set_knows_itself_by_name_and_gives_a_body() {
 
 #[test]
 fn spellings_and_subjects_do_not_matter() {
-    let kinect = [
-        "SpineBase",
-        "SpineMid",
-        "Neck",
-        "Head",
-        "ShoulderLeft",
-        "ElbowLeft",
-        "WristLeft",
-        "HandLeft",
-        "ShoulderRight",
-        "ElbowRight",
-        "WristRight",
-        "HandRight",
-        "HipLeft",
-        "KneeLeft",
-        "AnkleLeft",
-        "FootLeft",
-        "HipRight",
-        "KneeRight",
-        "AnkleRight",
-        "FootRight",
-        "SpineShoulder",
-        "HandTipLeft",
-        "ThumbLeft",
-        "HandTipRight",
-        "ThumbRight",
-    ];
-    let (set, known) = roles(&kinect);
+    let (set, known) = roles(&crate::formats::ntu::JOINTS);
     assert_eq!((set.as_str(), known.len()), ("Kinect v2 (25)", 16));
     let gait: Vec<String> = "LFHD RFHD LBHD RBHD C7 T10 CLAV STRN RBAK LSHO LUPA LELB LFRA LWRA LWRB LFIN RSHO RUPA RELB \
         RFRA RWRA RWRB RFIN LASI RASI LPSI RPSI LTHI LKNE LTIB LANK LHEE LTOE RTHI RKNE RTIB RANK RHEE RTOE"

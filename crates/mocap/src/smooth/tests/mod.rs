@@ -27,17 +27,15 @@ pub(crate) fn one_joint(
         offset: Vec3::zeros(),
         tip: None,
     };
-    let tracks = vec![JointTrack {
-        joint: 0,
-        positions: times.map(position).collect(),
-    }];
-    let skeleton = Skeleton::new(vec![root]).unwrap();
     Clip {
         name: "one".into(),
-        skeleton,
+        skeleton: Skeleton::new(vec![root]).unwrap(),
         rate_hz,
         rotations,
-        tracks,
+        tracks: vec![JointTrack {
+            joint: 0,
+            positions: times.map(position).collect(),
+        }],
         frames,
         repaired: Vec::new(),
         points: None,

@@ -45,11 +45,7 @@ pub(super) fn convert(args: &Args, wanted: &Wanted) -> Result<ExitCode> {
     let mut taken: BTreeSet<PathBuf> = BTreeSet::new();
     for (path, name) in &from {
         let done = one(path, &output.join(name), form, args, wanted, &mut taken);
-        if let Err(error) = done {
-            failed = true;
-            progress.suspend(|| eprintln!("morec: {error:#}"));
-        }
-        progress.step();
+        failed |= progress.step_of(done).is_none();
     }
     drop(progress);
     eprintln!(

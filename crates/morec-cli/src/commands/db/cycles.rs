@@ -177,15 +177,14 @@ fn split(db: &mut MotionDb, found: &[Counted]) -> Result<()> {
         }
         old.extend(&stretch.samples);
         for pair in cycles.bounds(stretch.span.duration_secs()).windows(2) {
-            new.push(NewSample {
-                clip: stretch.id,
-                class: class.clone(),
-                start_secs: stretch.span.start_secs + pair[0],
-                stop_secs: stretch.span.start_secs + pair[1],
-                whole_clip: false,
-                state: SampleState::Accepted,
-                score: None,
-            });
+            new.push(NewSample::accepted(
+                stretch.id,
+                &class,
+                TimeSpan::new(
+                    stretch.span.start_secs + pair[0],
+                    stretch.span.start_secs + pair[1],
+                ),
+            ));
         }
     }
     db.add_samples(&new, "cycles")?;

@@ -7,7 +7,7 @@ use morec::clip::Clip;
 use morec::features::{Hand, Profile};
 use morec::kinematics::WorldPose;
 use morec::math::Vec3;
-use morec::roles::{Role, RoleMap};
+use morec::roles::{BODY_LINES, Role, RoleMap};
 use morec_db::StoredClip;
 
 /// Height of a strip, in pixels.
@@ -77,29 +77,11 @@ fn body_height(clip: &Clip, profile: Profile, frame: usize) -> f64 {
 
 /// Start of the bone that ends in `joint`: its parent; in a clip of points the role before its own.
 fn bone_start(clip: &Clip, roles: &RoleMap, joint: usize) -> Option<usize> {
-    use Role::*;
-    const BONES: [(Role, Role); 15] = [
-        (Hips, LeftThigh),
-        (LeftThigh, LeftShin),
-        (LeftShin, LeftFoot),
-        (Hips, RightThigh),
-        (RightThigh, RightShin),
-        (RightShin, RightFoot),
-        (Hips, Neck),
-        (Neck, Head),
-        (Neck, LeftArm),
-        (LeftArm, LeftForearm),
-        (LeftForearm, LeftHand),
-        (Neck, RightArm),
-        (RightArm, RightForearm),
-        (RightForearm, RightHand),
-        (Hips, Torso),
-    ];
     if clip.has_rotations() {
         return clip.skeleton.joints()[joint].parent;
     }
     let ends_here = |(_, end): &&(Role, Role)| roles.joint(*end) == Some(joint);
-    let body = BONES.iter().copied();
+    let body = BODY_LINES.into_iter();
     let is_known = |role: Role| roles.joint(role).is_some();
     let hands = Hand::BOTH.into_iter().flat_map(|hand| hand.lines(is_known));
     let (start, _) = body.chain(hands).find(|bone| ends_here(&bone))?;

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Error, Result};
+use morec::TimeSpan;
 use morec_db::{ClipFilter, EmbeddingTable, MotionDb, WordHit, WordHits, WordIndex};
 use morec_ops::captions_of;
 
@@ -72,27 +73,22 @@ pub fn by_embeddings(
     }
     let mut listed = TextTable::new(["clip", "start", "stop", "score"]);
     for hit in &found.hits {
-        listed.row([
-            hit.clip_name.clone(),
-            format!("{:.2}", hit.span.start_secs),
-            format!("{:.2}", hit.span.stop_secs),
-            format!("{:.3}", hit.score),
-        ]);
+        listed.row(cells(&hit.clip_name, hit.span, hit.score));
     }
     print::print_table(&listed, "")
+}
+
+/// What every hit is printed with: clip, start, stop, score.
+fn cells(clip: &str, span: TimeSpan, score: f64) -> [String; 4] {
+    let [start, stop] = [span.start_secs, span.stop_secs].map(|secs| format!("{secs:.2}"));
+    [clip.to_owned(), start, stop, format!("{score:.3}")]
 }
 
 fn print_hits(words: &str, found: &WordHits) -> Result<()> {
     let mut table = TextTable::new(["clip", "start", "stop", "score", "text", "words in"]);
     for hit in &found.hits {
-        table.row([
-            hit.clip_name.clone(),
-            format!("{:.2}", hit.span.start_secs),
-            format!("{:.2}", hit.span.stop_secs),
-            format!("{:.3}", hit.score),
-            hit.text.clone(),
-            places(hit),
-        ]);
+        let found = cells(&hit.clip_name, hit.span, hit.score);
+        table.row(found.into_iter().chain([hit.text.clone(), places(hit)]));
     }
     let mut last = match found.hits.len() {
         0 => format!("nothing is described by {words:?}\n"),

@@ -15,7 +15,7 @@ fn close(value: Option<f64>, expected: f64) {
     );
 }
 
-fn truth(clip: &str, class: &str, start_secs: f64, stop_secs: f64) -> GroundTruth {
+pub(crate) fn truth(clip: &str, class: &str, start_secs: f64, stop_secs: f64) -> GroundTruth {
     GroundTruth {
         clip: clip.into(),
         class: class.into(),
@@ -23,7 +23,7 @@ fn truth(clip: &str, class: &str, start_secs: f64, stop_secs: f64) -> GroundTrut
     }
 }
 
-fn found(clip: &str, class: &str, start_secs: f64, stop_secs: f64) -> ClipDetection {
+pub(crate) fn found(clip: &str, class: &str, start_secs: f64, stop_secs: f64) -> ClipDetection {
     ClipDetection {
         clip: clip.into(),
         class: class.into(),

@@ -1,7 +1,7 @@
 //! Groups of what is alike, and what of them becomes classes.
 
 use morec::cluster::KwasParams;
-use morec_db::labels::{NewSample, SampleId, SampleState as Judged};
+use morec_db::labels::{NewSample, SampleId};
 use morec_ops::{GroupMethod, GroupSettings, ProposeSettings};
 
 use super::lines::ShownCommand;
@@ -65,15 +65,7 @@ impl State {
         let ids: Vec<SampleId> = items().filter_map(|i| i.sample).collect();
         let new: Vec<NewSample> = items()
             .filter(|i| i.sample.is_none())
-            .map(|i| NewSample {
-                clip: i.of.clip,
-                class: name.trim().to_owned(),
-                start_secs: i.of.span.start_secs,
-                stop_secs: i.of.span.stop_secs,
-                whole_clip: false,
-                state: Judged::Accepted,
-                score: None,
-            })
+            .map(|i| NewSample::accepted(i.of.clip, name.trim(), i.of.span))
             .collect();
         if !ids.is_empty() {
             let class = name.trim().to_owned();

@@ -1,6 +1,7 @@
 //! Search by example, and labels from its hits.
 
-use morec_db::labels::{NewSample, SampleState as Judged};
+use morec_db::labels::NewSample;
+use morec_db::labels::SampleState;
 use morec_db::search::Hit;
 
 use super::lines::ShownCommand;
@@ -112,7 +113,7 @@ impl State {
         let store = self.store.iter();
         let mut samples = store.flat_map(|store| store.snapshot.samples_of(hit.clip));
         samples.any(|sample| {
-            sample.state == Judged::Accepted
+            sample.state == SampleState::Accepted
                 && sample.class == class
                 && sample.span().matches(hit.span)
         })
@@ -150,13 +151,5 @@ impl State {
 
 /// A hit as a label.
 fn labelled(hit: &Hit, class: &str) -> NewSample {
-    NewSample {
-        clip: hit.clip,
-        class: class.to_owned(),
-        start_secs: hit.span.start_secs,
-        stop_secs: hit.span.stop_secs,
-        whole_clip: false,
-        state: Judged::Accepted,
-        score: None,
-    }
+    NewSample::accepted(hit.clip, class, hit.span)
 }

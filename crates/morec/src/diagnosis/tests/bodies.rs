@@ -65,16 +65,7 @@ fn turned_worlds_are_told_with_what_to_send() {
     for (label, spoil, send, mend) in cases {
         let spoiled = moved(&poses, |_, p| spoil(p));
         assert_eq!(found(&spoiled), [label], "{send}");
-        let mut diagnoser = Diagnoser::live();
-        spoiled
-            .iter()
-            .for_each(|(secs, pose)| diagnoser.push(*secs, *secs, pose));
-        let text = diagnoser
-            .diagnosis()
-            .findings()
-            .worst()
-            .unwrap()
-            .to_string();
+        let text = worst(&punctual(&spoiled));
         assert!(text.contains(&format!("send {send}")), "{text}");
         assert_eq!(found(&moved(&spoiled, |_, p| mend(p))), [""; 0], "{send}");
     }

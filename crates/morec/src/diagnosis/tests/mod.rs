@@ -39,6 +39,20 @@ fn found(poses: &[Timed]) -> Vec<&'static str> {
     labels(&diagnoser)
 }
 
+/// What a live stream whose poses arrive at their times is told.
+fn punctual(poses: &[Timed]) -> Diagnoser {
+    let mut diagnoser = Diagnoser::live();
+    poses
+        .iter()
+        .for_each(|(secs, pose)| diagnoser.push(*secs, *secs, pose));
+    diagnoser
+}
+
+fn worst(diagnoser: &Diagnoser) -> String {
+    let diagnosis = diagnoser.diagnosis();
+    diagnosis.findings().worst().unwrap().to_string()
+}
+
 fn labels(diagnoser: &Diagnoser) -> Vec<&'static str> {
     diagnoser
         .diagnosis()

@@ -18,17 +18,9 @@ fn times_that_are_no_seconds_are_reported() {
         (|t| t * 60.0, "frame numbers"),
         (|t| t * 1e-3, "0.017 ms apart"),
     ] {
-        let mut diagnoser = Diagnoser::live();
-        at(time)
-            .iter()
-            .for_each(|(secs, pose)| diagnoser.push(*secs, *secs, pose));
+        let diagnoser = punctual(&at(time));
         assert_eq!(labels(&diagnoser), [label], "{said}");
-        let text = diagnoser
-            .diagnosis()
-            .findings()
-            .worst()
-            .unwrap()
-            .to_string();
+        let text = worst(&diagnoser);
         assert!(text.contains(said), "{text}");
     }
     assert_eq!(found(&at(|_| 1.0)), ["times do not increase"]);
