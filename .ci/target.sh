@@ -15,7 +15,8 @@ skip() {
 rust_for() {
     local debian=(rustc-web cargo-web rust-web-src) linker
     cargo=(cargo) std=()
-    if command -v rustup >/dev/null && rustup target list --installed 2>/dev/null | grep -qx "$1"; then
+    # Not a pipe: `grep -q` closes it at the first hit, and rustup fails of that now and then.
+    if command -v rustup >/dev/null && grep -qx "$1" <<<"$(rustup target list --installed 2>/dev/null)"; then
         return
     fi
     have_packages "${debian[@]}" || skip "there is no Rust for $1 here (rustup target add $1, or Debian's ${debian[*]})"

@@ -133,9 +133,10 @@ test("countdown, motion, bars and problems lie large over the picture, each in i
     assert.ok(said.large.includes(motion), said.large.join("; "));
     assert.ok(said.bars.includes(`${motion}: recognised`), said.bars.join("; "));
   }
-  // A person of 40 m: what is wrong lies at the top of the picture, the bars at its bottom.
+  // A person of 500, too tall for centimetres and too small for millimetres: what is wrong lies at the top of the picture, the bars at its
+  // bottom.
   const grown = lines.map((line) => JSON.parse(line)).map(({ t, positions }) => JSON.stringify({
-    t, positions: Object.fromEntries(Object.entries(positions).map(([role, place]) => [role, place.map((value) => 23 * value)])),
+    t, positions: Object.fromEntries(Object.entries(positions).map(([role, place]) => [role, place.map((value) => 300 * value)])),
   }));
   await page.locator("#source-file").setInputFiles({ name: "grown.jsonl", mimeType: "application/json", buffer: Buffer.from(grown.join("\n")) });
   await page.locator("#diagnosis li").first().waitFor();
