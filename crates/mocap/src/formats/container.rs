@@ -3,7 +3,6 @@
 use std::borrow::Cow;
 use std::io::{Cursor, Read};
 
-use super::encoding::utf_16;
 use super::{ParseError, Place};
 pub use crate::limits::memory_of_packed;
 
@@ -117,15 +116,16 @@ pub fn zip_paths(bytes: &[u8]) -> Result<Vec<String>, ParseError> {
 
 /// Text in UTF-16, with a byte order mark or beginning with ASCII letters, as UTF-8; other bytes as they are.
 pub fn utf8(bytes: &[u8]) -> Cow<'_, [u8]> {
-    let unit = match bytes {
+    let encoding = match bytes {
         [0xff, 0xfe, 0, 0, ..] => return bytes.into(),
-        [0xff, 0xfe, ..] => u16::from_le_bytes,
-        [0xfe, 0xff, ..] => u16::from_be_bytes,
-        _ if every_other_is_zero(bytes, 1) => u16::from_le_bytes,
-        _ if every_other_is_zero(bytes, 0) => u16::from_be_bytes,
+        [0xff, 0xfe, ..] => encoding_rs::UTF_16LE,
+        [0xfe, 0xff, ..] => encoding_rs::UTF_16BE,
+        _ if every_other_is_zero(bytes, 1) => encoding_rs::UTF_16LE,
+        _ if every_other_is_zero(bytes, 0) => encoding_rs::UTF_16BE,
         _ => return bytes.into(),
     };
-    utf_16(bytes, unit).into_bytes().into()
+    let (text, _, _) = encoding.decode(bytes);
+    text.into_owned().into_bytes().into()
 }
 
 /// Text without the zero bytes behind its end, which a disk or a crash leaves there; other bytes as they are.

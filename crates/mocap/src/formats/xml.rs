@@ -4,7 +4,6 @@ use std::borrow::Cow;
 
 use roxmltree::{Document, Node, ParsingOptions};
 
-use super::encoding::windows_1252;
 use super::{Limits, ParseError, Place};
 
 /// UTF-8; producers of other encodings keep them to names and comments.
@@ -18,7 +17,7 @@ pub(super) fn text_of(bytes: &[u8]) -> Result<Cow<'_, str>, ParseError> {
     }
     Ok(match std::str::from_utf8(bytes) {
         Ok(text) => text.into(),
-        Err(_) => windows_1252(bytes).into(),
+        Err(_) => encoding_rs::WINDOWS_1252.decode(bytes).0,
     })
 }
 

@@ -1,7 +1,6 @@
 //! The parameter section: groups of named tables.
 
 use super::number::Processor;
-use crate::formats::encoding::windows_1252;
 use crate::formats::{Place, Warning};
 
 /// Bytes in a block, the unit in which C3D counts.
@@ -205,7 +204,7 @@ fn text(bytes: &[u8]) -> String {
     let bytes = &bytes[..end];
     let text = match std::str::from_utf8(bytes) {
         Ok(text) => text.to_owned(),
-        Err(_) => windows_1252(bytes),
+        Err(_) => encoding_rs::WINDOWS_1252.decode(bytes).0.into_owned(),
     };
     text.trim().to_owned()
 }
