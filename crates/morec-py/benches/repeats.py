@@ -3,7 +3,7 @@
     python repeats.py FOLDER [--hours 100] [--minutes 15] [--rounds 2]
 
 FOLDER holds BVH clips of positions, such as those of `sessions`. Ten copies of each have slow noise on every channel of their own; they are imported again
-under other names until there are as many hours. Printed are hours, seconds and the most memory so far of each step, and the number of sets.
+and again, each time with one value changed, until there are as many hours. Printed are hours, seconds and the most memory so far of each step, and the number of sets.
 """
 
 from __future__ import annotations
@@ -36,6 +36,13 @@ def noisy(text: str, rng: np.random.Generator) -> str:
     return f"{head}MOTION\n{lines[0]}\n{lines[1]}\n{rows}\n"
 
 
+def changed(text: str) -> str:
+    """The same clip but for one value: an archive holds no motion twice."""
+    rest, last = text.rstrip().rsplit("\n", 1)
+    value, others = last.split(maxsplit=1)
+    return f"{rest}\n{float(value) + 0.01:.2f} {others}\n"
+
+
 def main() -> None:
     parser = argparse.ArgumentParser()
     parser.add_argument("folder", type=Path)
@@ -62,7 +69,8 @@ def main() -> None:
             archive = ma.create(f"{folder}/archive", from_files=f"{made}/*.bvh")
             for file in sorted(made.iterdir()):
                 stem, copy = file.stem.rsplit("_", 1)
-                file.rename(made / f"{stem}_{int(copy) + TOGETHER}.bvh")
+                (made / f"{stem}_{int(copy) + TOGETHER}.bvh").write_text(changed(file.read_text()))
+                file.unlink()
         say(f"{archive.info()['hours']:.1f} hours made", begun)
         begun = time.perf_counter()
         sets = archive.discover(minutes=args.minutes, rounds=args.rounds)

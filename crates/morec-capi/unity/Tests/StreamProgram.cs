@@ -32,8 +32,8 @@ static class StreamProgram
     {
         var options = new StreamOptions { leftHanded = Array.IndexOf(arguments, "mirrored") > 0 };
         if (Array.IndexOf(arguments, "named") < 0) return new MotionStream(index, options, 0);
-        var parents = new[] { -1, 0, 1, 2, 0, 4, 5, 0, 7, 8, 7, 10, 11, 12, 7, 14, 15, 16 };
-        var names = new string[parents.Length];
+        var names = new string[MotionStream.Roles];
+        var parents = Array.ConvertAll(names, name => -1);
         for (var role = 0; role < names.Length; role++) names[role] = Marshal.PtrToStringAnsi(Native.morec_role_name(role));
         return new MotionStream(index, options, names, parents);
     }

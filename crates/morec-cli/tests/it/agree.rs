@@ -43,7 +43,7 @@ fn what_cannot_be_compared_is_named() {
         "{said}"
     );
     let said = folder.morec(&["agree", "ann.tsv", "other.tsv"]).fails();
-    assert!(said.contains("no clip is labelled in both"), "{said}");
+    assert!(said.contains("no clip is labelled by both"), "{said}");
     folder
         .morec(&["agree", "ann.tsv", "frames.tsv", "--label-rate", "10"])
         .ok();
