@@ -100,7 +100,7 @@ fn taught(place: &DbPlace, folder: &Path, lesson: &Lesson) -> Result<Taught, Str
     if let Some(Meaning::Class(class)) = &lesson.meaning {
         let sample = NewSample::accepted(
             id,
-            &class,
+            class,
             TimeSpan::new(
                 lesson.extent.start_secs.max(0.0),
                 lesson.extent.stop_secs.min(secs),

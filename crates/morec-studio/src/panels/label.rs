@@ -1,16 +1,18 @@
 //! Labelling: clips at the left, the performer in the middle, classes at the right, the timeline below.
 
 use egui::{
-    Button, CentralPanel, Rect, RichText, ScrollArea, Sense, SidePanel, TextEdit, TopBottomPanel,
-    Ui, Vec2, WidgetType,
+    Button, CentralPanel, Rect, RichText, ScrollArea, Sense, SidePanel, TopBottomPanel, Ui, Vec2,
+    WidgetType,
 };
 use morec_db::labels::SampleState as Judged;
 
 use super::widgets::Clipped;
-use super::{Out, carried, deviation, library, padded, player, proposals, timeline, view, widgets};
+use super::{
+    Out, carried, class_name, deviation, library, padded, player, proposals, timeline, view,
+    widgets,
+};
 use crate::format;
 use crate::lists::List;
-use crate::state::classes::is_free_name;
 use crate::state::{
     ClassCommand, Command, CompareCommand, FileCommand, LibraryCommand, SimilarCommand, State,
     TimelineCommand,
@@ -104,7 +106,7 @@ fn clips(ui: &mut Ui, state: &State, out: Out) {
 
 fn classes(ui: &mut Ui, state: &State, out: Out) {
     widgets::section(ui, "CLASSES");
-    unnamed(ui, state, true, out);
+    class_name::unnamed(ui, state, true, out);
     let list = List::new(ui, "classes", state.classes.placed().count());
     for (at, (place, name)) in state.classes.placed().enumerate() {
         class(ui, state, (place, name), (&list, at), out);
@@ -133,7 +135,7 @@ fn class(
         .as_ref()
         .filter(|(from, _)| from == name)
     {
-        return new_name(ui, from, now, out);
+        return class_name::field(ui, from, now, out);
     }
     let size = Vec2::new(ui.available_width(), 26.0);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
@@ -237,57 +239,6 @@ fn class(
             ui.close();
         }
     });
-}
-
-/// Asks for the name of the last class that a key has made: by a button, because nobody knows of a field that appears by itself
-/// whether what is typed are letters or shortcuts. `listed` says that the list of classes is shown, where a name is typed.
-pub(super) fn unnamed(ui: &mut Ui, state: &State, listed: bool, out: Out) {
-    let mut classes = state.classes.order.iter();
-    let Some(class) = classes.rfind(|class| is_free_name(class)) else {
-        return;
-    };
-    let renaming = state.classes.renaming.as_ref();
-    ui.horizontal_wrapped(|ui| {
-        if let Some((from, now)) = renaming.filter(|(from, _)| from == class) {
-            if !listed {
-                ui.label(format!("What is {class} called?"));
-                new_name(ui, from, now, out);
-            }
-            return;
-        }
-        ui.label(format!("{class} has no name yet"));
-        if ui.button(format!("Name {class} …")).clicked() {
-            let empty = Some((class.clone(), String::new()));
-            out.push(Command::Classes(ClassCommand::Renaming(empty)));
-        }
-    });
-}
-
-/// A field for the new name of a class, which has the keyboard until Enter, Escape or a click elsewhere.
-fn new_name(ui: &mut Ui, from: &str, now: &str, out: Out) {
-    let mut text = now.to_owned();
-    let response = ui.add(TextEdit::singleline(&mut text).desired_width(180.0));
-    response.widget_info(|| {
-        let name_of = format!("New name of {from}");
-        let mut info = egui::WidgetInfo::labeled(WidgetType::TextEdit, true, name_of);
-        info.current_text_value = Some(now.to_owned());
-        info
-    });
-    let ended = response.lost_focus() || ui.input(|i| i.key_pressed(egui::Key::Enter));
-    // Whoever has typed the name has the keys back.
-    match ended {
-        true => response.surrender_focus(),
-        false => response.request_focus(),
-    }
-    let given_up = text.trim().is_empty() || ui.input(|i| i.key_pressed(egui::Key::Escape));
-    let from = from.to_owned();
-    let command = match ended {
-        true if given_up => ClassCommand::Renaming(None),
-        true => ClassCommand::Rename { from, to: text },
-        false if text == now => return,
-        false => ClassCommand::Renaming(Some((from, text))),
-    };
-    out.push(Command::Classes(command));
 }
 
 fn add_class(ui: &mut Ui, state: &State, out: Out) {

@@ -8,7 +8,8 @@ use morec_db::{BACKGROUND, ClipInfo};
 
 use super::widgets::Clipped;
 use super::{
-    Out, background, details, import_report, label, padded, strips, view, whole, widgets, words,
+    Out, background, class_name, details, import_report, padded, strips, view, whole, widgets,
+    words,
 };
 use crate::format;
 use crate::lists::List;
@@ -36,7 +37,7 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
         .show_clipped(ui, |ui| {
             tools(ui, state, out);
             words::summary(ui, state, out);
-            label::unnamed(ui, state, false, out);
+            class_name::unnamed(ui, state, false, out);
             import_report::show(ui, state, out);
             table(ui, state, out);
         });

@@ -8,6 +8,7 @@ mod card;
 mod carried;
 mod channel;
 mod chooser;
+mod class_name;
 mod classes;
 mod compare;
 mod curves;

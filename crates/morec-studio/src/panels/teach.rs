@@ -2,7 +2,7 @@
 
 use egui::{ProgressBar, RichText, ScrollArea, Ui, WidgetType};
 
-use super::{Out, label, live_deviation, widgets};
+use super::{Out, class_name, live_deviation, widgets};
 use crate::format;
 use crate::lists::List;
 use crate::state::{Command, LiveCommand, State, TrainCommand};
@@ -61,7 +61,7 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
             out.push(Command::Live(LiveCommand::MarkBackground));
         }
     });
-    label::unnamed(ui, state, false, out);
+    class_name::unnamed(ui, state, false, out);
     let busy = state.live.teaching || state.is_training();
     if busy {
         ui.horizontal(|ui| {

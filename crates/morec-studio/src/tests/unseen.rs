@@ -189,14 +189,17 @@ impl Model {
 
     /// One action; says which clips it may write to.
     fn act(&mut self, seen: &Seen) -> May {
-        match self.rng.below(20) {
+        // A class whose new name is accepted has it in all clips.
+        let renames = self.person.state().classes.renaming.is_some();
+        let may = match self.rng.below(20) {
             0..9 => self.key(seen),
             9..13 => Some(self.click(seen)),
             13..15 => self.click_any(seen),
             15..17 => Some(self.types(seen)),
             17 => self.drag(seen),
             _ => self.with_ctrl(seen),
-        }
+        };
+        may.filter(|_| !renames)
     }
 
     /// What leaving a field writes to: what was typed belongs to the clips that are selected or shown.

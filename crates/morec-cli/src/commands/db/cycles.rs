@@ -179,7 +179,7 @@ fn split(db: &mut MotionDb, found: &[Counted]) -> Result<()> {
         for pair in cycles.bounds(stretch.span.duration_secs()).windows(2) {
             new.push(NewSample::accepted(
                 stretch.id,
-                &class,
+                class,
                 TimeSpan::new(
                     stretch.span.start_secs + pair[0],
                     stretch.span.start_secs + pair[1],
