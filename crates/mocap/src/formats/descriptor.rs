@@ -48,7 +48,7 @@ pub struct FormatInput<'a> {
 }
 
 impl<'a> FormatInput<'a> {
-    /// A file of its own, with nothing beside it.
+    /// A file that refers to no other file.
     pub(super) fn alone(
         bytes: &'a [u8],
         name: &'a str,

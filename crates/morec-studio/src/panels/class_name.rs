@@ -6,8 +6,8 @@ use super::Out;
 use crate::state::classes::is_free_name;
 use crate::state::{ClassCommand, Command, State};
 
-/// Asks for the name of the last class that a key has made: by a button, because nobody knows of a field that appears by itself
-/// whether what is typed are letters or shortcuts. `listed` says that the list of classes is shown, where a name is typed.
+/// Offers to name the newest class that a key has made. A button opens the field: in a field that appeared by itself, users could not
+/// tell whether a key types a letter or is a shortcut. `listed` says that the list of classes is shown, where a name is typed.
 pub fn unnamed(ui: &mut Ui, state: &State, listed: bool, out: Out) {
     let mut classes = state.classes.order.iter();
     let Some(class) = classes.rfind(|class| is_free_name(class)) else {

@@ -230,7 +230,7 @@ fn a_group_is_shown_from_its_outliers_to_what_is_usual() {
     );
 }
 
-/// Somebody before a database with proposals of a second, by start and score.
+/// A user of a database with proposals of one second each, given by start and score.
 fn proposed(proposals: &[(f64, f64)]) -> (tempfile::TempDir, Person) {
     let folder = tempfile::tempdir().unwrap();
     let path = made(folder.path(), 1);

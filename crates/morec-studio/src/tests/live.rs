@@ -123,7 +123,7 @@ fn a_device_is_listened_to_and_its_absence_is_said() {
     assert!(!person.state().notices.is_empty());
 }
 
-/// Somebody before the live panel that listens for lines of JSON, with their folder and the address.
+/// A user at the live panel, which listens for lines of JSON; the user's folder and the address.
 fn listening(labelled: usize) -> (tempfile::TempDir, Person, String) {
     let (folder, mut person) = before(Panel::Live, labelled);
     let choice = Choice::Network("json+tcp://127.0.0.1:0".to_owned());
@@ -134,7 +134,7 @@ fn listening(labelled: usize) -> (tempfile::TempDir, Person, String) {
     (folder, person, address)
 }
 
-/// Somebody before the live panel that recognises what the labels of so many people taught.
+/// A user at the live panel, which recognises with an index trained on the labels of this many people.
 fn recognising(labelled: usize) -> (tempfile::TempDir, Person) {
     let folder = tempfile::tempdir().unwrap();
     let mut person = Person::before(&[made(folder.path(), labelled)]);

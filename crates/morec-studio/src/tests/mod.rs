@@ -117,7 +117,7 @@ pub fn made(folder: &Path, labelled: usize) -> PathBuf {
     path
 }
 
-/// Somebody before a panel, with such a database in a folder.
+/// A user at a panel, with such a database in a folder.
 pub fn before(panel: Panel, labelled: usize) -> (tempfile::TempDir, Person) {
     let folder = tempfile::tempdir().unwrap();
     let mut person = Person::before(&[made(folder.path(), labelled)]);

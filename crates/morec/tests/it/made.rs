@@ -34,7 +34,7 @@ pub fn right_handed(seed: u64, number: usize) -> Script {
     Script::new(seed, person)
 }
 
-/// Somebody never seen, who pushes and bows.
+/// A performer who is not in the training data, who pushes and bows.
 #[allow(
     dead_code,
     reason = "not every program that includes this module plays it"
