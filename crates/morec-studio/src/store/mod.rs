@@ -14,7 +14,8 @@ mod worker;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, Sender};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::thread::JoinHandle;
 
 use morec_db::DbError;
 
@@ -32,6 +33,8 @@ pub struct Store {
     pub temporary: bool,
     requests: Sender<Request>,
     replies: Receiver<Reply>,
+    /// The thread of the database; `None` if nothing is written.
+    thread: Option<JoinHandle<()>>,
     pub snapshot: Arc<Snapshot>,
     /// Counts up with every new snapshot.
     pub version: u64,
@@ -43,12 +46,13 @@ impl Store {
     /// Opens a database, or makes one where there is none.
     pub fn open(place: DbPlace, temporary: bool, wake: Wake) -> Result<Self, DbError> {
         let (db, snapshot) = worker::open(&place)?;
-        let (requests, replies) = worker::start(db, snapshot.clone(), wake)?;
+        let worker = worker::start(db, snapshot.clone(), wake)?;
         Ok(Self {
             place,
             temporary,
-            requests,
-            replies,
+            requests: worker.requests,
+            replies: worker.replies,
+            thread: Some(worker.thread),
             snapshot,
             version: 1,
             pending: 0,
@@ -58,8 +62,8 @@ impl Store {
     /// A database that is never written, for measuring how long drawing takes.
     #[cfg(feature = "measure")]
     pub fn of(snapshot: Snapshot) -> Self {
-        let (requests, _) = std::sync::mpsc::channel();
-        let (_, replies) = std::sync::mpsc::channel();
+        let (requests, _) = channel();
+        let (_, replies) = channel();
         Self {
             place: DbPlace {
                 path: Path::new("measured.mdb").to_owned(),
@@ -68,6 +72,7 @@ impl Store {
             temporary: false,
             requests,
             replies,
+            thread: None,
             snapshot: Arc::new(snapshot),
             version: 1,
             pending: 0,
@@ -132,5 +137,16 @@ impl Store {
     /// True while edits are under way.
     pub fn is_busy(&self) -> bool {
         self.pending > 0
+    }
+}
+
+impl Drop for Store {
+    /// Waits until the last edits are written: a program that ends takes its threads with it.
+    fn drop(&mut self) {
+        drop(std::mem::replace(&mut self.requests, channel().0));
+        if let Some(thread) = self.thread.take() {
+            // A thread that panicked has said so.
+            let _ = thread.join();
+        }
     }
 }

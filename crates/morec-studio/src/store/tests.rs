@@ -9,7 +9,7 @@ use morec::rng::Rng;
 use morec_db::labels::{NewSample, SampleState};
 use morec_db::{ClipFilter, ClipUpdate, DbError, MotionDb};
 
-use super::{Edit, Snapshot, UNLIKELY, background};
+use super::{DbPlace, Edit, Snapshot, Store, UNLIKELY, background};
 
 /// A database with ten labels of `wave` and ten of `bow`.
 fn labelled(folder: &Path) -> MotionDb {
@@ -203,6 +203,34 @@ fn changed_meanwhile(
     let done = edit(&seen).apply(&mut db, None);
     let now = seen.follow(&db).unwrap();
     (done, now.sample(id).map(|s| s.class.clone()))
+}
+
+#[test]
+fn edits_of_the_last_moment_are_written_before_the_database_is_closed() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = crate::tests::made(folder.path(), 0);
+    let place = DbPlace {
+        path: path.clone(),
+        signature: "test".to_owned(),
+    };
+    let mut store = Store::open(place, false, Arc::new(|| ())).unwrap();
+    let clip = store.snapshot.clips[0].id;
+    let edits = 20;
+    for n in 0..edits {
+        let span = TimeSpan::new(0.01 * f64::from(n), 0.01 * f64::from(n) + 0.5);
+        let label = NewSample::accepted(clip, "wave", span);
+        store.edit(Edit::Label(vec![label]), None);
+    }
+    drop(store);
+    // Closed: what SQLite keeps beside an open database is gone.
+    let beside = std::fs::read_dir(folder.path()).unwrap();
+    let names = beside.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    assert_eq!(
+        names.filter(|name| name.starts_with("moves.mdb")).count(),
+        1
+    );
+    let written = Snapshot::read(&MotionDb::open(&path).unwrap()).unwrap();
+    assert_eq!(written.samples.len(), edits as usize);
 }
 
 #[test]

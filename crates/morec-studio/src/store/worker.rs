@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::thread::JoinHandle;
 use std::time::Duration;
 
 use morec_db::{DbError, MotionDb, ReportKind};
@@ -51,11 +52,15 @@ pub fn open(place: &DbPlace) -> Result<(MotionDb, Arc<Snapshot>), DbError> {
     Ok((db, snapshot))
 }
 
-pub fn start(
-    db: MotionDb,
-    last: Arc<Snapshot>,
-    wake: Wake,
-) -> Result<(Sender<Request>, Receiver<Reply>), DbError> {
+/// The thread, what is sent to it and what it answers.
+pub struct Running {
+    pub requests: Sender<Request>,
+    pub replies: Receiver<Reply>,
+    pub thread: JoinHandle<()>,
+}
+
+/// Starts the thread. It ends when `requests` is dropped and everything that was sent is written.
+pub fn start(db: MotionDb, last: Arc<Snapshot>, wake: Wake) -> Result<Running, DbError> {
     let (requests, incoming) = channel();
     let (outgoing, replies) = channel();
     let mut worker = StoreWorker {
@@ -66,11 +71,15 @@ pub fn start(
         wake,
     };
     let job = move || worker.run(&incoming);
-    std::thread::Builder::new()
+    let thread = std::thread::Builder::new()
         .name("database".to_owned())
         .spawn(job)
         .map_err(|error| DbError::Disk(format!("no thread can be started: {error}")))?;
-    Ok((requests, replies))
+    Ok(Running {
+        requests,
+        replies,
+        thread,
+    })
 }
 
 struct StoreWorker {
@@ -121,14 +130,12 @@ impl StoreWorker {
                 }
                 Err(RecvTimeoutError::Disconnected) => return,
             };
-            if !self.reply(said, answers) {
-                return;
-            }
+            self.reply(said, answers);
         }
     }
 
-    /// Sends a new snapshot; says whether anybody still listens.
-    fn reply(&mut self, mut said: Option<StoreMessage>, answers: bool) -> bool {
+    /// Sends a new snapshot.
+    fn reply(&mut self, mut said: Option<StoreMessage>, answers: bool) {
         self.seen = mark(&self.db);
         let next = self.last.follow(&self.db).map(Arc::new);
         self.last = next.as_ref().map(Arc::clone).unwrap_or_default();
@@ -144,9 +151,9 @@ impl StoreWorker {
             said,
             answers,
         };
-        let heard = self.outgoing.send(reply).is_ok();
+        // The window may be closed while its last edits are still written.
+        let _ = self.outgoing.send(reply);
         (self.wake)();
-        heard
     }
 }
 
