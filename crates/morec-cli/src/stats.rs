@@ -118,13 +118,9 @@ impl Stats {
         });
         let mut engine = TemplateEngine::new(model)?;
         timed(&mut self.recognising, || {
-            for ticks in rows.values().chunks(AT_ONCE * rows.dim()) {
-                engine.advance(ticks);
-                for (at, row) in ticks.chunks_exact(rows.dim()).enumerate() {
-                    let _ = engine.decide(at, row);
-                }
-            }
-            let _ = engine.finish();
+            engine.detect(&rows, |detection| {
+                std::hint::black_box(detection);
+            });
         });
         let template_rows = model.samples.iter().map(|s| s.rows.len()).sum::<usize>()
             + model

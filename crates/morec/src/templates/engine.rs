@@ -1,10 +1,11 @@
 //! The engine of the method templates: feature rows in, detections in ticks out.
 
 use crate::decode::TickDetection;
-use crate::features::RowLayout;
+use crate::features::{RowLayout, Rows};
 
 use super::activities::ActivityDetector;
 use super::class_matches::{ClassMatches, MatchReplay};
+use super::dot::AT_ONCE;
 use super::early::{EarlyDetectionParams, OngoingMatch};
 use super::gestures::{GestureDetector, Matches};
 use super::held::HoldDetector;
@@ -106,7 +107,7 @@ impl TemplateEngine {
         self.decide(0, row)
     }
 
-    /// Takes the rows of the next ticks, one after the other, [`AT_ONCE`](super::dot::AT_ONCE) at most. What each makes certain comes from
+    /// Takes the rows of the next ticks, one after the other, [`AT_ONCE`] at most. What each makes certain comes from
     /// [`decide`](Self::decide), which must be called for each in turn: the same as of pushing one by one, and faster.
     pub fn advance(&mut self, rows: &[f32]) {
         self.gestures.advance(rows);
@@ -123,6 +124,18 @@ impl TemplateEngine {
         }
         self.gestures.decide(at, row);
         self.found()
+    }
+
+    /// Takes the rows of a whole stretch and ends it; calls `take` with each detection. The same as pushing row by row, and faster.
+    pub fn detect(&mut self, rows: &Rows, mut take: impl FnMut(&TickDetection)) {
+        let dim = rows.dim();
+        for ticks in rows.values().chunks(AT_ONCE * dim) {
+            self.advance(ticks);
+            for (at, row) in ticks.chunks_exact(dim).enumerate() {
+                self.decide(at, row).for_each(&mut take);
+            }
+        }
+        self.finish().for_each(take);
     }
 
     /// Ends the stretch and returns the detections that its last ticks still hold. The next row begins a new one.

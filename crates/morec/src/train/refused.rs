@@ -72,12 +72,10 @@ fn reported(
     let engine = TemplateEngine::new(&judged)?;
     let columns = BodyTrack::columns(model.bones);
     let of_rows = |rows: &Rows| {
-        let mut engine = engine.clone();
         let mut found = Vec::new();
-        for row in rows.iter() {
-            found.extend(engine.push(row).copied());
-        }
-        found.extend(engine.finish().copied());
+        engine
+            .clone()
+            .detect(rows, |detection| found.push(*detection));
         let mut track = BodyTrack::new(model.bones, &params.features, rows.len());
         rows.iter().for_each(|row| track.push(row));
         // What is judged the next time may be another growth of the same motion.

@@ -385,16 +385,13 @@ impl BackgroundScores {
             if progress.cancelled() {
                 return Err(TrainError::Cancelled);
             }
-            let mut engine = engine.clone();
-            let mut margins: Vec<f64> = Vec::new();
-            for row in rows.iter() {
-                margins.extend(engine.push(row).map(|found| found.score));
-            }
-            margins.extend(engine.finish().map(|found| found.score));
-            let score = |margin: f64| -(portable::ln(1.0 - margin) as f32);
+            let mut scores: Vec<f32> = Vec::new();
+            engine.clone().detect(rows, |found| {
+                scores.push(-(portable::ln(1.0 - found.score) as f32));
+            });
             let done = done.fetch_add(1, Ordering::Relaxed) + 1;
             progress.report("judging background", done, background.len());
-            Ok(margins.into_iter().map(score).collect())
+            Ok(scores)
         };
         let of_stream: Vec<Vec<f32>> = background
             .par_iter()
