@@ -43,7 +43,7 @@ pub fn duration(secs: f64) -> String {
     }
 }
 
-/// Seconds since 1970 as a date in UTC, to the second.
+/// Seconds since 1970 as a date and a time in UTC: `2026-11-30 07:02:01 UTC`.
 pub fn utc(secs: i64) -> String {
     let (days, time) = (secs.div_euclid(86_400), secs.rem_euclid(86_400));
     // Civil from days: H. Hinnant, "chrono-Compatible Low-Level Date Algorithms".
@@ -58,7 +58,7 @@ pub fn utc(secs: i64) -> String {
     );
     let year = year + era * 400 + i64::from(month <= 2);
     format!(
-        "{year:04}-{month:02}-{date:02}T{:02}:{:02}:{:02}Z",
+        "{year:04}-{month:02}-{date:02} {:02}:{:02}:{:02} UTC",
         time / 3600,
         time / 60 % 60,
         time % 60
@@ -175,8 +175,8 @@ mod tests {
         assert_eq!(clock(59.96, 1), "1:00.0");
         assert_eq!(clock(3725.0, 0), "1:02:05");
         assert_eq!(duration(42.2), "42 s");
-        assert_eq!(utc(0), "1970-01-01T00:00:00Z");
-        assert_eq!(utc(1_795_330_800), "2026-11-22T07:00:00Z");
+        assert_eq!(utc(0), "1970-01-01 00:00:00 UTC");
+        assert_eq!(utc(1_795_330_800), "2026-11-22 07:00:00 UTC");
         assert_eq!(count(2, "class"), "2 classes");
         assert_eq!(count(40, "stretch"), "40 stretches");
         assert_eq!(count(10_000, "clip"), "10\u{2009}000 clips");

@@ -1,5 +1,5 @@
-//! Lists by keys: Up and Down go from row to row, Home and End to the first and the last, Left and Right between rows that lie side by
-//! side. Enter chooses the row that has the keyboard.
+//! Lists by keys: Up and Down go from row to row, Page Up and Page Down ten lines on, Home and End to the first and the last, Left and
+//! Right between rows that lie side by side. Enter chooses the row that has the keyboard.
 
 use egui::{Context, FocusDirection, Id, Key, Modifiers, Rect, Response, Ui, Vec2, pos2};
 
@@ -14,9 +14,14 @@ enum Step {
     Last,
 }
 
-const KEYS: [(Key, Step); 6] = [
+/// Lines of a page.
+const PAGE: isize = 10;
+
+const KEYS: [(Key, Step); 8] = [
     (Key::ArrowUp, Step::Lines(-1)),
     (Key::ArrowDown, Step::Lines(1)),
+    (Key::PageUp, Step::Lines(-PAGE)),
+    (Key::PageDown, Step::Lines(PAGE)),
     (Key::Home, Step::First),
     (Key::End, Step::Last),
     (Key::ArrowLeft, Step::Rows(-1)),
@@ -65,7 +70,7 @@ pub fn read(ctx: &Context, enters: bool) {
     let is_free = ctx.memory(|memory| memory.focused().is_none());
     let keys = match current {
         Some(current) if current.columns > 1 => &KEYS[..],
-        Some(_) => &KEYS[..4],
+        Some(_) => &KEYS[..6],
         None if enters && is_free => &KEYS[..2],
         None => return,
     };

@@ -78,7 +78,7 @@ pub fn list(ui: &mut Ui, state: &State, out: Out) {
         .collect();
     let text = match clips.is_empty() {
         true => {
-            "Every clip has labels. Import clips of other motion, such as walking: this reduces false alarms."
+            "Every clip has labels. Import clips of other motion of the same kind of skeleton: this reduces false alarms."
         }
         false => "Tick clips that contain none of the classes: this reduces false alarms.",
     };

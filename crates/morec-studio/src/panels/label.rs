@@ -213,13 +213,17 @@ fn class(
             ui.close();
         }
         ui.menu_button("Merge into …", |ui| {
-            for into in state.classes.order.iter().filter(|into| *into != name) {
-                if ui.button(into).clicked() {
-                    let (from, into) = (name.to_owned(), into.clone());
-                    out.push(Command::Classes(ClassCommand::Merge { from, into }));
-                    ui.close();
+            // Of many classes the list is higher than the window.
+            let height = 0.6 * ui.ctx().content_rect().height();
+            ScrollArea::vertical().max_height(height).show(ui, |ui| {
+                for into in state.classes.order.iter().filter(|into| *into != name) {
+                    if ui.button(into).clicked() {
+                        let (from, into) = (name.to_owned(), into.clone());
+                        out.push(Command::Classes(ClassCommand::Merge { from, into }));
+                        ui.close();
+                    }
                 }
-            }
+            });
         });
         if ui.button("Export its labels as clips …").clicked() {
             let class = name.to_owned();

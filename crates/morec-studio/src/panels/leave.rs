@@ -35,11 +35,11 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
                 ("Cancel", FileCommand::Stay),
             ];
             for (at, (text, command)) in buttons.into_iter().enumerate() {
-                let button = match at {
-                    0 => widgets::main_button(text, &c),
-                    _ => egui::Button::new(text),
+                let is_chosen = match at {
+                    0 => widgets::answers(ui, text, &c),
+                    _ => ui.button(text).clicked(),
                 };
-                if ui.add(button).clicked() {
+                if is_chosen {
                     out.push(Command::File(command));
                 }
             }

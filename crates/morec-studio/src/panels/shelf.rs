@@ -115,7 +115,9 @@ fn named(ui: &mut Ui, place: usize, name: &str, out: Out) {
     ui.colored_label(Colours::now(ui).good, format!("proposed as {name}"));
     if ui
         .small_button("Change")
-        .on_hover_text("Undo the labels first, or reject them")
+        .on_hover_text(
+            "Opens the set to changes; its labels stay until they are undone or rejected",
+        )
         .clicked()
     {
         out.push(Command::Shelf(ShelfCommand::Reopen(place)));

@@ -1,5 +1,7 @@
 //! Small parts that several panels draw.
 
+use egui::text::{CCursor, CCursorRange};
+use egui::text_edit::TextEditState;
 use egui::{
     Align, Align2, Button, CentralPanel, Color32, FontId, Frame, Key, Label, Layout, Margin, Rect,
     Response, RichText, Sense, SidePanel, Stroke, StrokeKind, TextEdit, TopBottomPanel, Ui, Vec2,
@@ -229,6 +231,22 @@ pub fn keep_in_view(ui: &Ui, list: &str, at: Option<usize>, first: usize, height
 /// A field of one line, which keeps the keyboard when Enter is pressed: what is typed next is text, and no key of the window.
 pub fn line(text: &mut String) -> TextEdit<'_> {
     TextEdit::singleline(text).return_key(None)
+}
+
+/// The main button of a question; true if it was clicked, or Enter was pressed while nothing has the keyboard.
+pub fn answers(ui: &mut Ui, text: &str, colours: &Colours) -> bool {
+    let is_free = ui.memory(|memory| memory.focused().is_none());
+    let entered = is_free && ui.input(|i| i.key_pressed(Key::Enter));
+    ui.add(main_button(text, colours)).clicked() || entered
+}
+
+/// Gives the keyboard to a field that opens, with its text selected: what is typed replaces it.
+pub fn opens(ui: &Ui, field: &Response, text: &str) {
+    field.request_focus();
+    let mut state = TextEditState::load(ui.ctx(), field.id).unwrap_or_default();
+    let whole = CCursorRange::two(CCursor::default(), CCursor::new(text.chars().count()));
+    state.cursor.set_char_range(Some(whole));
+    state.store(ui.ctx(), field.id);
 }
 
 /// True if Enter was pressed in a field.

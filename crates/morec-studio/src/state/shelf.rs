@@ -5,6 +5,7 @@ use morec::discover::{RepetitionSet, SetInstance};
 use morec_db::ClipId;
 use morec_ops::{AloneStretch, DiscoveredSet, DiscoveredSets};
 
+use crate::store::Snapshot;
 use crate::stretch::Stretch;
 
 /// Changes of the shelf that can be taken back.
@@ -124,6 +125,14 @@ impl Shelf {
             ends: (0.0, 0.0),
             marked: Vec::new(),
             named: None,
+        }
+    }
+
+    /// Sets whose labels were taken back are open to changes again.
+    pub(in crate::state) fn follow(&mut self, snapshot: &Snapshot) {
+        for set in &mut self.sets {
+            let is_known = |name: &String| snapshot.samples.iter().any(|s| s.class == *name);
+            set.named = set.named.take().filter(is_known);
         }
     }
 

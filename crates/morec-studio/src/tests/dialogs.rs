@@ -188,7 +188,17 @@ fn where_no_dialog_can_be_opened_a_path_is_typed() {
     person.types("Path", &nowhere.to_string_lossy());
     assert!(person.sees("There is no such folder."));
     assert_eq!(person.database(), "moves.mdb");
-    person.types("Path", &copy.to_string_lossy());
+    person.key(Key::Escape);
+    person.settle();
+    // The name that is proposed is selected: what is typed replaces it.
+    person.key_with(Key::S, Modifiers::COMMAND);
+    person.settle();
+    person
+        .window
+        .event(egui::Event::Text(copy.to_string_lossy().into_owned()));
+    person.frames(2);
+    person.key(Key::Enter);
+    person.settle();
     assert_eq!(person.database(), "copy.mdb");
     assert!(!person.sees_part("No file dialog can be opened"));
     // A file that is there is written over by a click only.

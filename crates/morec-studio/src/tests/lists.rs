@@ -1,4 +1,4 @@
-//! Every list by keys: Up and Down, Home and End, Enter.
+//! Every list by keys: Up and Down, Page Up and Page Down, Home and End, Enter.
 
 use egui::Key;
 use egui_kittest::kittest::{NodeT, Queryable};
@@ -69,6 +69,8 @@ fn is_walked(person: &mut Person, rows: &[String]) {
         (Key::ArrowUp, &rows[rows.len() - 2]),
         (Key::Home, first),
         (Key::ArrowUp, first),
+        (Key::PageDown, &rows[10.min(rows.len() - 1)]),
+        (Key::PageUp, first),
     ] {
         person.key(key);
         person.settle();

@@ -61,9 +61,7 @@ fn a_set_becomes_proposals_by_a_name_and_is_undone() {
     );
     person.click("Back to the sets");
     person.frames(2);
-    person.click("Change");
-    person.frames(2);
-    assert!(person.sees("Propose set 1"));
+    assert!(person.sees("Propose set 1"), "open to changes again");
 }
 
 #[test]

@@ -4,7 +4,7 @@ use morec::features::KeyPose;
 use morec::live::{Detection, Recording};
 use morec_ops::RecognizeSettings;
 
-use super::lines::ShownCommand;
+use super::lines::{ShownCommand, train_line};
 use super::train::INDEX;
 use crate::jobs::teach::Meaning;
 use crate::jobs::{JobOutcome, recognise};
@@ -120,10 +120,16 @@ impl State {
         }
     }
 
-    /// A command with the index and the source that was chosen.
+    /// A command with the index and the source that was chosen, after the one that writes the index, if it was trained here.
     pub(super) fn live_line(&self, command: &str) -> Option<ShownCommand> {
-        let line = ShownCommand::new(command).word(format!("{}.index", INDEX));
-        Some(line.with("--listen", self.live_source()?))
+        let index = format!("{INDEX}.index");
+        let line = ShownCommand::new(command).word(&index);
+        let line = line.with("--listen", self.live_source()?);
+        let store = self.store.as_ref().filter(|_| self.train.report.is_some());
+        Some(match store {
+            Some(store) => train_line(store.path(), &self.train_settings(), index).and(line),
+            None => line,
+        })
     }
 
     fn run(&mut self, feed: Feed, name: String) {

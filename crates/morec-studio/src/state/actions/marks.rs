@@ -47,11 +47,9 @@ impl State {
                 let (start, stop) = watched.last_motion()?;
                 Some(TimeSpan::new(start, stop))
             };
-            let stretch = match meaning {
-                Meaning::Class(_) => asked.or_else(moved),
-                Meaning::Background => asked.or_else(|| self.false_alarm(watched.actor, moved())),
-            };
-            Some((watched.actor, stretch?))
+            let is_alarm = meaning == Meaning::Background;
+            let last = || self.last_motion(watched.actor, moved(), is_alarm);
+            Some((watched.actor, asked.or_else(last)?))
         }) else {
             self.say("no motion to mark yet");
             return;
@@ -111,20 +109,27 @@ impl State {
         })
     }
 
-    /// The detection that came last, with the movement that it was found in; without a fresh one the last movement.
-    fn false_alarm(&self, actor: PerformerId, moved: Option<TimeSpan>) -> Option<TimeSpan> {
+    /// The last movement, with the detection that was found in it: a movement may pause where the motion does not. Without movement, and
+    /// of a false alarm, the last detection if it is fresh.
+    fn last_motion(
+        &self,
+        actor: PerformerId,
+        moved: Option<TimeSpan>,
+        is_alarm: bool,
+    ) -> Option<TimeSpan> {
         let run = self.live.run.as_ref()?;
         let fresh =
             |d: &&LiveDetection| d.actor == actor && run.now_secs - d.reported_secs < FRESH_SECS;
         let last = run.seen.iter().rev().find(fresh).map(|d| d.span);
-        Some(match (last, moved) {
-            (Some(found), Some(moved)) if found.overlap_secs(moved) > 0.0 => TimeSpan::new(
+        match (last, moved) {
+            (Some(found), Some(moved)) if found.overlap_secs(moved) > 0.0 => Some(TimeSpan::new(
                 found.start_secs.min(moved.start_secs),
                 found.stop_secs.max(moved.stop_secs),
-            ),
-            (Some(found), _) => found,
-            (None, moved) => moved?,
-        })
+            )),
+            (Some(found), None) => Some(found),
+            (Some(found), Some(_)) if is_alarm => Some(found),
+            (_, moved) => moved,
+        }
     }
 
     /// A stretch of background with what came before and after it, as far as that is nothing of a class: what is reported of a motion

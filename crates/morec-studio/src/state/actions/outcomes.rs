@@ -41,7 +41,7 @@ impl State {
     /// The database is not what it was.
     fn changed(&mut self) {
         let Some(store) = &self.store else { return };
-        let snapshot = store.snapshot.clone();
+        let (snapshot, is_writing) = (store.snapshot.clone(), store.is_busy());
         if self.timeline.drag.as_ref().is_some_and(|d| d.dropped) {
             self.timeline.drag = None;
         }
@@ -59,6 +59,9 @@ impl State {
         let places = self.classes.follow(&snapshot);
         self.keep_places(places);
         self.study.follow(&snapshot);
+        if !is_writing {
+            self.shelf.follow(&snapshot);
+        }
         self.train.follow(&snapshot);
         self.live.marks.retain_mut(|mark| mark.follow(&snapshot));
         let gone = self

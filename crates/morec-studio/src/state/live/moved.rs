@@ -60,7 +60,7 @@ fn ends_of(hand: Hand) -> Vec<Role> {
     tips.chain([points.wrist]).collect()
 }
 
-/// The last stretch of movement before now, rests at its ends left out.
+/// The last stretch of movement before now that is long enough, rests at its ends left out.
 pub fn last_motion(frames: &VecDeque<Frame>, speeds: &VecDeque<f32>) -> Option<(f64, f64)> {
     let last = frames.back()?.time_secs;
     let recent = frames.partition_point(|f| f.time_secs < last - LENGTH_SECS.1);
@@ -68,20 +68,27 @@ pub fn last_motion(frames: &VecDeque<Frame>, speeds: &VecDeque<f32>) -> Option<(
     // Nobody stands quite still: what counts is the share of the fastest.
     let least = (SHARE * fastest).max(STILL);
     let moving = |at: usize| smoothed(speeds, at) > least;
-    let stop = (0..frames.len()).rev().find(|&at| moving(at))?;
-    let stop_secs = frames[stop].time_secs;
-    let mut start = stop;
-    for at in (0..stop).rev() {
-        let (began, now) = (frames[start].time_secs, frames[at].time_secs);
-        if stop_secs - now > LENGTH_SECS.1 || began - now > REST_SECS {
-            break;
+    let mut before = frames.len();
+    loop {
+        let stop = (0..before).rev().find(|&at| moving(at))?;
+        let stop_secs = frames[stop].time_secs;
+        let mut start = stop;
+        for at in (0..stop).rev() {
+            let (began, now) = (frames[start].time_secs, frames[at].time_secs);
+            if stop_secs - now > LENGTH_SECS.1 || began - now > REST_SECS {
+                break;
+            }
+            if moving(at) {
+                start = at;
+            }
         }
-        if moving(at) {
-            start = at;
+        let start_secs = frames[start].time_secs;
+        if stop_secs - start_secs >= LENGTH_SECS.0 {
+            return Some((start_secs, stop_secs));
         }
+        // A twitch after the motion is none.
+        before = start;
     }
-    let start_secs = frames[start].time_secs;
-    (stop_secs - start_secs >= LENGTH_SECS.0).then_some((start_secs, stop_secs))
 }
 
 /// The mean of a few frames: trackers tremble.
