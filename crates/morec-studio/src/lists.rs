@@ -1,4 +1,4 @@
-//! Lists by keys: Up and Down go from row to row, Page Up and Page Down ten lines on, Home and End to the first and the last, Left and
+//! Lists by keys: Up and Down go from row to row, Page Up and Page Down by ten lines, Home and End to the first and the last, Left and
 //! Right between rows that lie side by side. Enter chooses the row that has the keyboard.
 
 use egui::{Context, FocusDirection, Id, Key, Modifiers, Rect, Response, Ui, Vec2, pos2};

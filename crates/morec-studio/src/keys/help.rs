@@ -36,7 +36,7 @@ pub const HELP: &[(&str, &str, &str)] = &[
     (
         "Lists",
         "Up, Down, Home, End, Enter",
-        "in the list that has the keyboard, which Tab gives it",
+        "in the focused list (Tab); Page Up, Page Down: ten lines",
     ),
     (
         "Library",

@@ -20,7 +20,7 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
         ui.label(crate::store::sentence(&text));
         ui.add_space(8.0);
         ui.horizontal(|ui| {
-            if ui.add(widgets::main_button("Keep it", &c)).clicked() {
+            if widgets::default_button(ui, "Keep it", &c) {
                 out.push(Command::File(FileCommand::AskDiscard(None)));
             }
             if ui.button("Remove it").clicked() {

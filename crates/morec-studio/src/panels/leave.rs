@@ -36,7 +36,7 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
             ];
             for (at, (text, command)) in buttons.into_iter().enumerate() {
                 let is_chosen = match at {
-                    0 => widgets::answers(ui, text, &c),
+                    0 => widgets::default_button(ui, text, &c),
                     _ => ui.button(text).clicked(),
                 };
                 if is_chosen {

@@ -42,7 +42,7 @@ fn contents(ui: &mut egui::Ui, state: &State, typed: &TypedPath, kind: DialogKin
         info
     });
     if !typed.begun {
-        widgets::opens(ui, &response, &text);
+        widgets::focus_selected(ui, &response, &text);
     }
     let entered = widgets::entered(ui, &response);
     let path = dialogs::typed_path(&text);

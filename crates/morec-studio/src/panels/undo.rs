@@ -33,7 +33,7 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
                 out.push(Command::UndoAsks(false));
                 out.push(Command::Edit(Edit::Undo(Some(id))));
             };
-            if widgets::answers(ui, "Undo it", &c) {
+            if widgets::default_button(ui, "Undo it", &c) {
                 undo(step.id);
             }
             let button = ui.add_enabled(mine.is_some(), egui::Button::new("Mine only"));

@@ -233,15 +233,15 @@ pub fn line(text: &mut String) -> TextEdit<'_> {
     TextEdit::singleline(text).return_key(None)
 }
 
-/// The main button of a question; true if it was clicked, or Enter was pressed while nothing has the keyboard.
-pub fn answers(ui: &mut Ui, text: &str, colours: &Colours) -> bool {
+/// The default button of a dialog: true if it is clicked, or Enter is pressed while no widget has the focus.
+pub fn default_button(ui: &mut Ui, text: &str, colours: &Colours) -> bool {
     let is_free = ui.memory(|memory| memory.focused().is_none());
     let entered = is_free && ui.input(|i| i.key_pressed(Key::Enter));
     ui.add(main_button(text, colours)).clicked() || entered
 }
 
-/// Gives the keyboard to a field that opens, with its text selected: what is typed replaces it.
-pub fn opens(ui: &Ui, field: &Response, text: &str) {
+/// Focuses a text field with its text selected, so that typing replaces it.
+pub fn focus_selected(ui: &Ui, field: &Response, text: &str) {
     field.request_focus();
     let mut state = TextEditState::load(ui.ctx(), field.id).unwrap_or_default();
     let whole = CCursorRange::two(CCursor::default(), CCursor::new(text.chars().count()));

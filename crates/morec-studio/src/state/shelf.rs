@@ -128,7 +128,7 @@ impl Shelf {
         }
     }
 
-    /// Sets whose labels were taken back are open to changes again.
+    /// Opens named sets to changes again if no label of their class is left, as after undo.
     pub(in crate::state) fn follow(&mut self, snapshot: &Snapshot) {
         for set in &mut self.sets {
             let is_known = |name: &String| snapshot.samples.iter().any(|s| s.class == *name);

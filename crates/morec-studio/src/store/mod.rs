@@ -1,7 +1,7 @@
 //! The database behind the window: one thread owns it, edits go there, snapshots come back.
 //!
-//! The window never waits for the disk: an edit is a value that is sent away; what the database then holds arrives with
-//! a later frame. What another program changes arrives likewise, within a second.
+//! The window waits for the disk only when it closes the database: an edit is a value that is sent away; what the database
+//! then holds arrives with a later frame. What another program changes arrives likewise, within a second.
 
 mod edit;
 mod message;
@@ -33,7 +33,7 @@ pub struct Store {
     pub temporary: bool,
     requests: Sender<Request>,
     replies: Receiver<Reply>,
-    /// The thread of the database; `None` if nothing is written.
+    /// The thread that owns the database; `None` where only drawing is measured.
     thread: Option<JoinHandle<()>>,
     pub snapshot: Arc<Snapshot>,
     /// Counts up with every new snapshot.

@@ -52,7 +52,7 @@ pub fn open(place: &DbPlace) -> Result<(MotionDb, Arc<Snapshot>), DbError> {
     Ok((db, snapshot))
 }
 
-/// The thread, what is sent to it and what it answers.
+/// The running thread, with the channels to and from it.
 pub struct Running {
     pub requests: Sender<Request>,
     pub replies: Receiver<Reply>,

@@ -126,7 +126,8 @@ impl TemplateEngine {
         self.found()
     }
 
-    /// Takes the rows of a whole stretch and ends it; calls `take` with each detection. The same as pushing row by row, and faster.
+    /// Recognises a whole stretch: takes its rows, ends it, and calls `take` with each detection. The same as [`push`](Self::push) for each row
+    /// and [`finish`](Self::finish), but faster: templates are read from memory once for [`AT_ONCE`] rows.
     pub fn detect(&mut self, rows: &Rows, mut take: impl FnMut(&TickDetection)) {
         let dim = rows.dim();
         for ticks in rows.values().chunks(AT_ONCE * dim) {

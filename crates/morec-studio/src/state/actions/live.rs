@@ -120,7 +120,8 @@ impl State {
         }
     }
 
-    /// A command with the index and the source that was chosen, after the one that writes the index, if it was trained here.
+    /// The shell command that runs `command` on the chosen source. If the index was trained in this window, the command that trains and
+    /// writes it comes first.
     pub(super) fn live_line(&self, command: &str) -> Option<ShownCommand> {
         let index = format!("{INDEX}.index");
         let line = ShownCommand::new(command).word(&index);

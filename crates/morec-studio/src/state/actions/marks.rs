@@ -43,12 +43,11 @@ impl State {
                 .live
                 .range
                 .map(|(start, stop)| TimeSpan::new(start, stop));
-            let moved = || {
-                let (start, stop) = watched.last_motion()?;
-                Some(TimeSpan::new(start, stop))
+            let last = || {
+                let moved = watched.last_motion();
+                let moved = moved.map(|(start, stop)| TimeSpan::new(start, stop));
+                self.stretch_to_mark(watched.actor, moved, &meaning)
             };
-            let is_alarm = meaning == Meaning::Background;
-            let last = || self.last_motion(watched.actor, moved(), is_alarm);
             Some((watched.actor, asked.or_else(last)?))
         }) else {
             self.say("no motion to mark yet");
@@ -109,13 +108,14 @@ impl State {
         })
     }
 
-    /// The last movement, with the detection that was found in it: a movement may pause where the motion does not. Without movement, and
-    /// of a false alarm, the last detection if it is fresh.
-    fn last_motion(
+    /// The stretch that a mark means when none is selected. It is the last movement, extended to the last detection if the two overlap:
+    /// speed may fall in the middle of a motion. If they do not overlap, a class is taught by the movement, and background by the detection,
+    /// which is the false alarm. Without movement it is the detection. Detections older than [`FRESH_SECS`] do not count.
+    fn stretch_to_mark(
         &self,
         actor: PerformerId,
         moved: Option<TimeSpan>,
-        is_alarm: bool,
+        meaning: &Meaning,
     ) -> Option<TimeSpan> {
         let run = self.live.run.as_ref()?;
         let fresh =
@@ -127,7 +127,7 @@ impl State {
                 found.stop_secs.max(moved.stop_secs),
             )),
             (Some(found), None) => Some(found),
-            (Some(found), Some(_)) if is_alarm => Some(found),
+            (Some(found), Some(_)) if *meaning == Meaning::Background => Some(found),
             (_, moved) => moved,
         }
     }

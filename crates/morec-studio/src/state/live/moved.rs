@@ -60,7 +60,7 @@ fn ends_of(hand: Hand) -> Vec<Role> {
     tips.chain([points.wrist]).collect()
 }
 
-/// The last stretch of movement before now that is long enough, rests at its ends left out.
+/// Start and stop of the last movement that is long enough for a motion, without the rest before and after it, in seconds.
 pub fn last_motion(frames: &VecDeque<Frame>, speeds: &VecDeque<f32>) -> Option<(f64, f64)> {
     let last = frames.back()?.time_secs;
     let recent = frames.partition_point(|f| f.time_secs < last - LENGTH_SECS.1);
@@ -86,7 +86,7 @@ pub fn last_motion(frames: &VecDeque<Frame>, speeds: &VecDeque<f32>) -> Option<(
         if stop_secs - start_secs >= LENGTH_SECS.0 {
             return Some((start_secs, stop_secs));
         }
-        // A twitch after the motion is none.
+        // Too short for a motion: the stretch before it is looked at.
         before = start;
     }
 }
