@@ -7,6 +7,7 @@ use morec::discover::{
     DiscoverError, DiscoverParams, Discovery, RepetitionSet, SetInstance, discover,
 };
 use morec::features::{BoneSet, FeatureParams, RowLayout, Rows};
+use morec::labels::some_of;
 use morec::progress::Progress;
 use morec_db::labels::{NewSample, SampleState};
 use morec_db::{ClipFilter, ClipId, DbError, MotionDb};
@@ -54,6 +55,9 @@ pub struct DiscoveredSets {
     pub moving_secs: f64,
     /// Share of it that lies in sets.
     pub share_in_sets: f64,
+    /// Names of clips that share no bone with those searched: of hands beside bodies.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub left_out: Vec<String>,
 }
 
 /// A set of the same motion.
@@ -111,25 +115,30 @@ impl DiscoverSettings {
         }
     }
 
-    /// Sets in clips, by the bones that all of them show.
+    /// Sets in clips of one kind of skeleton, by the bones that all of these show. Where some clips share no bone with others, such as
+    /// hands with bodies, the kind with the most time is searched and the other clips are named.
     ///
     /// # Errors
-    /// No bone that all clips show; a value that is not finite; the receiver of progress cancelled.
+    /// No clip shows a bone; a value that is not finite; the receiver of progress cancelled.
     pub fn of_clips(
         &self,
         clips: &[DiscoverClip],
         progress: &dyn Progress,
     ) -> Result<DiscoveredSets, OperationError> {
-        let bones = clips.iter().map(|clip| clip.bones).reduce(BoneSet::and);
-        let bones = bones.unwrap_or(BoneSet::NONE);
-        let rows = clips.iter().map(|clip| {
-            let kept = RowLayout::kept_columns(clip.bones, bones);
-            clip.rows.columns(&kept)
+        let shown = clips.iter().map(|clip| (clip.bones, clip.rows.len()));
+        let bones = BoneSet::most_common(shown);
+        let (kept, others): (Vec<_>, Vec<_>) =
+            (clips.iter()).partition(|clip| !clip.bones.and(bones).is_empty());
+        let rows = kept.iter().map(|clip| {
+            let columns = RowLayout::kept_columns(clip.bones, bones);
+            clip.rows.columns(&columns)
         });
         let rows: Vec<Rows> = rows.collect();
         let tick_hz = FeatureParams::default().tick_hz();
         let found = discover(&rows, tick_hz, &self.params(), progress).map_err(failed)?;
-        Ok(self.named(&found, clips))
+        let mut found = self.named(&found, &kept);
+        found.left_out = others.iter().map(|clip| clip.name.clone()).collect();
+        Ok(found)
     }
 
     /// Sets in the clips of a database that `filter` chooses.
@@ -158,7 +167,7 @@ impl DiscoverSettings {
         self.of_clips(&clips.collect::<Vec<_>>(), progress)
     }
 
-    fn named(&self, found: &Discovery, clips: &[DiscoverClip]) -> DiscoveredSets {
+    fn named(&self, found: &Discovery, clips: &[&DiscoverClip]) -> DiscoveredSets {
         let alone = found.alone.iter().map(|alone| AloneStretch {
             clip: clips[alone.clip].name.clone(),
             id: clips[alone.clip].id,
@@ -173,6 +182,7 @@ impl DiscoverSettings {
             alone: alone.collect(),
             moving_secs: found.moving_secs,
             share_in_sets: found.share_in_sets(),
+            left_out: Vec::new(),
         }
     }
 
@@ -180,7 +190,7 @@ impl DiscoverSettings {
         &self,
         number: usize,
         set: &RepetitionSet,
-        clips: &[DiscoverClip],
+        clips: &[&DiscoverClip],
     ) -> DiscoveredSet {
         let people = set
             .instances
@@ -229,15 +239,27 @@ impl DiscoveredSets {
         self.sets.iter().flat_map(of_set).collect()
     }
 
-    /// `87 repetitions in 12 sets, 83 % of all motion; 14 stretches seen only once`.
+    /// `87 repetitions in 12 sets, 83 % of all motion; 14 stretches seen only once`, and which clips were not searched.
     pub fn summary(&self) -> String {
         let instances: usize = self.sets.iter().map(|set| set.instances.len()).sum();
+        let left_out = self.left_out().map(|text| format!("; {text}"));
         format!(
-            "{instances} repetitions in {} sets, {:.0} % of all motion; {} stretches seen only once",
+            "{instances} repetitions in {} sets, {:.0} % of all motion; {} stretches seen only once{}",
             self.sets.len(),
             100.0 * self.share_in_sets,
-            self.alone.len()
+            self.alone.len(),
+            left_out.unwrap_or_default()
         )
+    }
+
+    /// `not searched, having no bone in common with the others: wave_1, wave_2`; `None` if all clips were searched.
+    pub fn left_out(&self) -> Option<String> {
+        (!self.left_out.is_empty()).then(|| {
+            format!(
+                "not searched, having no bone in common with the others: {}",
+                some_of(&self.left_out)
+            )
+        })
     }
 }
 
@@ -245,5 +267,37 @@ fn failed(error: DiscoverError) -> OperationError {
     match error {
         DiscoverError::Cancelled => OperationError::Database(DbError::Cancelled),
         other => OperationError::Settings(other.to_string()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn clip(name: &str, bones: BoneSet, ticks: usize) -> DiscoverClip {
+        let width = RowLayout::of(bones).dim();
+        let moving = (0..ticks * width).map(|i| ((i / width) as f32 * 0.4).sin());
+        DiscoverClip {
+            name: name.to_owned(),
+            id: None,
+            person: None,
+            bones,
+            rows: Rows::from_values(width, moving.collect()),
+        }
+    }
+
+    #[test]
+    fn hands_among_bodies_are_left_out_by_name() {
+        let clips = [
+            clip("wave", BoneSet::HAND, 60),
+            clip("walk", BoneSet::BODY, 120),
+            clip("run", BoneSet::UPPER, 120),
+        ];
+        let found = DiscoverSettings::default();
+        let found = found.of_clips(&clips, &()).unwrap();
+        assert_eq!(found.left_out, ["wave"]);
+        assert!(found.summary().ends_with("with the others: wave"));
+        let searched = found.sets.iter().flat_map(|set| &set.instances);
+        assert!(searched.clone().all(|of| of.clip != "wave"));
     }
 }

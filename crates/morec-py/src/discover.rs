@@ -9,7 +9,7 @@ use pyo3::types::PyDict;
 use crate::clip::PyClip;
 use crate::clip_data::ClipData;
 use crate::database::PyDatabase;
-use crate::errors::operation_error;
+use crate::errors::{operation_error, warn};
 use crate::job;
 use crate::material::keywords;
 use crate::tables::table;
@@ -79,6 +79,7 @@ fn rows<'py>(py: Python<'py>, found: &DiscoveredSets) -> PyResult<Bound<'py, PyA
             rows.push(row);
         }
     }
+    warn(py, found.left_out())?;
     let columns = ["set", "clip", "start_secs", "stop_secs", "distance"];
     table(py, &columns, rows)
 }

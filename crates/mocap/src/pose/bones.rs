@@ -1,5 +1,7 @@
 //! The bones whose directions describe a pose, and which of them a skeleton has.
 
+use std::cmp::Reverse;
+use std::collections::BTreeMap;
 use std::fmt;
 
 use crate::math::Vec3;
@@ -221,6 +223,24 @@ impl BoneSet {
     #[must_use]
     pub fn and(self, other: BoneSet) -> Self {
         BoneSet(self.0 & other.0)
+    }
+
+    /// The bones that clips of one kind have in common, of clips that each show a set and have a weight: those of the sets with the
+    /// most weight, and of every other set that shares some with them. Sets that share none are of another kind: hands beside bodies.
+    #[must_use]
+    pub fn most_common(shown: impl IntoIterator<Item = (BoneSet, usize)>) -> Self {
+        let mut kinds: BTreeMap<BoneSet, usize> = BTreeMap::new();
+        for (bones, weight) in shown.into_iter().filter(|(bones, _)| !bones.is_empty()) {
+            *kinds.entry(bones).or_default() += weight;
+        }
+        let mut kinds: Vec<(BoneSet, usize)> = kinds.into_iter().collect();
+        kinds.sort_by_key(|(_, weight)| Reverse(*weight));
+        let shared = kinds.into_iter().map(|(bones, _)| bones);
+        let common = shared.reduce(|common, bones| match common.and(bones) {
+            Self::NONE => common,
+            shared => shared,
+        });
+        common.unwrap_or(Self::NONE)
     }
 
     /// The bones in either set.

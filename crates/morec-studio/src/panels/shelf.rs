@@ -65,6 +65,9 @@ pub fn tools(ui: &mut Ui, state: &State, out: Out) {
     if ui.button("Back to classes").clicked() {
         push(ShelfCommand::Show(false));
     }
+    if let Some(left_out) = &shelf.left_out {
+        ui.colored_label(c.warn, crate::store::sentence(left_out));
+    }
 }
 
 /// The sets, and what was seen once.

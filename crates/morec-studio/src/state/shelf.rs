@@ -20,6 +20,8 @@ pub struct Shelf {
     pub alone: Vec<AloneStretch>,
     /// Share of what moves that lies in sets.
     pub share_in_sets: f64,
+    /// Clips that were not searched, in words.
+    pub left_out: Option<String>,
     /// True while it is shown.
     pub open: bool,
     /// True while all strips play.
@@ -92,6 +94,7 @@ pub enum ShelfCommand {
 impl Shelf {
     pub(in crate::state) fn of(found: DiscoveredSets) -> Self {
         let mut shelf = Self {
+            left_out: found.left_out(),
             alone: found.alone,
             share_in_sets: found.share_in_sets,
             open: true,

@@ -206,32 +206,13 @@ fn strangers(
         Some((clip, usable_bones(&clip.roles), *count))
     });
     let taught: Vec<_> = taught.collect();
-    let common = taught
-        .iter()
-        .map(|(_, bones, _)| *bones)
-        .reduce(BoneSet::and);
-    if common.is_none_or(|common| !common.is_empty()) {
+    let common = BoneSet::most_common(taught.iter().map(|(_, bones, count)| (*bones, *count)));
+    if common.is_empty() {
         return BTreeSet::new();
     }
-    // The bones of most labels, then whatever shares some with them.
-    let mut by_bones: Vec<(BoneSet, usize)> = Vec::new();
-    for (_, bones, count) in taught.iter().filter(|(_, bones, _)| !bones.is_empty()) {
-        match by_bones.iter_mut().find(|(of, _)| of == bones) {
-            Some((_, all)) => *all += count,
-            None => by_bones.push((*bones, *count)),
-        }
-    }
-    let Some((mut kept, _)) = by_bones.into_iter().max_by_key(|(_, count)| *count) else {
-        return BTreeSet::new();
-    };
-    let mut strangers = BTreeSet::new();
-    for (clip, bones, _) in taught {
-        match kept.and(bones).is_empty() {
-            true => drop(strangers.insert(clip.name.clone())),
-            false => kept = kept.and(bones),
-        }
-    }
-    strangers
+    let is_stranger = |bones: BoneSet| common.and(bones).is_empty();
+    let strangers = taught.into_iter().filter(|of| is_stranger(of.1));
+    strangers.map(|(clip, _, _)| clip.name.clone()).collect()
 }
 
 /// The bones that `roles` show. Without hips and shoulders a body has no heading, so that its bones do not count: a hand may have an arm.
