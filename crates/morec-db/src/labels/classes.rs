@@ -148,21 +148,22 @@ impl MotionDb {
     /// # Errors
     /// [`DbError::Unknown`] if a sample does not exist; [`DbError::Invalid`] if `into` is not a valid name.
     pub fn split_class(&mut self, samples: &[SampleId], into: &str) -> Result<usize, DbError> {
-        self.edit(
-            &format!("move {} samples to {into}", samples.len()),
-            |conn| {
-                let mut known = conn.prepare_cached("SELECT 1 FROM samples WHERE id = ?1")?;
-                for id in samples {
-                    if !known.exists(params![id.0])? {
-                        return Err(DbError::unknown("sample", &format!("#{}", id.0)));
-                    }
+        let count = match samples.len() {
+            1 => "1 sample".to_owned(),
+            many => format!("{many} samples"),
+        };
+        self.edit(&format!("move {count} to {into}"), |conn| {
+            let mut known = conn.prepare_cached("SELECT 1 FROM samples WHERE id = ?1")?;
+            for id in samples {
+                if !known.exists(params![id.0])? {
+                    return Err(DbError::unknown("sample", &format!("#{}", id.0)));
                 }
-                let target = find_or_make(conn, into)?;
-                samples.iter().try_fold(0, |moved, id| {
-                    Ok(moved + move_samples(conn, "id", id.0, target)?)
-                })
-            },
-        )
+            }
+            let target = find_or_make(conn, into)?;
+            samples.iter().try_fold(0, |moved, id| {
+                Ok(moved + move_samples(conn, "id", id.0, target)?)
+            })
+        })
     }
 
     /// Forgets a class and its samples.

@@ -1,8 +1,9 @@
 //! Checks for tables that were probably misread: seconds in columns of frames, misspelt names.
 
+use std::cmp::Reverse;
 use std::collections::BTreeMap;
 
-use super::names::{hint, near, some_of};
+use super::names::{near, some_of};
 
 /// Labels of which half are shorter are no motions, seconds.
 const SHORTEST_SECS: f64 = 0.2;
@@ -10,6 +11,8 @@ const SHORTEST_SECS: f64 = 0.2;
 const FEW: usize = 2;
 /// The other one has this many times its labels.
 const TIMES_MORE: usize = 5;
+/// Likewise if two letters are swapped, which seldom makes another word.
+const TIMES_MORE_SWAPPED: usize = 2;
 /// Near names are looked for among this many clips.
 const HINTED: usize = 5;
 
@@ -56,31 +59,54 @@ pub fn said_absent(absent: &BTreeMap<String, usize>, known: &[String]) -> String
     format!("{rows} labels are of unknown clips: {names}{asked}")
 }
 
-/// Questions about classes of few labels whose names are nearly those of classes of many, given the number of labels of each.
+/// Questions about classes that are probably other ones misspelled, given the number of labels of each: names that differ only in case
+/// or in spaces, hyphens and underscores, and classes of few labels whose names are one slip away from those of classes of many.
 pub fn misspelled(counts: &BTreeMap<&str, usize>) -> Vec<String> {
-    let often = |than: usize| {
-        let often = counts.iter().filter(move |(_, n)| **n >= TIMES_MORE * than);
-        often
-            .map(|(name, _)| (*name).to_owned())
-            .collect::<Vec<_>>()
-    };
-    let few = counts
+    let folded: Vec<(String, &str, usize)> = counts
         .iter()
-        .filter(|(_, count)| (1..=FEW).contains(*count));
-    few.filter_map(|(name, count)| {
-        let meant = often(*count);
-        let meant = meant.iter().find(|other| is_slip(name, other))?;
+        .map(|(name, count)| (folded(name), *name, *count))
+        .collect();
+    let rank = |name: &str, count: usize| (Reverse(count), name.to_owned());
+    let asked = folded.iter().filter_map(|(key, name, count)| {
+        let mut others = folded.iter().filter(|(_, other, _)| other != name);
+        let meant = others.find(|(other_key, other, more)| {
+            if key == other_key {
+                return rank(other, *more) < rank(name, *count);
+            }
+            let times = match are_swapped(key, other_key) {
+                true => TIMES_MORE_SWAPPED,
+                false => TIMES_MORE,
+            };
+            (1..=FEW).contains(count) && *more >= times * count && is_slip(key, other_key)
+        })?;
         let labels = if *count == 1 { "label" } else { "labels" };
-        let known = hint(name, std::slice::from_ref(meant));
-        Some(format!("the class {name} has {count} {labels}{known}"))
-    })
-    .collect()
+        let meant = meant.1;
+        Some(format!(
+            "the class {name} has {count} {labels}; did you mean `{meant}`?"
+        ))
+    });
+    asked.collect()
+}
+
+/// A name without its case and without what separates its words.
+fn folded(name: &str) -> String {
+    let lower = name.to_lowercase();
+    lower.replace([' ', '-'], "_")
+}
+
+/// True if the letters are the same in another order.
+fn are_swapped(name: &str, other: &str) -> bool {
+    let letters = |text: &str| {
+        let mut letters: Vec<char> = text.chars().collect();
+        letters.sort_unstable();
+        letters
+    };
+    name.len() == other.len() && letters(name) == letters(other)
 }
 
 /// True if one letter is missing, too many, another or swapped with its neighbour; numbers and endings such as `_l` and `_r`
 /// are what distinguishes classes.
 fn is_slip(name: &str, other: &str) -> bool {
-    let (name, other) = (name.to_lowercase(), other.to_lowercase());
     let digits = |text: &str| {
         text.chars()
             .filter(char::is_ascii_digit)
@@ -91,11 +117,11 @@ fn is_slip(name: &str, other: &str) -> bool {
         last.map_or(String::new(), |(at, _)| text[..at].to_owned())
     };
     let same_length = name.chars().count() == other.chars().count();
-    let ending = same_length && stem(&name) == stem(&other);
+    let ending = same_length && stem(name) == stem(other);
     name.chars().count() > 2
-        && digits(&name) == digits(&other)
+        && digits(name) == digits(other)
         && !(ending && name != other)
-        && strsim::damerau_levenshtein(&name, &other) <= 1
+        && strsim::damerau_levenshtein(name, other) <= 1
 }
 
 #[cfg(test)]
@@ -128,6 +154,16 @@ mod tests {
         assert_eq!(asked, ["the class calp has 1 label; did you mean `clap`?"]);
         assert!(misspelled(&[("Clap", 1), ("clap", 5)].into())[0].contains("`clap`"));
         assert!(misspelled(&[("clap", 3), ("calp", 3)].into()).is_empty());
+        let few = misspelled(&[("throw", 4), ("thorw", 1), ("thrown", 1)].into());
+        assert_eq!(few, ["the class thorw has 1 label; did you mean `throw`?"]);
+    }
+
+    #[test]
+    fn names_that_differ_in_case_or_separators_are_asked_about_however_many_labels_they_have() {
+        let asked = misspelled(&[("Kick_left", 9), ("kick left", 12)].into());
+        let said = "the class Kick_left has 9 labels; did you mean `kick left`?";
+        assert_eq!(asked, [said]);
+        assert_eq!(misspelled(&[("Kick", 3), ("kick", 3)].into()).len(), 1);
     }
 
     #[test]

@@ -78,7 +78,7 @@ fn long_gesture_note(
         .collect();
     (!names.is_empty()).then(|| {
         format!(
-            "recognised as a gesture: {}; list it in --activities if it is continuous or repeated",
+            "recognised as a gesture: {}; declare it an activity if it is continuous or repeated",
             names.join(", ")
         )
     })

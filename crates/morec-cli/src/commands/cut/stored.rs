@@ -54,8 +54,8 @@ fn print(cuts: &[ClipCuts]) -> Result<()> {
             cut.still
                 .iter()
                 .filter(|s| s.kind == kind)
-                .map(|s| s.span.duration_secs())
-                .sum()
+                // `sum` of nothing is -0, which would be printed.
+                .fold(0.0, |secs, s| secs + s.span.duration_secs())
         };
         let mut at: Vec<String> = cut
             .cuts_secs
