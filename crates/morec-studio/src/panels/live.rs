@@ -190,7 +190,7 @@ fn record(ui: &mut Ui, state: &State, live: &mut impl FnMut(LiveCommand)) {
     } else {
         text
     };
-    let response = widgets::wide(ui, state.live.run.is_some(), egui::Button::new(text), 26.0);
+    let response = widgets::wide(ui, state.live.is_running(), egui::Button::new(text), 26.0);
     response.widget_info(|| egui::WidgetInfo::labeled(WidgetType::Button, true, "Record a take"));
     if response
         .on_hover_text("Three seconds to get ready; the take becomes a clip of the database")

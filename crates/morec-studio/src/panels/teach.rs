@@ -20,6 +20,39 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
         (_, None) => "The last motion was …",
     };
     ui.label(RichText::new(hint).size(12.0).color(c.muted));
+    // With many classes what is recognised stays in view.
+    ScrollArea::vertical()
+        .id_salt("classes to mark")
+        .max_height(0.45 * ui.available_height())
+        .show(ui, |ui| meanings(ui, state, out));
+    class_name::unnamed(ui, state, false, out);
+    let busy = state.live.teaching || state.is_training();
+    if busy {
+        ui.horizontal(|ui| {
+            ui.add(egui::Spinner::new().size(14.0));
+            ui.label(if state.live.teaching {
+                "keeping it …"
+            } else {
+                "training …"
+            });
+        });
+    }
+    if state.live.index().is_some() && state.train.is_stale() && !busy {
+        widgets::train_again(ui, out);
+    }
+    if state.live.index().is_none() && !state.is_training() {
+        ui.add_space(4.0);
+        ui.colored_label(c.warn, "No index is in use yet: mark a motion, or");
+        if ui.button("Train on the existing labels").clicked() {
+            out.push(Command::Train(TrainCommand::Train));
+        }
+    }
+    ui.add_space(8.0);
+}
+
+/// A button for each meaning that the motion may have: a class, a new one, background.
+fn meanings(ui: &mut Ui, state: &State, out: Out) {
+    let c = Colours::now(ui);
     let on = state.live.run.is_some() && !state.live.teaching;
     ui.horizontal_wrapped(|ui| {
         for (place, class) in state.classes.placed() {
@@ -61,29 +94,6 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
             out.push(Command::Live(LiveCommand::MarkBackground));
         }
     });
-    class_name::unnamed(ui, state, false, out);
-    let busy = state.live.teaching || state.is_training();
-    if busy {
-        ui.horizontal(|ui| {
-            ui.add(egui::Spinner::new().size(14.0));
-            ui.label(if state.live.teaching {
-                "keeping it …"
-            } else {
-                "training …"
-            });
-        });
-    }
-    if state.live.index().is_some() && state.train.is_stale() && !busy {
-        widgets::train_again(ui, out);
-    }
-    if state.live.index().is_none() && !state.is_training() {
-        ui.add_space(4.0);
-        ui.colored_label(c.warn, "No index is in use yet: mark a motion, or");
-        if ui.button("Train on the existing labels").clicked() {
-            out.push(Command::Train(TrainCommand::Train));
-        }
-    }
-    ui.add_space(8.0);
 }
 
 /// The motion that may be under way, and the detections, the last first.

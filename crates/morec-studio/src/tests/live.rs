@@ -274,6 +274,11 @@ fn somebody_else_is_recognised_more_generously_where_few_people_taught() {
     person.click("another person");
     let line = person.state().command_line.clone();
     assert!(line.ends_with(" --performer anyone"), "{line}");
+    // The index was trained here: the line writes it first.
+    assert!(
+        line.starts_with("morec train ") && line.contains("morec live "),
+        "{line}"
+    );
     // The next start is with what was chosen, too.
     person.click("Stop");
     person.click("Start");
@@ -423,6 +428,102 @@ fn a_performer_who_is_gone_is_not_said_to_be_without_fault() {
     assert!(gone(&person));
     assert!(!person.sees_part("No problems found"));
     assert!(person.sees_part("The watched performer has left"));
+}
+
+#[test]
+fn a_sender_that_was_started_again_is_watched_again() {
+    let (_folder, mut person, address) = listening(0);
+    let watched = |person: &Person| {
+        let run = person.state().live.run.as_ref().unwrap();
+        run.watched().map(|w| (w.actor, w.gone, w.frames.len()))
+    };
+    let sends = |person: &mut Person, is_done: &dyn Fn(&Person) -> bool| {
+        let address = address.clone();
+        let sender = std::thread::spawn(move || send(&address, &takes()[0], 60));
+        let begun = std::time::Instant::now();
+        while !is_done(person) && begun.elapsed().as_secs() < 60 {
+            person.frames(1);
+            std::thread::sleep(std::time::Duration::from_millis(5));
+        }
+        sender.join().unwrap()
+    };
+    let first = sends(&mut person, &|p| watched(p).is_some_and(|w| w.2 == 60));
+    let (actor, _, _) = watched(&person).unwrap();
+    person.command(Command::Live(LiveCommand::Range(Some((0.5, 1.0)))));
+    drop(first);
+    let again = sends(&mut person, &|p| {
+        watched(p).is_some_and(|w| w.0 != actor && w.2 == 60)
+    });
+    let (other, gone, frames) = watched(&person).unwrap();
+    assert!(
+        other != actor && !gone && frames == 60,
+        "{other:?} {gone} {frames}"
+    );
+    // What was selected was of the other sender's clock.
+    assert_eq!(person.state().live.range, None);
+    let run = person.state().live.run.as_ref().unwrap();
+    assert_eq!(
+        person.state().live.now_secs(),
+        run.watched().unwrap().now_secs
+    );
+    drop(again);
+}
+
+#[test]
+fn what_came_before_stop_can_still_be_labelled() {
+    let (_folder, mut person) = before(Panel::Live, 0);
+    let wave = takes()[0].labels.iter().find(|l| l.class == "wave");
+    let wave = wave.unwrap().span;
+    person.key(Key::Space);
+    person.settle();
+    while person.state().live.now_secs() < wave.stop_secs + 0.5 {
+        person.frames(1);
+    }
+    person.key(Key::Space);
+    let stopped = person.state().live.now_secs();
+    person.wait(1.0);
+    assert_eq!(person.state().live.now_secs(), stopped);
+    assert!(person.sees_part("the last minutes can still be labelled"));
+    person.command(Command::Live(LiveCommand::Range(Some((
+        wave.start_secs,
+        wave.stop_secs,
+    )))));
+    person.command(Command::Live(LiveCommand::MarkAs("wave".to_owned())));
+    person.settle();
+    assert_eq!(person.labels().len(), 1);
+    // The next start begins anew.
+    person.key(Key::Space);
+    person.settle();
+    person.frames(2);
+    assert!(person.state().live.now_secs() < stopped && person.state().live.marks.is_empty());
+}
+
+#[test]
+fn minutes_that_are_dropped_are_neither_shown_nor_selected() {
+    use std::io::Write;
+    let (_folder, mut person, address) = listening(0);
+    let mut stream = std::net::TcpStream::connect(address).unwrap();
+    let mut send = |person: &mut Person, from: i32| {
+        for frame in from..from + 30 {
+            let secs = f64::from(frame) / 30.0;
+            let line = serde_json::json!({"t": secs, "hand": "right", "points": hand(secs)});
+            writeln!(stream, "{line}").unwrap();
+        }
+        let last = f64::from(from + 29) / 30.0;
+        let begun = std::time::Instant::now();
+        while person.state().live.now_secs() != last && begun.elapsed().as_secs() < 60 {
+            person.frames(1);
+            std::thread::sleep(std::time::Duration::from_millis(5));
+        }
+    };
+    send(&mut person, 300);
+    person.command(Command::Live(LiveCommand::Range(Some((10.2, 10.8)))));
+    // The sender's clock begins anew.
+    send(&mut person, 0);
+    assert_eq!(person.state().live.range, None);
+    let run = person.state().live.run.as_ref().unwrap();
+    assert_eq!(run.watched().unwrap().frames.len(), 30);
+    assert!(person.sees_part("the sender's clock went back"));
 }
 
 #[test]

@@ -8,7 +8,7 @@ use super::lines::{ShownCommand, train_line};
 use super::train::INDEX;
 use crate::jobs::teach::Meaning;
 use crate::jobs::{JobOutcome, recognise};
-use crate::state::live::{Choice, ClipFeed, Feed, Resensed, Run, ThreadFeed};
+use crate::state::live::{Choice, ClipFeed, Feed, Forgot, Resensed, Run, ThreadFeed};
 use crate::state::{LiveCommand, State};
 
 /// Name of the job that keeps what was marked.
@@ -70,6 +70,7 @@ impl State {
 
     fn start_live(&mut self) {
         self.stop_live();
+        self.live.run = None;
         self.live.follow_index(self.train.index.as_ref());
         match self.live.choice.clone() {
             Choice::Clip(chosen) => {
@@ -155,7 +156,9 @@ impl State {
         if self.live.take.is_some() {
             self.keep_take();
         }
-        self.live.run = None;
+        if let Some(run) = &mut self.live.run {
+            run.stop();
+        }
         self.live.starting = None;
         self.live.countdown = None;
     }
@@ -177,6 +180,15 @@ impl State {
         let live = &mut self.live;
         let Some(run) = &mut live.run else { return };
         let frames = run.tick(dt);
+        // A take is of one performer, and its frames are chosen by that performer's number.
+        if live.take.is_none() && run.watch_successor() {
+            live.range = None;
+        }
+        if let Some(why) = run.forgot.take() {
+            self.forget_minutes(why);
+        }
+        let live = &mut self.live;
+        let Some(run) = &mut live.run else { return };
         if let Some(take) = &mut live.take {
             frames.iter().for_each(|frame| take.push(frame));
         }
@@ -202,6 +214,18 @@ impl State {
             self.live.framed = Some(actor);
             self.stand_off(is_hand.then_some(HAND_HALF_M));
         }
+    }
+
+    /// What was shown and selected of minutes that are no longer kept cannot be used.
+    fn forget_minutes(&mut self, why: Forgot) {
+        if self.live.take.is_some() {
+            self.keep_take();
+        }
+        self.live.range = None;
+        self.live.marks.clear();
+        self.live.resensed = None;
+        self.live.looking.until_secs = None;
+        self.say(why.text());
     }
 
     fn recognise_with(&mut self, settings: RecognizeSettings) {

@@ -296,7 +296,7 @@ impl State {
             self.keep_take();
         } else if self.live.countdown.take().is_some() {
             self.say("recording cancelled");
-        } else if self.live.run.is_some() {
+        } else if self.live.is_running() {
             self.live.countdown = Some(3.0);
         } else {
             self.say("start a source first");

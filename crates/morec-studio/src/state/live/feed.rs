@@ -46,6 +46,13 @@ impl Feed {
         }
     }
 
+    /// Asks a device no longer; a clip just stands.
+    pub fn stop(&mut self) {
+        if let Feed::Thread(feed) = self {
+            feed.stop();
+        }
+    }
+
     pub fn counts(&self) -> SourceCounts {
         match self {
             Feed::Clip(_) => SourceCounts::default(),
@@ -163,7 +170,8 @@ fn first(motion: &ClipMotion) -> usize {
 
 /// A source that is asked on a thread of its own.
 pub struct ThreadFeed {
-    items: Receiver<LiveItem>,
+    /// `None` once it is stopped.
+    items: Option<Receiver<LiveItem>>,
     counts: Receiver<SourceCounts>,
     last: std::cell::Cell<SourceCounts>,
     stop: Arc<AtomicBool>,
@@ -180,16 +188,22 @@ impl ThreadFeed {
             .name("live source".to_owned())
             .spawn(move || ask(source, &sender, &counter, &theirs, &wake))?;
         Ok(Self {
-            items,
+            items: Some(items),
             counts,
             last: std::cell::Cell::default(),
             stop,
         })
     }
 
+    fn stop(&mut self) {
+        self.stop.store(true, Ordering::Relaxed);
+        self.items = None;
+    }
+
     fn poll(&mut self, out: &mut Vec<LiveItem>) {
+        let Some(items) = &self.items else { return };
         loop {
-            match self.items.try_recv() {
+            match items.try_recv() {
                 Ok(item) => out.push(item),
                 Err(TryRecvError::Empty) => return,
                 Err(TryRecvError::Disconnected) => {
@@ -210,7 +224,7 @@ impl ThreadFeed {
 
 impl Drop for ThreadFeed {
     fn drop(&mut self) {
-        self.stop.store(true, Ordering::Relaxed);
+        self.stop();
     }
 }
 

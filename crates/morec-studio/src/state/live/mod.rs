@@ -22,7 +22,7 @@ pub use feed::{ClipFeed, Feed, ThreadFeed};
 
 pub use looking::{Looking, SPANS};
 pub use marked::{LiveMark, labelled_there};
-pub use run::{LiveDetection, LiveDeviation, Run};
+pub use run::{Forgot, LiveDetection, LiveDeviation, Run};
 
 /// While seconds are counted down, the window is drawn so often, seconds.
 const COUNTED_SECS: f64 = 0.1;
@@ -144,7 +144,7 @@ pub enum LiveCommand {
 
 impl Live {
     pub fn is_running(&self) -> bool {
-        self.run.is_some() || self.starting.is_some()
+        self.starting.is_some() || self.run.as_ref().is_some_and(Run::is_running)
     }
 
     /// Time until something that is shown changes without a word from the source, seconds.

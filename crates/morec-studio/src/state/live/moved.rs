@@ -97,3 +97,26 @@ fn smoothed(speeds: &VecDeque<f32>, at: usize) -> f32 {
     let n = span.len().max(1) as f32;
     span.map(|i| speeds[i]).sum::<f32>() / n
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_twitch_after_a_motion_is_not_the_last_motion() {
+        // At 100 Hz: still, a motion of a second, still, a twitch of 0.1 s, still.
+        let parts = [(50, 0.0), (100, 1.5), (60, 0.0), (10, 1.5), (50, 0.0)];
+        let speeds = parts.iter().flat_map(|&(n, speed)| vec![speed; n]);
+        let speeds: VecDeque<f32> = speeds.collect();
+        let frame = |at: usize| Frame {
+            time_secs: 0.01 * at as f64,
+            ..Frame::default()
+        };
+        let frames: VecDeque<Frame> = (0..speeds.len()).map(frame).collect();
+        let (start, stop) = last_motion(&frames, &speeds).unwrap();
+        assert!((start - 0.5).abs() < 0.05, "{start}");
+        assert!((stop - 1.5).abs() < 0.05, "{stop}");
+        let still = VecDeque::from(vec![0.0; speeds.len()]);
+        assert_eq!(last_motion(&frames, &still), None);
+    }
+}

@@ -44,6 +44,27 @@ pub struct LiveDeviation {
     pub deviation: Deviation,
 }
 
+/// Why the last minutes of a performer are no longer kept.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Forgot {
+    OtherSkeleton,
+    ClockWentBack,
+}
+
+impl Forgot {
+    /// In words.
+    pub const fn text(self) -> &'static str {
+        match self {
+            Self::OtherSkeleton => {
+                "the skeleton of the performer changed: the minutes before are no longer kept"
+            }
+            Self::ClockWentBack => {
+                "the sender's clock went back: the minutes before are no longer kept"
+            }
+        }
+    }
+}
+
 /// A source that runs.
 pub struct Run {
     feed: Feed,
@@ -52,16 +73,21 @@ pub struct Run {
     pub performers: Vec<LivePerformer>,
     /// Place of the performer who is watched, taught from and recorded.
     watched: usize,
+    /// On the clock of the performer who is watched.
     pub now_secs: f64,
     pub seen: Vec<LiveDetection>,
     /// The last that were compared with samples.
     pub compared: VecDeque<LiveDeviation>,
     /// Classes of motions that ended since they were asked for.
     pub news: Vec<ClassId>,
+    /// Why minutes of the performer who is watched were dropped since it was asked for.
+    pub forgot: Option<Forgot>,
     model: Option<Model>,
     /// Time for which nothing has come, seconds on the wall.
     pub silent_secs: f64,
     pub ended: bool,
+    /// True once the user stopped it: what came can still be looked at and labelled.
+    stopped: bool,
     /// Faults of the data that the source is sent.
     pub notices: Option<morec_live::Notices>,
     noticed: Vec<String>,
@@ -78,12 +104,30 @@ impl Run {
             seen: Vec::new(),
             compared: VecDeque::new(),
             news: Vec::new(),
+            forgot: None,
             model: None,
             silent_secs: 0.0,
             ended: false,
+            stopped: false,
             notices: None,
             noticed: Vec::new(),
         }
+    }
+
+    /// True while poses come or may come.
+    pub const fn is_running(&self) -> bool {
+        !self.stopped && !self.ended
+    }
+
+    /// Takes nothing more; the motions under way end.
+    pub fn stop(&mut self) {
+        self.stopped = true;
+        self.feed.stop();
+        let mut events = Vec::new();
+        for performer in &mut self.performers {
+            performer.finish(&mut events);
+        }
+        self.take_events(&events);
     }
 
     /// The performer who is watched.
@@ -99,8 +143,14 @@ impl Run {
     /// Watches another performer.
     pub fn watch(&mut self, actor: PerformerId) {
         if let Some(at) = self.performers.iter().position(|p| p.actor == actor) {
-            self.watched = at;
+            self.watch_place(at);
         }
+    }
+
+    /// Performers who come from several senders have clocks of their own.
+    fn watch_place(&mut self, at: usize) {
+        self.watched = at;
+        self.now_secs = self.performers[at].now_secs;
     }
 
     /// Recognises with this model from the next frame on.
@@ -116,6 +166,9 @@ impl Run {
     /// Takes what has come while `dt` seconds passed; gives the frames of the performer who is watched.
     pub fn tick(&mut self, dt: f64) -> Vec<Frame> {
         let (mut items, mut frames, mut events) = (Vec::new(), Vec::new(), Vec::new());
+        if self.stopped {
+            return frames;
+        }
         self.feed.poll(dt.min(LONGEST_FRAME), &mut items);
         self.silent_secs += dt;
         if let Some(notices) = &self.notices {
@@ -124,18 +177,22 @@ impl Run {
         for item in items {
             match item {
                 LiveItem::Rig(actor, rig) => {
-                    if let Some(performer) = self.performer(actor) {
-                        performer.set_rig(rig, &mut events);
+                    let performer = self.performer(actor);
+                    if performer.is_some_and(|p| p.set_rig(rig, &mut events)) {
+                        self.take_events(&std::mem::take(&mut events));
+                        self.forget(actor, Forgot::OtherSkeleton);
                     }
                 }
                 LiveItem::Frame(frame) => {
                     self.silent_secs = 0.0;
-                    self.now_secs = self.now_secs.max(frame.time_secs);
                     let Some(performer) = self.performer(frame.actor) else {
                         continue;
                     };
-                    performer.push(&frame, &mut events);
+                    if performer.push(&frame, &mut events) {
+                        self.forget(frame.actor, Forgot::ClockWentBack);
+                    }
                     if self.watched().is_some_and(|w| w.actor == frame.actor) {
+                        self.now_secs = frame.time_secs;
                         frames.push(*frame);
                     }
                 }
@@ -152,19 +209,52 @@ impl Run {
         frames
     }
 
-    /// The performer of a number; somebody new has a place while there is one.
+    /// The performer of a number; a new one takes the place of one who is gone once all places are taken.
     fn performer(&mut self, actor: PerformerId) -> Option<&mut LivePerformer> {
-        let known = self.performers.iter().position(|p| p.actor == actor);
-        let at = match known {
+        let places = self.performers.iter();
+        let at = match places.clone().position(|p| p.actor == actor) {
             Some(at) => at,
-            None if self.performers.len() < MOST => {
+            None => {
                 let new = LivePerformer::new(actor, self.model.as_ref());
-                self.performers.push(new);
-                self.performers.len() - 1
+                if self.performers.len() < MOST {
+                    self.performers.push(new);
+                    self.performers.len() - 1
+                } else {
+                    let is_free = |(at, p): (usize, &LivePerformer)| p.gone && at != self.watched;
+                    let at = places.enumerate().position(is_free)?;
+                    self.performers[at] = new;
+                    at
+                }
             }
-            None => return None,
         };
         self.performers.get_mut(at)
+    }
+
+    /// What was recognised of a performer whose frames were dropped cannot be looked at again.
+    fn forget(&mut self, actor: PerformerId, why: Forgot) {
+        self.seen.retain(|seen| seen.actor != actor);
+        self.compared.retain(|compared| compared.actor != actor);
+        if self.watched().is_some_and(|w| w.actor == actor) {
+            self.forgot = Some(why);
+        }
+    }
+
+    /// Watches, in place of a performer who is gone, another who came after that performer's last frame: a sender that was started again
+    /// has another number. True if another is watched now.
+    pub fn watch_successor(&mut self) -> bool {
+        let gone = self.watched().filter(|w| w.gone);
+        let Some(last) = gone.and_then(|w| w.frames.back()) else {
+            return false;
+        };
+        let came_after = |p: &LivePerformer| {
+            let first = p.frames.front();
+            !p.gone && first.is_some_and(|first| first.wall_secs > last.wall_secs)
+        };
+        let Some(successor) = self.performers.iter().position(came_after) else {
+            return false;
+        };
+        self.watch_place(successor);
+        true
     }
 
     fn take_events(&mut self, events: &[Event]) {
@@ -231,6 +321,7 @@ impl Run {
     /// See [`Live::next_change_secs`](super::Live::next_change_secs). A device wakes the window with each frame.
     pub fn next_change_secs(&self) -> Option<f64> {
         match &self.feed {
+            _ if self.stopped => None,
             Feed::Clip(feed) => Some(feed.next_frame_secs()),
             // That the sender has stopped is said once.
             Feed::Thread(_) => (!self.ended && self.silent_secs <= LOST_SECS)
@@ -242,7 +333,10 @@ impl Run {
     pub fn health(&self, index: Option<&MotionIndex>) -> Vec<(String, bool)> {
         let mut said = Vec::new();
         let nothing = self.performers.iter().all(|p| p.frames.is_empty());
-        if self.ended {
+        if self.stopped {
+            let text = "Stopped: the last minutes can still be labelled";
+            said.push((text.to_owned(), false));
+        } else if self.ended {
             said.push(("The source has ended".to_owned(), true));
         } else if nothing {
             said.push((

@@ -17,6 +17,8 @@ use crate::body::extent;
 
 /// Length of the stream that is kept for looking back, seconds.
 pub const KEPT_SECS: f64 = 300.0;
+/// A clock that goes back by more began anew, seconds.
+const CLOCK_BACK_SECS: f64 = 1.0;
 
 /// A performer of the source, with the last minutes of the stream.
 pub struct LivePerformer {
@@ -67,7 +69,8 @@ impl LivePerformer {
         }
     }
 
-    pub fn set_rig(&mut self, rig: Arc<Rig>, events: &mut Vec<Event>) {
+    /// Goes on with this skeleton. True if the frames that were kept are dropped, being of another one.
+    pub fn set_rig(&mut self, rig: Arc<Rig>, events: &mut Vec<Event>) -> bool {
         if let Some(performer) = &mut self.performer {
             events.extend_from_slice(performer.set_rig(&rig));
         }
@@ -76,16 +79,15 @@ impl LivePerformer {
             .rig
             .as_ref()
             .is_some_and(|old| old.skeleton.len() != rig.skeleton.len());
-        if other {
-            self.frames.clear();
-            self.speeds.clear();
-        }
+        let dropped = other && self.drop_frames();
         self.body = Body::default();
         self.gone = false;
         self.rig = Some(rig);
+        dropped
     }
 
-    pub fn push(&mut self, frame: &Frame, events: &mut Vec<Event>) {
+    /// Takes a frame. True if the frames that were kept are dropped, as the sender's clock went back.
+    pub fn push(&mut self, frame: &Frame, events: &mut Vec<Event>) -> bool {
         if self.body.limbs.is_empty()
             && let Some(rig) = &self.rig
         {
@@ -96,6 +98,8 @@ impl LivePerformer {
         if let Some(performer) = &mut self.performer {
             events.extend_from_slice(performer.push(frame));
         }
+        let went_back = frame.time_secs < self.now_secs - CLOCK_BACK_SECS;
+        let dropped = went_back && self.drop_frames();
         self.gone = false;
         self.now_secs = frame.time_secs;
         self.pose.clone_from(&frame.pose);
@@ -110,6 +114,14 @@ impl LivePerformer {
             self.frames.pop_front();
             self.speeds.pop_front();
         }
+        dropped
+    }
+
+    fn drop_frames(&mut self) -> bool {
+        let some = !self.frames.is_empty();
+        self.frames.clear();
+        self.speeds.clear();
+        some
     }
 
     pub fn centre(&self) -> Option<Vec3> {
