@@ -69,9 +69,13 @@ impl Studio {
         self.fonts.follow(ctx, &mut self.state);
         let mut commands: Vec<Command> = Vec::new();
         panels::focus::follow(ctx);
+        let in_menu = panels::focus::keep_in_menus(ctx);
         keys::read(ctx, &self.state, self.dialogs.is_open(), &mut commands);
         dialogs::dropped(ctx, &mut commands);
         panels::show(ctx, &self.state, &mut commands);
+        if !in_menu {
+            panels::focus::come_back_from_menus(ctx);
+        }
         for command in commands {
             self.state.apply(command);
         }

@@ -91,6 +91,24 @@ pub fn read(ctx: &Context, enters: bool) {
     }
 }
 
+/// Down, in the field that searches a list which is drawn after it, goes to the first row that was found.
+pub fn enter_by_down(ui: &Ui, field: &Response, name: &str) {
+    let down = |i: &mut egui::InputState| i.consume_key(Modifiers::NONE, Key::ArrowDown);
+    if field.has_focus() && ui.input_mut(down) {
+        let wanted = WantedRow {
+            list: list_id(name),
+            at: 0,
+            pass: ui.ctx().cumulative_pass_nr(),
+        };
+        ui.data_mut(|data| data.insert_temp(Id::NULL, wanted));
+        ui.memory_mut(|memory| memory.move_focus(FocusDirection::None));
+    }
+}
+
+fn list_id(name: impl std::hash::Hash) -> Id {
+    Id::new(("list", name))
+}
+
 /// A list while it is drawn.
 #[derive(Debug, Clone, Copy)]
 pub struct List {
@@ -137,7 +155,7 @@ impl List {
         follows: bool,
         entry: Option<usize>,
     ) -> Self {
-        let id = Id::new(("list", name));
+        let id = list_id(name);
         let now = ui.ctx().cumulative_pass_nr();
         let current = current(ui.ctx()).filter(|current| current.list == id);
         let wanted = ui.data_mut(|data| {

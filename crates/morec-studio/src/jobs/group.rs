@@ -169,7 +169,9 @@ pub fn group(
     match grouped(path, settings, progress) {
         Ok(groups) if groups.items.is_empty() => Err(JobError::Failed(
             match settings.of {
-                Some(Grouping::Cuts) => "Nothing to group: cut the clips first",
+                Some(Grouping::Cuts) => {
+                    "Nothing to group: cut the clips first (Cut all clips, in Label)"
+                }
                 _ => "Nothing to group: label a few motions first",
             }
             .to_owned(),

@@ -2,7 +2,7 @@
 
 use egui::{TextEdit, Ui, WidgetType};
 
-use super::Out;
+use super::{Out, widgets};
 use crate::state::classes::is_free_name;
 use crate::state::{ClassCommand, Command, State};
 
@@ -44,7 +44,8 @@ pub fn field(ui: &mut Ui, from: &str, now: &str, out: Out) {
     // Whoever has typed the name has the keys back.
     match ended {
         true => response.surrender_focus(),
-        false => response.request_focus(),
+        false if response.has_focus() => {}
+        false => widgets::focus_selected(ui, &response, now),
     }
     let given_up = text.trim().is_empty() || ui.input(|i| i.key_pressed(egui::Key::Escape));
     let from = from.to_owned();

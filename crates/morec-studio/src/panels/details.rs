@@ -86,28 +86,32 @@ fn several(ui: &mut Ui, state: &State, out: Out) {
 /// Removes clips at the second click, which says how much goes.
 fn remove(ui: &mut Ui, clips: &[&ClipInfo], out: Out) {
     let ids: Vec<ClipId> = clips.iter().map(|clip| clip.id).collect();
-    let asked = egui::Id::new(("remove these clips", &ids));
+    let asked = egui::Id::new("remove these clips");
     let labels = clips.iter().map(|clip| clip.samples).sum();
     let sure = format!(
         "Remove {} and {}",
         format::count(ids.len(), "clip"),
         format::count(labels, "label")
     );
-    let is_asked = ui.data(|data| data.get_temp(asked).unwrap_or(false));
-    if !is_asked {
-        if ui.button("Remove these clips …").clicked() {
-            ui.data_mut(|data| data.insert_temp(asked, true));
-        }
-        return;
-    }
-    ui.horizontal(|ui| {
-        let goes = ui.button(sure).clicked();
-        if goes {
-            out.push(Command::Edit(Edit::RemoveClips(ids)));
-        }
-        if goes || ui.button("Keep them").clicked() {
-            ui.data_mut(|data| data.remove::<bool>(asked));
-        }
+    // The question is of these clips, and over once it was not shown: another selection, another panel.
+    let pass = ui.ctx().cumulative_pass_nr();
+    let question: Option<(Vec<ClipId>, u64)> = ui.data(|data| data.get_temp(asked));
+    let is_asked = question.is_some_and(|(of, shown)| of == ids && shown + 1 >= pass);
+    let stays = if is_asked {
+        let answer = ui.horizontal(|ui| {
+            let goes = ui.button(sure).clicked();
+            if goes {
+                out.push(Command::Edit(Edit::RemoveClips(ids.clone())));
+            }
+            goes || ui.button("Keep them").clicked()
+        });
+        !answer.inner
+    } else {
+        ui.button("Remove these clips …").clicked()
+    };
+    ui.data_mut(|data| match stays {
+        true => data.insert_temp(asked, (ids, pass)),
+        false => data.remove::<(Vec<ClipId>, u64)>(asked),
     });
 }
 

@@ -1,7 +1,7 @@
 //! The keyboard's place: outlined, and brought into view when it moves.
 
 use egui::accesskit::{Action, ActionRequest, NodeId};
-use egui::{Context, Event, Id, Response, Stroke, StrokeKind, Ui};
+use egui::{Context, Event, Id, Order, Popup, Response, Stroke, StrokeKind, Ui};
 
 use crate::theme::Colours;
 
@@ -49,6 +49,43 @@ pub fn follow(ctx: &Context) {
     };
     ctx.input_mut(|i| i.events.push(Event::AccessKitActionRequest(request)));
     ctx.request_repaint();
+}
+
+/// What had the keyboard before a menu was opened.
+#[derive(Debug, Clone, Copy)]
+struct BehindMenu(Id);
+
+/// Before a frame is drawn: while a menu is open, the keyboard stays in it, and a click outside closes it alone. True if one is open.
+pub fn keep_in_menus(ctx: &Context) -> bool {
+    if !Popup::is_any_open(ctx) {
+        return false;
+    }
+    let lowest = ctx.memory(|memory| {
+        let mut menus = memory.layer_ids().filter(|l| l.order == Order::Foreground);
+        menus.find(|layer| memory.areas().is_visible(layer))
+    });
+    if let Some(lowest) = lowest {
+        ctx.memory_mut(|memory| memory.set_modal_layer(lowest));
+    }
+    // What lies below a menu loses the keyboard when it is drawn.
+    let is_below = |r: &Response| r.layer_id.order < Order::Foreground;
+    if let Some(response) = focused(ctx).filter(is_below) {
+        ctx.data_mut(|data| data.insert_temp(Id::NULL, Some(BehindMenu(response.id))));
+    }
+    true
+}
+
+/// After a frame without a menu: the keyboard is again where it was before the menu was opened, if that is still drawn.
+pub fn come_back_from_menus(ctx: &Context) {
+    let behind: Option<Option<BehindMenu>> = ctx.data_mut(|data| data.remove_temp(Id::NULL));
+    let is_free = ctx.memory(|memory| memory.focused().is_none());
+    let Some(BehindMenu(id)) = behind.flatten().filter(|_| is_free) else {
+        return;
+    };
+    if ctx.viewport(|viewport| viewport.this_pass.widgets.contains(id)) {
+        ctx.memory_mut(|memory| memory.request_focus(id));
+        ctx.request_repaint();
+    }
 }
 
 /// At the end of an area with areas inside: scrolls it to what got the keyboard.

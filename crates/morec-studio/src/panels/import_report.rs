@@ -1,6 +1,10 @@
 //! The report of the last import: refusals with their reasons, near copies, repairs.
 
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
 use egui::{RichText, ScrollArea, Ui};
+use morec::labels::some_of;
 
 use super::Out;
 use crate::format;
@@ -38,22 +42,40 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
                     as_background(ui, state, report, out);
                 });
             });
-            let lines = report.refused.iter().map(|line| (line, "refused"));
-            let lines = lines.chain(report.warnings.iter().map(|line| (line, "note")));
             beside(ui, report, out);
             ScrollArea::vertical()
                 .id_salt("report")
                 .max_height(120.0)
                 .show(ui, |ui| {
                     copies(ui, report, out);
-                    for ((path, why), kind) in lines.take(200) {
-                        let name = path.file_name().unwrap_or_default().to_string_lossy();
-                        ui.label(RichText::new(format!("{name}: {kind}: {why}")).size(12.0))
-                            .on_hover_text(path.display().to_string());
-                    }
+                    notes(ui, "refused", &report.refused);
+                    notes(ui, "note", &report.warnings);
                 });
         });
     ui.add_space(6.0);
+}
+
+/// Files with what is said of them; those of which the same is said share a line.
+fn notes(ui: &mut Ui, kind: &str, said: &[(PathBuf, String)]) {
+    const LINES: usize = 100;
+    let mut lines: Vec<(&str, Vec<&PathBuf>)> = Vec::new();
+    let mut known: BTreeMap<&str, usize> = BTreeMap::new();
+    for (path, why) in said {
+        let at = *known.entry(why).or_insert(lines.len());
+        match lines.get_mut(at) {
+            Some((_, paths)) => paths.push(path),
+            None => lines.push((why, vec![path])),
+        }
+    }
+    for (why, paths) in lines.iter().take(LINES) {
+        let names = some_of(paths.iter().map(|path| format::file_name(path)));
+        let all = paths.iter().map(|path| path.display().to_string());
+        ui.label(RichText::new(format!("{names}: {kind}: {why}")).size(12.0))
+            .on_hover_text(all.take(LINES).collect::<Vec<_>>().join("\n"));
+    }
+    if lines.len() > LINES {
+        ui.label(RichText::new(format!("and {} more", lines.len() - LINES)).size(12.0));
+    }
 }
 
 /// Labels that lie beside the clips.

@@ -19,6 +19,8 @@ use crate::state::{
 };
 use crate::theme::Colours;
 
+const LIST: &str = "clips to label";
+
 pub fn show(ui: &mut Ui, state: &State, out: Out) {
     let height = ui.available_height();
     TopBottomPanel::bottom("timeline")
@@ -59,7 +61,7 @@ fn clips(ui: &mut Ui, state: &State, out: Out) {
     let Some(store) = &state.store else { return };
     let c = Colours::now(ui);
     widgets::section(ui, "CLIPS");
-    library::search(ui, state, ui.available_width() - 8.0, out);
+    library::search(ui, state, ui.available_width() - 8.0, LIST, out);
     ui.spacing_mut().item_spacing.y = 0.0;
     let shown = state.library.shown();
     let now = state.player.motion.as_ref().map(|m| m.id);
@@ -69,7 +71,7 @@ fn clips(ui: &mut Ui, state: &State, out: Out) {
             let is_now = |place: &usize| store.snapshot.clips.get(*place).map(|c| c.id) == now;
             let at = shown.iter().position(is_now);
             widgets::keep_in_view(ui, "clips to label", at, rows.start, ROW);
-            let list = List::following(ui, "clips to label", shown.len());
+            let list = List::following(ui, LIST, shown.len());
             list.scroll(ui, list.wanted, rows.start, ROW);
             for at in rows {
                 let Some(clip) = store.snapshot.clips.get(shown[at]) else {

@@ -1,6 +1,6 @@
 //! What files of labels would change, before they do.
 
-use egui::{Align2, Checkbox, Context, Rect, RichText, ScrollArea, Sense, Ui, Vec2, Window};
+use egui::{Checkbox, Context, Id, Modal, Rect, RichText, ScrollArea, Sense, Ui, Vec2};
 use morec_db::labels::{ChangedLabel, LabelChange};
 
 use super::{Out, widgets};
@@ -16,18 +16,9 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
     let Some(import) = &state.label_import else {
         return;
     };
-    let mut open = true;
-    let files = match &import.files.paths[..] {
-        [one] => format::file_name(one),
-        many => format::count(many.len(), "file"),
-    };
-    Window::new(format!("Labels of {files}"))
-        .open(&mut open)
-        .collapsible(false)
-        .resizable(false)
-        .anchor(Align2::CENTER_CENTER, [0.0, 0.0])
-        .show(ctx, |ui| contents(ui, state, import, out));
-    if !open || ctx.input(|i| i.key_pressed(egui::Key::Escape)) {
+    let modal = Modal::new(Id::new("labels of files"));
+    let modal = modal.show(ctx, |ui| contents(ui, state, import, out));
+    if modal.should_close() {
         out.push(Command::File(FileCommand::DismissLabels));
     }
 }
@@ -36,6 +27,16 @@ fn contents(ui: &mut Ui, state: &State, import: &LabelImport, out: Out) {
     let c = Colours::now(ui);
     let room = ui.ctx().content_rect().size();
     ui.set_width((room.x - 40.0).min(760.0));
+    let files = match &import.files.paths[..] {
+        [one] => format::file_name(one),
+        many => format::count(many.len(), "file"),
+    };
+    ui.label(
+        RichText::new(format!("Labels of {files}"))
+            .size(16.0)
+            .strong(),
+    );
+    ui.add_space(4.0);
     let changes = import.changes();
     ui.label(RichText::new(format::changed_labels(&changes.counts)).strong());
     for note in import.files.notes.iter().take(6) {
@@ -70,10 +71,8 @@ fn contents(ui: &mut Ui, state: &State, import: &LabelImport, out: Out) {
     ui.horizontal(|ui| {
         let any =
             !changes.changes.is_empty() || changes.counts.people + changes.counts.annotated > 0;
-        if ui
-            .add_enabled(any, widgets::main_button("Apply", &c))
-            .clicked()
-        {
+        let apply = ui.add_enabled_ui(any, |ui| widgets::default_button(ui, "Apply", &c));
+        if apply.inner {
             out.push(Command::File(FileCommand::ApplyLabels));
         }
         if ui.button("Cancel").clicked() {

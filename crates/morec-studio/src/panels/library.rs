@@ -12,10 +12,11 @@ use super::{
     words,
 };
 use crate::format;
-use crate::lists::List;
+use crate::lists::{self, List};
 use crate::state::{Column, Command, FileCommand, LibraryCommand, State};
 use crate::theme::Colours;
 
+const LIST: &str = "clips";
 const ROW: f32 = 26.0;
 const STRIP: f32 = 68.0;
 
@@ -56,8 +57,8 @@ fn scrub(ui: &mut Ui, state: &State, out: Out) {
     }
 }
 
-/// The field that searches the list of clips.
-pub(super) fn search(ui: &mut Ui, state: &State, width: f32, out: Out) {
+/// The field that searches the list of clips, which is called `list` and lies below it.
+pub(super) fn search(ui: &mut Ui, state: &State, width: f32, list: &str, out: Out) {
     let mut text = state.library.filter.clone();
     let edit = widgets::line(&mut text)
         .id(crate::keys::search_field())
@@ -73,6 +74,7 @@ pub(super) fn search(ui: &mut Ui, state: &State, width: f32, out: Out) {
     if asked.is_some() {
         response.request_focus();
     }
+    lists::enter_by_down(ui, &response, list);
     if response.has_focus() && ui.input(|i| i.key_pressed(Key::Escape)) {
         text.clear();
     }
@@ -83,9 +85,9 @@ pub(super) fn search(ui: &mut Ui, state: &State, width: f32, out: Out) {
 
 fn tools(ui: &mut Ui, state: &State, out: Out) {
     let c = Colours::now(ui);
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         let width = (ui.available_width() - 390.0).clamp(110.0, 280.0);
-        search(ui, state, width, out);
+        search(ui, state, width, LIST, out);
         if ui.button("Import clips …").clicked() {
             out.push(Command::File(FileCommand::AskImport));
         }
@@ -184,7 +186,7 @@ fn table(ui: &mut Ui, state: &State, out: Out) {
             let is_selected = |place: &usize| clips.get(*place).map(|c| &c.id) == selected;
             let at = shown.iter().position(is_selected);
             widgets::keep_in_view(ui, "clips", at, rows.start, height);
-            let list = List::following(ui, "clips", shown.len());
+            let list = List::following(ui, LIST, shown.len());
             list.scroll(ui, list.wanted, rows.start, height);
             for at in rows {
                 let Some(clip) = clips.get(shown[at]) else {

@@ -235,7 +235,7 @@ pub fn line(text: &mut String) -> TextEdit<'_> {
 
 /// The default button of a dialog: true if it is clicked, or Enter is pressed while no widget has the focus.
 pub fn default_button(ui: &mut Ui, text: &str, colours: &Colours) -> bool {
-    let is_free = ui.memory(|memory| memory.focused().is_none());
+    let is_free = ui.is_enabled() && ui.memory(|memory| memory.focused().is_none());
     let entered = is_free && ui.input(|i| i.key_pressed(Key::Enter));
     ui.add(main_button(text, colours)).clicked() || entered
 }

@@ -6,7 +6,7 @@ use morec_db::ClipInfo;
 use super::{Out, widgets};
 use crate::format;
 use crate::jobs::words::FoundWords;
-use crate::state::{Command, FileCommand, State};
+use crate::state::{Column, Command, FileCommand, State};
 use crate::theme::Colours;
 
 /// What was found of the text of the search field.
@@ -22,7 +22,11 @@ pub fn summary(ui: &mut Ui, state: &State, out: Out) {
         let clips = format::count(found.hits.len(), "clip");
         let text = match (found.hits.is_empty(), found.has_all) {
             (true, _) => "No clip is described by these words.".to_owned(),
-            (_, true) => format!("{clips} described by these words, the best first."),
+            // Unless the list is sorted by a column.
+            (_, true) if matches!(state.library.sort, None | Some((Column::Found, false))) => {
+                format!("{clips} described by these words, the best first.")
+            }
+            (_, true) => format!("{clips} described by these words."),
             (_, false) => format!("Nothing has all of these words; {clips} described by some."),
         };
         ui.colored_label(c.muted, text);

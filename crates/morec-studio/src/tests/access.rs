@@ -40,13 +40,7 @@ fn reached(person: &mut Person, most: usize) -> BTreeSet<String> {
     let mut names = BTreeSet::new();
     for _ in 0..most {
         person.key_with(Key::Tab, Modifiers::NONE);
-        let focused = person.window.root().children_recursive();
-        let focused = focused
-            .map(|node| node.accesskit_node())
-            .find(|n| n.is_focused());
-        if let Some(name) = focused.and_then(|n| n.label().or_else(|| n.value())) {
-            names.insert(name);
-        }
+        names.extend(person.focused());
     }
     names
 }
@@ -81,10 +75,7 @@ fn everything_that_can_be_clicked_has_a_name_and_is_reached_by_tab() {
 
 /// The widget that has the keyboard: its name, its place, and its part that is outlined, which is what is seen of it.
 fn outlined(person: &Person) -> Option<(String, Rect, Option<Rect>)> {
-    let mut nodes = person.window.root().children_recursive();
-    let node = nodes.find(|node| node.accesskit_node().is_focused())?;
-    let name = node.accesskit_node();
-    let name = name.label().or_else(|| name.value()).unwrap_or_default();
+    let name = person.focused()?;
     let c = Colours::of(person.state().dark);
     // Two lines around each other, of which one is seen on any ground.
     let drawn = |colour: Color32| {
@@ -141,4 +132,32 @@ fn in_a_small_window_tab_shows_and_outlines_each_control() {
             .collect();
         assert!(missing.is_empty(), "{panel:?}: Tab misses {missing:?}");
     }
+}
+
+#[test]
+fn the_keyboard_stays_in_an_open_menu_and_comes_back_when_it_closes() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), 1)]);
+    while person.focused().as_deref() != Some("File") {
+        person.key(Key::Tab);
+    }
+    person.key(Key::Enter);
+    person.frames(3);
+    let ctx = person.window.ctx.clone();
+    for _ in 0..30 {
+        person.key(Key::Tab);
+        person.frames(2);
+        let id = ctx.memory(|memory| memory.focused());
+        let place = id.and_then(|id| ctx.read_response(id));
+        let layer = place.expect("a line of the menu").layer_id;
+        assert_eq!(
+            layer.order,
+            egui::Order::Foreground,
+            "{:?}",
+            person.focused()
+        );
+    }
+    person.key(Key::Escape);
+    person.frames(3);
+    assert_eq!(person.focused().as_deref(), Some("File"));
 }

@@ -4,8 +4,7 @@ use egui::{Key, Modifiers};
 use morec_db::exchange::LabelFormat;
 
 use super::{Person, made, takes};
-use crate::state::DialogKind;
-use crate::state::Panel;
+use crate::state::{Command, DialogKind, Panel, PlayCommand};
 
 fn with_labels(labelled: usize) -> (tempfile::TempDir, Person) {
     let folder = tempfile::tempdir().unwrap();
@@ -41,8 +40,14 @@ fn a_database_is_opened_made_and_copied() {
     assert_eq!(person.state().store.as_ref().unwrap().path(), second);
     let copy = folder.path().join("copy.mdb");
     person.will_choose(&[&copy]);
+    person.click("ben_1");
+    person.settle();
+    person.command(Command::Play(PlayCommand::Seek(1.5)));
     person.file("Save a copy as … Ctrl S");
     assert_eq!(person.asked().choice, DialogKind::Save);
+    let player = &person.state().player;
+    let shown = player.motion.as_ref().map(|m| m.clip.name.as_str());
+    assert_eq!((shown, player.at_secs), (Some("ben_1"), 1.5), "as before");
     assert_eq!(person.database(), "copy.mdb");
     assert_eq!(person.labels().len(), 12, "with all that was in it");
     let new = folder.path().join("new.mdb");

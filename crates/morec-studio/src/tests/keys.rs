@@ -236,6 +236,13 @@ fn clips_are_looked_through_searched_and_labelled_by_keys_alone() {
     person.window.event(egui::Event::Text("ben".to_owned()));
     person.frames(3);
     assert!(person.offers("Show ben_1") && !person.offers("Show ada_1"));
+    // Down goes to what was found.
+    person.key(Key::ArrowDown);
+    person.settle();
+    let shown = person.state().player.motion.as_ref().unwrap();
+    assert_eq!(shown.clip.name, "ben_1");
+    person.key_with(Key::F, Modifiers::COMMAND);
+    person.frames(3);
     // From elsewhere into that of the library, which is the same.
     person.key(Key::Enter);
     person.key_with(Key::Num4, Modifiers::COMMAND);

@@ -108,7 +108,8 @@ fn every_form_comes_in() {
         let text = exchange::write(form, &annotations, &lengths).unwrap();
         std::fs::write(&path, text).unwrap();
         person.drops(&[&path]);
-        person.click("Apply");
+        // Enter applies what is shown.
+        person.key(Key::Enter);
         person.settle();
         assert_eq!(person.labels().len(), annotations.len(), "{form:?}");
         person.undo();

@@ -75,6 +75,10 @@ fn several_clips_are_described_and_removed_together() {
     person.ctrl_click("ada_1");
     person.click("Remove these clips …");
     assert_eq!(described(&person), before);
+    // Another selection is asked about anew, also when it is as before again.
+    person.ctrl_click("ada_1");
+    person.ctrl_click("ada_1");
+    person.click("Remove these clips …");
     let snapshot = person.state().store.as_ref().unwrap().snapshot.clone();
     let of = |name: &str| {
         snapshot

@@ -200,6 +200,14 @@ impl Person {
         self.frames(1);
     }
 
+    /// Name of the widget that has the keyboard.
+    pub fn focused(&self) -> Option<String> {
+        let nodes = self.window.root().children_recursive();
+        let mut nodes = nodes.map(|node| node.accesskit_node());
+        let node = nodes.find(|node| node.is_focused())?;
+        node.label().or_else(|| node.value())
+    }
+
     pub fn sees(&self, name: &str) -> bool {
         self.window.query_all_by_label(name).next().is_some()
     }

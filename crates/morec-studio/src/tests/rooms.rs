@@ -60,6 +60,27 @@ fn in_the_smallest_window_the_bar_at_the_top_is_whole() {
 }
 
 #[test]
+fn in_the_smallest_window_every_column_of_the_library_is_reached() {
+    let (_folder, mut person, window) = sized(640.0, 400.0);
+    person.goes_to(Panel::Library);
+    for column in ["clip", "person", "length", "labels", "format"] {
+        let name = format!("Sort by {column}");
+        for _ in 0..200 {
+            if person.focused().as_deref() == Some(&name) {
+                break;
+            }
+            person.key(Key::Tab);
+        }
+        person.frames(4);
+        let at = person.place(&name);
+        assert!(
+            at.width() > 30.0 && window.contains_rect(at),
+            "{column} at {at}"
+        );
+    }
+}
+
+#[test]
 fn nothing_of_a_scrolled_panel_lies_over_the_bars() {
     let (_folder, mut person, window) = sized(640.0, 400.0);
     for panel in Panel::ALL {

@@ -13,8 +13,8 @@ use crate::jobs::export::{self, Export};
 use crate::jobs::{JobOutcome, Jobs, example, import};
 use crate::state::study::StudyState;
 use crate::state::{
-    Ask, Classes, FileCommand, Library, Live, Motions, Player, State, TimelineState, Train,
-    TypedPath, dialog,
+    Ask, Classes, FileCommand, Library, Live, Motions, PlayCommand, Player, State, TimelineState,
+    Train, TypedPath, dialog,
 };
 use crate::store::{DbPlace, Edit, Store};
 use crate::unsaved::{self, Leftover, OwnFolder};
@@ -51,7 +51,9 @@ impl State {
                 self.forget();
                 self.succeeded();
                 self.say(match temporary {
-                    true => "is in a temporary folder: save a copy to keep it".to_owned(),
+                    true => {
+                        "the database is in a temporary folder: save a copy to keep it".to_owned()
+                    }
                     false => format!("{} opened", file_name(path)),
                 });
                 // A file of this run's own is no use to anybody else.
@@ -386,6 +388,8 @@ impl State {
             return;
         }
         let (from, temporary) = (store.path().to_owned(), store.temporary);
+        let shown = self.player.motion.clone();
+        let at_secs = self.player.at_secs;
         // The log is empty once the last connection closes.
         self.store = None;
         let copied = settle(&from).and_then(|()| copy_whole(&from, path));
@@ -401,6 +405,13 @@ impl State {
                 self.open_store(&from, temporary);
                 self.complain(format!("{}: not saved: {error}", file_name(path)));
             }
+        }
+        // Clips have the same numbers in the copy.
+        if let Some(motion) = shown.filter(|_| self.store.is_some()) {
+            let clip = motion.id;
+            self.motions.keep(motion);
+            self.open_clip(clip, None);
+            self.player.apply(&PlayCommand::Seek(at_secs));
         }
     }
 }
