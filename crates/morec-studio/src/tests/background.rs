@@ -5,6 +5,7 @@ use std::sync::OnceLock;
 
 use egui::Key;
 use morec::synth::{DatabaseSpec, database};
+use morec::train::Everyday;
 use morec_db::{BACKGROUND, ClipUpdate, MotionDb};
 
 use super::{Person, files_of, made, takes, written};
@@ -116,6 +117,7 @@ fn background_teaches_a_verifier_which_recognises_live() {
     let folder = tempfile::tempdir().unwrap();
     let path = with_other_motion(folder.path(), 3);
     let mut person = Person::before(std::slice::from_ref(&path));
+    person.everyday = Everyday::Always;
     person.goes_to(Panel::Train);
     person.click("Start training");
     person.settle();
@@ -219,6 +221,7 @@ fn select(person: &mut Person, stretch: (f64, f64)) {
 fn what_was_nothing_is_marked_live_learned_and_undone() {
     let folder = tempfile::tempdir().unwrap();
     let mut person = Person::before(&[with_other_motion(folder.path(), 3)]);
+    person.everyday = Everyday::Always;
     // A clip without labels plays, in which somebody moves.
     person.click("other_1");
     person.settle();
@@ -345,6 +348,7 @@ fn what_was_imported_is_marked_at_once() {
 fn none_of_these_takes_the_false_alarm_that_was_just_reported_and_says_whether_it_is_gone() {
     let folder = tempfile::tempdir().unwrap();
     let mut person = Person::before(&[made(folder.path(), 3)]);
+    person.everyday = Everyday::Always;
     // A clip without labels: what is recognised in it may be a false alarm.
     person.click("ada_1");
     person.settle();

@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
+use morec::train::Everyday;
 
 use crate::app::Studio;
 use crate::dialogs::{Chooser, Dialogs};
@@ -51,6 +52,8 @@ pub struct Person {
     checked: String,
     /// Where databases without a name lie; removed after the window.
     pub unsaved: Arc<tempfile::TempDir>,
+    /// Training with the built-in everyday motion takes most of the time of these tests; only those that need it have it.
+    pub everyday: Everyday,
 }
 
 impl Person {
@@ -93,6 +96,7 @@ impl Person {
             answers,
             checked: String::new(),
             unsaved,
+            everyday: Everyday::Never,
         };
         person.settle();
         person
@@ -151,8 +155,12 @@ impl Person {
     }
 
     fn step(&mut self) {
+        let settings = &mut self.window.state_mut().state.train.settings;
+        settings.everyday = self.everyday;
         self.window.step();
-        let line = &self.window.state().state.command_line;
+        // The tests' own choice is not of the line that users see.
+        let line = &mut self.window.state_mut().state.command_line;
+        *line = line.replace(" --everyday never", "");
         if *line != self.checked {
             super::lines::check(line);
             self.checked.clone_from(line);

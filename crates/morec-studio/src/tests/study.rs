@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use egui::Key;
-use morec::train::Everyday;
 use morec_db::labels::{DbSample, LabelOptions, NewSample};
 use morec_db::{MotionDb, ReportKind};
 use morec_ops::{CurveFigures, CurvePoint, GroupMethod, LearningCurve, time_budget};
@@ -273,8 +272,6 @@ fn the_learning_curve_is_measured_until_it_is_stopped_and_drawn_with_what_it_say
 fn a_learning_curve_is_measured_to_its_end_kept_and_opened_again() {
     let folder = tempfile::tempdir().unwrap();
     let mut person = Person::before(&[made(folder.path(), 1)]);
-    // Everyday motion as background would take minutes.
-    person.window.state_mut().state.train.settings.everyday = Everyday::Never;
     person.goes_to(Panel::Train);
     person.click("Learning curve");
     person.settle();

@@ -5,11 +5,13 @@ use crate::jobs::thesis::{GRID, TreeNodeView};
 use crate::state::{Command, LibraryCommand, Panel, TimelineCommand, TrainCommand};
 use crate::store::Edit;
 use morec::index::MotionIndex;
+use morec::train::Everyday;
 use morec::train::thesis::SvrdmTrainParams;
 
 #[test]
 fn an_index_is_trained_kept_and_its_mistakes_are_found() {
     let (_folder, mut person) = before(Panel::Train, 3);
+    person.everyday = Everyday::Always;
     person.click("Start training");
     person.settle();
     let index = person.state().train.index.clone().unwrap();
