@@ -231,6 +231,14 @@ def learning_curve(
     background: Background = None,
     unknown: Background = None,
     classes: Sequence[str] = (),
+    exclude: Sequence[str] = (),
+    unlabelled: str = "background",
+    everyday: str = "always",
+    mirror: str = "auto",
+    one_sided: Sequence[str] = (),
+    activities: Sequence[str] = (),
+    gestures: Sequence[str] = (),
+    bones: str | Sequence[str] = "all",
     params: Mapping[str, Any] | None = None,
     progress: Progress = None,
 ) -> dict[str, Any]:
@@ -245,9 +253,11 @@ def learning_curve(
         ``points`` (``samples``, ``people``, and ``draws`` with ``f1``, ``recall``, ``alarms_per_minute``, ``delay_secs``), and ``advice``:
         sentences.
     """
-    material = _material(clips, labels, people, background, ())
+    material = _material(clips, labels, people, background, exclude)
     material["unknown"] = _aside(unknown, material["clips"])
-    settings = _settings(classes, (), (), (), "all", params)
+    settings = _settings(
+        classes, one_sided, activities, gestures, bones, params, unlabelled=unlabelled, everyday=everyday, mirror=mirror,
+    )  # fmt: skip
     return _morec.learning_curve(material, settings, json.dumps({"by": by}), listener(progress))
 
 

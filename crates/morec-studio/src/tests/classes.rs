@@ -27,7 +27,10 @@ fn a_class_is_added_renamed_removed_and_what_is_in_the_database_is_undone() {
     person.right_click("Class wave");
     person.click("Rename");
     person.frames(2);
-    person.types("New name of wave", "greeting");
+    // What is typed replaces the name.
+    person.inserts("greeting");
+    person.key(Key::Enter);
+    person.settle();
     assert!(person.sees("Class greeting") && !person.sees("Class wave"));
     assert!(person.labels().iter().any(|l| l.1 == "greeting"));
     person.undo();
