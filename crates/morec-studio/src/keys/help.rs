@@ -16,7 +16,11 @@ pub const HELP: &[(&str, &str, &str)] = &[
     ("Anywhere", "Ctrl T", "train"),
     ("Anywhere", "Ctrl H, F1", "history, this page"),
     ("Library", "Ctrl A", "select all clips of the list"),
-    ("Library, labels", "Ctrl F", "search clips; Down goes to the first hit"),
+    (
+        "Library, labels",
+        "Ctrl F",
+        "search clips; Down goes to the first hit",
+    ),
     (
         "Library, labels",
         "Up, Down",

@@ -73,11 +73,9 @@ pub fn misspelled(counts: &BTreeMap<&str, usize>) -> Vec<String> {
             if key == other_key {
                 return rank(other, *more) < rank(name, *count);
             }
-            let times = match are_swapped(key, other_key) {
-                true => TIMES_MORE_SWAPPED,
-                false => TIMES_MORE,
-            };
-            (1..=FEW).contains(count) && *more >= times * count && is_slip(key, other_key)
+            (1..=FEW).contains(count)
+                && *more >= times_more(key, other_key) * count
+                && is_slip(key, other_key)
         })?;
         let labels = if *count == 1 { "label" } else { "labels" };
         let meant = meant.1;
@@ -92,6 +90,14 @@ pub fn misspelled(counts: &BTreeMap<&str, usize>) -> Vec<String> {
 fn folded(name: &str) -> String {
     let lower = name.to_lowercase();
     lower.replace([' ', '-'], "_")
+}
+
+/// How many times the labels of a class that is meant are those of a misspelled one, at least.
+fn times_more(name: &str, other: &str) -> usize {
+    match are_swapped(name, other) {
+        true => TIMES_MORE_SWAPPED,
+        false => TIMES_MORE,
+    }
 }
 
 /// True if the letters are the same in another order.
