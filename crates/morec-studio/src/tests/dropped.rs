@@ -108,6 +108,17 @@ fn refused_files_are_listed_however_they_came() {
 }
 
 #[test]
+fn files_that_are_refused_for_one_reason_share_a_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let files = ["one.bvh", "two.bvh"].map(|name| folder.path().join(name));
+    for file in &files {
+        std::fs::write(file, "").unwrap();
+    }
+    let person = Person::before(&files);
+    assert!(person.sees_part("one.bvh, two.bvh: refused"));
+}
+
+#[test]
 fn refused_files_are_told_on_other_panels() {
     let folder = tempfile::tempdir().unwrap();
     let files = with_refused(folder.path());

@@ -3,13 +3,15 @@
 use egui::Key;
 use morec::index::MotionIndex;
 use morec::roles::mapping::Mapping;
-use morec::{ImportOptions, Labels, Trainer};
+use morec::{ImportOptions, Labels, TimeSpan, Trainer};
 use morec_db::MotionDb;
+use morec_db::labels::NewSample;
 use morec_ops::RecognizeSettings;
 
 use super::{Person, before, made, takes};
 use crate::state::live::Choice;
 use crate::state::{ClassCommand, Command, LiveCommand, Panel, TrainCommand};
+use crate::store::Edit;
 
 #[test]
 fn what_just_happened_is_marked_learned_and_recognised_and_undone() {
@@ -386,6 +388,21 @@ fn index_of_a_puppet() -> MotionIndex {
     });
     let taught: Vec<_> = taught.collect();
     Trainer::new().labels(&labels).train(&taught).unwrap()
+}
+
+#[test]
+fn with_many_classes_what_is_recognised_stays_in_view() {
+    let (_folder, mut person) = before(Panel::Live, 1);
+    let clip = person.state().store.as_ref().unwrap().snapshot.clips[0].id;
+    let sample = |number: usize| {
+        let class = format!("a motion with a long name {number}");
+        NewSample::accepted(clip, &class, TimeSpan::new(1.0, 2.0))
+    };
+    person.command(Command::Edit(Edit::Label((0..45).map(sample).collect())));
+    person.settle();
+    let window = person.window.ctx.content_rect();
+    let heading = person.place("RECOGNISED");
+    assert!(heading.bottom() < 0.7 * window.height(), "{heading}");
 }
 
 #[test]
