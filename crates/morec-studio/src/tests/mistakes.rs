@@ -66,6 +66,47 @@ fn shows_search(person: &Person, what: &str) -> bool {
     line.starts_with("morec db search ") && line.ends_with(what)
 }
 
+/// The top of the column name `missed`, if it is drawn in sight.
+fn top_of_missed(person: &Person) -> Option<f32> {
+    let shapes = person.window.output().shapes.iter();
+    let mut tops = shapes.filter_map(|clipped| match &clipped.shape {
+        egui::Shape::Text(text) if text.galley.text() == "missed" && text.angle != 0.0 => {
+            let at = text.pos;
+            clipped.clip_rect.expand(1.0).contains(at).then_some(at.y)
+        }
+        _ => None,
+    });
+    tops.next()
+}
+
+#[test]
+fn names_of_columns_stay_in_sight_while_the_matrix_is_scrolled() {
+    let (_folder, mut person) = judged();
+    person.window.set_size(egui::vec2(900.0, 450.0));
+    person.frames(3);
+    let cell = "wave recognised as wave";
+    let place = |person: &Person| {
+        let name = person.named_part(cell);
+        person.place(&name)
+    };
+    let (first, name) = (place(&person), top_of_missed(&person));
+    let at = egui::pos2(first.center().x, 300.0);
+    person.window.event(egui::Event::PointerMoved(at));
+    for _ in 0..20 {
+        if place(&person).top() < first.top() - 100.0 {
+            break;
+        }
+        person.window.event(egui::Event::MouseWheel {
+            unit: egui::MouseWheelUnit::Point,
+            delta: egui::vec2(0.0, -30.0),
+            modifiers: egui::Modifiers::NONE,
+        });
+        person.frames(10);
+    }
+    assert!(place(&person).top() < first.top() - 100.0, "it is scrolled");
+    assert!(top_of_missed(&person).is_some(), "{name:?}");
+}
+
 #[test]
 fn matrix_list_and_figures_count_the_same() {
     let (_folder, mut person) = cross_validated();
