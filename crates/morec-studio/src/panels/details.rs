@@ -93,7 +93,7 @@ fn remove(ui: &mut Ui, clips: &[&ClipInfo], out: Out) {
         format::count(ids.len(), "clip"),
         format::count(labels, "label")
     );
-    // The question is of these clips, and over once it was not shown: another selection, another panel.
+    // The question ends when other clips are selected or another panel is shown.
     let pass = ui.ctx().cumulative_pass_nr();
     let question: Option<(Vec<ClipId>, u64)> = ui.data(|data| data.get_temp(asked));
     let is_asked = question.is_some_and(|(of, shown)| of == ids && shown + 1 >= pass);

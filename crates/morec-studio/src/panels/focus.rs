@@ -1,4 +1,4 @@
-//! The keyboard's place: outlined, and brought into view when it moves.
+//! The widget that has the keyboard: outlined, brought into view when it changes, and kept inside an open menu.
 
 use egui::accesskit::{Action, ActionRequest, NodeId};
 use egui::{Context, Event, Id, Order, Popup, Response, Stroke, StrokeKind, Ui};
@@ -52,8 +52,8 @@ pub fn follow(ctx: &Context) {
 }
 
 /// What had the keyboard before a menu was opened.
-#[derive(Debug, Clone, Copy)]
-struct BehindMenu(Id);
+#[derive(Debug, Clone, Copy, Default)]
+struct BehindMenu(Option<Id>);
 
 /// Before a frame is drawn: while a menu is open, the keyboard stays in it, and a click outside closes it alone. True if one is open.
 pub fn keep_in_menus(ctx: &Context) -> bool {
@@ -70,16 +70,16 @@ pub fn keep_in_menus(ctx: &Context) -> bool {
     // What lies below a menu loses the keyboard when it is drawn.
     let is_below = |r: &Response| r.layer_id.order < Order::Foreground;
     if let Some(response) = focused(ctx).filter(is_below) {
-        ctx.data_mut(|data| data.insert_temp(Id::NULL, Some(BehindMenu(response.id))));
+        ctx.data_mut(|data| data.insert_temp(Id::NULL, BehindMenu(Some(response.id))));
     }
     true
 }
 
 /// After a frame without a menu: the keyboard is again where it was before the menu was opened, if that is still drawn.
 pub fn come_back_from_menus(ctx: &Context) {
-    let behind: Option<Option<BehindMenu>> = ctx.data_mut(|data| data.remove_temp(Id::NULL));
+    let behind: Option<BehindMenu> = ctx.data_mut(|data| data.remove_temp(Id::NULL));
     let is_free = ctx.memory(|memory| memory.focused().is_none());
-    let Some(BehindMenu(id)) = behind.flatten().filter(|_| is_free) else {
+    let Some(id) = behind.and_then(|behind| behind.0).filter(|_| is_free) else {
         return;
     };
     if ctx.viewport(|viewport| viewport.this_pass.widgets.contains(id)) {

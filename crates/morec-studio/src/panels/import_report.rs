@@ -55,7 +55,7 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
     ui.add_space(6.0);
 }
 
-/// Files with what is said of them; those of which the same is said share a line.
+/// A line for each note, with the names of all files that have it.
 fn notes(ui: &mut Ui, kind: &str, said: &[(PathBuf, String)]) {
     const LINES: usize = 100;
     let mut lines: Vec<(&str, Vec<&PathBuf>)> = Vec::new();

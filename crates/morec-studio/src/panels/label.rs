@@ -70,7 +70,7 @@ fn clips(ui: &mut Ui, state: &State, out: Out) {
         .show_rows(ui, ROW, shown.len(), |ui, rows| {
             let is_now = |place: &usize| store.snapshot.clips.get(*place).map(|c| c.id) == now;
             let at = shown.iter().position(is_now);
-            widgets::keep_in_view(ui, "clips to label", at, rows.start, ROW);
+            widgets::keep_in_view(ui, LIST, at, rows.start, ROW);
             let list = List::following(ui, LIST, shown.len());
             list.scroll(ui, list.wanted, rows.start, ROW);
             for at in rows {

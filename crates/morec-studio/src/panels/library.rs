@@ -185,7 +185,7 @@ fn table(ui: &mut Ui, state: &State, out: Out) {
             let selected = state.library.selected.last();
             let is_selected = |place: &usize| clips.get(*place).map(|c| &c.id) == selected;
             let at = shown.iter().position(is_selected);
-            widgets::keep_in_view(ui, "clips", at, rows.start, height);
+            widgets::keep_in_view(ui, LIST, at, rows.start, height);
             let list = List::following(ui, LIST, shown.len());
             list.scroll(ui, list.wanted, rows.start, height);
             for at in rows {

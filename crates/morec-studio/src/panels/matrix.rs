@@ -82,20 +82,22 @@ fn matrix(ui: &mut Ui, state: &State, out: Out) {
     ScrollArea::horizontal().id_salt("matrix").show(ui, |ui| {
         let size = Vec2::new(names + cell * columns as f32, head + tall * rows as f32);
         let (area, _) = ui.allocate_exact_size(size, Sense::hover());
-        // Names of rows and columns stay where they are seen while the cells are scrolled.
+        // Names of rows and columns stay in view while the cells are scrolled.
         let seen = ui.clip_rect();
         let left = area.left().max(seen.left());
         let top = area.top().max(seen.top()).min(area.bottom() - tall - head);
         let first = pos2(left + names, top + head);
-        within(ui, seen.with_min_x(first.x), |ui| {
+        let columns_area = seen.with_min_x(first.x);
+        ui.scope(widgets::within(columns_area, |ui| {
             for column in 0..columns {
                 let name = judged.columns.get(column).map_or("missed", String::as_str);
                 let x = area.left() + names + cell * (column as f32 + 0.5);
                 slanted(ui, pos2(x - 10.0, first.y - 16.0), name, &c);
             }
-        });
+        }));
         let row_top = |row: usize| area.top() + head + tall * row as f32;
-        within(ui, seen.with_min_y(first.y), |ui| {
+        let rows_area = seen.with_min_y(first.y);
+        ui.scope(widgets::within(rows_area, |ui| {
             let size = Vec2::new(names - 10.0, tall);
             for row in 0..rows {
                 let name = judged.rows.get(row).map_or(NO_LABEL, String::as_str);
@@ -103,29 +105,18 @@ fn matrix(ui: &mut Ui, state: &State, out: Out) {
                 let text = Rect::from_min_size(pos2(left, row_top(row)), size);
                 widgets::text_in(ui, text, name, 12.5, colour, true);
             }
-        });
+        }));
         // Neither labelled nor recognised is nothing that could be counted.
         let list = List::grid(ui, "matrix", rows * columns - 1, columns);
-        within(
-            ui,
-            seen.intersect(Rect::from_min_max(first, area.max)),
-            |ui| {
-                for at in 0..rows * columns - 1 {
-                    let (row, column) = (at / columns, at % columns);
-                    let corner = pos2(area.left() + names + cell * column as f32, row_top(row));
-                    let rect = Rect::from_min_size(corner, Vec2::new(cell, tall)).shrink(1.0);
-                    one(ui, state, rect, (row, column), (&list, at), out);
-                }
-            },
-        );
-    });
-}
-
-/// Draws what is seen in an area alone.
-fn within(ui: &mut Ui, area: Rect, draw: impl FnOnce(&mut Ui)) {
-    ui.scope(|ui| {
-        ui.set_clip_rect(area);
-        draw(ui);
+        let cells_area = Rect::from_min_max(first, area.max);
+        ui.scope(widgets::within(cells_area, |ui| {
+            for at in 0..rows * columns - 1 {
+                let (row, column) = (at / columns, at % columns);
+                let corner = pos2(area.left() + names + cell * column as f32, row_top(row));
+                let rect = Rect::from_min_size(corner, Vec2::new(cell, tall)).shrink(1.0);
+                one(ui, state, rect, (row, column), (&list, at), out);
+            }
+        }));
     });
 }
 

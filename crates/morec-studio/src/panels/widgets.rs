@@ -38,8 +38,8 @@ pub trait Clipped {
     fn show_clipped(self, ui: &mut Ui, contents: impl FnOnce(&mut Ui));
 }
 
-/// The contents of a panel, no farther than an area reaches.
-fn within(area: Rect, contents: impl FnOnce(&mut Ui)) -> impl FnOnce(&mut Ui) {
+/// Contents of which nothing is drawn or clicked outside of an area.
+pub fn within(area: Rect, contents: impl FnOnce(&mut Ui)) -> impl FnOnce(&mut Ui) {
     move |ui| {
         ui.set_clip_rect(ui.clip_rect().intersect(area));
         contents(ui);

@@ -22,7 +22,7 @@ pub fn summary(ui: &mut Ui, state: &State, out: Out) {
         let clips = format::count(found.hits.len(), "clip");
         let text = match (found.hits.is_empty(), found.has_all) {
             (true, _) => "No clip is described by these words.".to_owned(),
-            // Unless the list is sorted by a column.
+            // Sorted by another column, the list does not begin with the best.
             (_, true) if matches!(state.library.sort, None | Some((Column::Found, false))) => {
                 format!("{clips} described by these words, the best first.")
             }

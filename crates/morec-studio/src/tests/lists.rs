@@ -51,10 +51,7 @@ pub fn focus(person: &mut Person, name: &str) {
 
 /// Name of the widget that has the keyboard.
 pub fn focused(person: &Person) -> String {
-    let mut nodes = person.window.root().children_recursive();
-    let focused = nodes.find(|node| node.accesskit_node().is_focused());
-    let name = focused.and_then(|node| node.accesskit_node().label());
-    name.unwrap_or_default()
+    person.focused().unwrap_or_default()
 }
 
 /// Goes through a list of these rows by keys.

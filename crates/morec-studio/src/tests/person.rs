@@ -52,7 +52,7 @@ pub struct Person {
     checked: String,
     /// Where databases without a name lie; removed after the window.
     pub unsaved: Arc<tempfile::TempDir>,
-    /// Training with the built-in everyday motion takes most of the time of these tests; only those that need it have it.
+    /// Whether training uses the built-in everyday motion. By default it does not, because that would take most of the tests' time.
     pub everyday: Everyday,
 }
 
@@ -158,7 +158,7 @@ impl Person {
         let settings = &mut self.window.state_mut().state.train.settings;
         settings.everyday = self.everyday;
         self.window.step();
-        // The tests' own choice is not of the line that users see.
+        // Users do not have this option of the tests: lines are checked without it.
         let line = &mut self.window.state_mut().state.command_line;
         *line = line.replace(" --everyday never", "");
         if *line != self.checked {

@@ -330,11 +330,7 @@ impl Model {
 
     /// Name of what has the keyboard.
     fn focused_name(&self) -> String {
-        let mut nodes = self.person.window.root().children_recursive();
-        let focused = nodes.find(|node| node.accesskit_node().is_focused());
-        focused
-            .and_then(|n| n.accesskit_node().label())
-            .unwrap_or_default()
+        self.person.focused().unwrap_or_default()
     }
 
     fn is_on_turn(&self) -> bool {

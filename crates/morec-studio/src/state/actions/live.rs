@@ -180,15 +180,11 @@ impl State {
         let live = &mut self.live;
         let Some(run) = &mut live.run else { return };
         let frames = run.tick(dt);
-        // A take is of one performer, and its frames are chosen by that performer's number.
+        // A take records one performer: nobody else is watched before it ends.
         if live.take.is_none() && run.watch_successor() {
             live.range = None;
         }
-        if let Some(why) = run.forgot.take() {
-            self.forget_minutes(why);
-        }
-        let live = &mut self.live;
-        let Some(run) = &mut live.run else { return };
+        let forgot = run.forgot.take();
         if let Some(take) = &mut live.take {
             frames.iter().for_each(|frame| take.push(frame));
         }
@@ -214,9 +210,12 @@ impl State {
             self.live.framed = Some(actor);
             self.stand_off(is_hand.then_some(HAND_HALF_M));
         }
+        if let Some(why) = forgot {
+            self.forget_minutes(why);
+        }
     }
 
-    /// What was shown and selected of minutes that are no longer kept cannot be used.
+    /// Drops what was shown and selected of minutes that are no longer kept, and says why.
     fn forget_minutes(&mut self, why: Forgot) {
         if self.live.take.is_some() {
             self.keep_take();

@@ -46,7 +46,7 @@ impl Feed {
         }
     }
 
-    /// Asks a device no longer; a clip just stands.
+    /// Ends the thread of a device. A clip has no thread.
     pub fn stop(&mut self) {
         if let Feed::Thread(feed) = self {
             feed.stop();

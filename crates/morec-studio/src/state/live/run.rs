@@ -80,7 +80,7 @@ pub struct Run {
     pub compared: VecDeque<LiveDeviation>,
     /// Classes of motions that ended since they were asked for.
     pub news: Vec<ClassId>,
-    /// Why minutes of the performer who is watched were dropped since it was asked for.
+    /// Why the last minutes of the performer who is watched were dropped, until it is said.
     pub forgot: Option<Forgot>,
     model: Option<Model>,
     /// Time for which nothing has come, seconds on the wall.
@@ -119,7 +119,7 @@ impl Run {
         !self.stopped && !self.ended
     }
 
-    /// Takes nothing more; the motions under way end.
+    /// Stops the source. Motions that are under way end.
     pub fn stop(&mut self) {
         self.stopped = true;
         self.feed.stop();
@@ -211,23 +211,18 @@ impl Run {
 
     /// The performer of a number; a new one takes the place of one who is gone once all places are taken.
     fn performer(&mut self, actor: PerformerId) -> Option<&mut LivePerformer> {
-        let places = self.performers.iter();
-        let at = match places.clone().position(|p| p.actor == actor) {
-            Some(at) => at,
-            None => {
-                let new = LivePerformer::new(actor, self.model.as_ref());
-                if self.performers.len() < MOST {
-                    self.performers.push(new);
-                    self.performers.len() - 1
-                } else {
-                    let is_free = |(at, p): (usize, &LivePerformer)| p.gone && at != self.watched;
-                    let at = places.enumerate().position(is_free)?;
-                    self.performers[at] = new;
-                    at
-                }
-            }
-        };
-        self.performers.get_mut(at)
+        if let Some(at) = self.performers.iter().position(|p| p.actor == actor) {
+            return self.performers.get_mut(at);
+        }
+        if self.performers.len() < MOST {
+            let new = LivePerformer::new(actor, self.model.as_ref());
+            self.performers.push(new);
+            return self.performers.last_mut();
+        }
+        let mut places = self.performers.iter_mut().enumerate();
+        let (_, place) = places.find(|(at, p)| p.gone && *at != self.watched)?;
+        *place = LivePerformer::new(actor, self.model.as_ref());
+        Some(place)
     }
 
     /// What was recognised of a performer whose frames were dropped cannot be looked at again.
