@@ -225,8 +225,9 @@ impl BoneSet {
         BoneSet(self.0 & other.0)
     }
 
-    /// The bones that clips of one kind have in common, of clips that each show a set and have a weight: those of the sets with the
-    /// most weight, and of every other set that shares some with them. Sets that share none are of another kind: hands beside bodies.
+    /// The bones shared by the largest group of skeletons, from the bones and the weight of each skeleton. The bones with the most weight
+    /// are intersected with the others in order of weight; a skeleton that shares none of them belongs to another group, such as a
+    /// hand among bodies. O(skeletons · log skeletons).
     #[must_use]
     pub fn most_common(shown: impl IntoIterator<Item = (BoneSet, usize)>) -> Self {
         let mut kinds: BTreeMap<BoneSet, usize> = BTreeMap::new();

@@ -3,6 +3,7 @@
 use rusqlite::{Connection, OptionalExtension, params};
 
 use super::sample::SampleId;
+use crate::history::counted;
 use crate::{BACKGROUND, DbError, MotionDb, names};
 
 /// A class and how many samples it has.
@@ -148,10 +149,7 @@ impl MotionDb {
     /// # Errors
     /// [`DbError::Unknown`] if a sample does not exist; [`DbError::Invalid`] if `into` is not a valid name.
     pub fn split_class(&mut self, samples: &[SampleId], into: &str) -> Result<usize, DbError> {
-        let count = match samples.len() {
-            1 => "1 sample".to_owned(),
-            many => format!("{many} samples"),
-        };
+        let count = counted(samples.len(), "sample");
         self.edit(&format!("move {count} to {into}"), |conn| {
             let mut known = conn.prepare_cached("SELECT 1 FROM samples WHERE id = ?1")?;
             for id in samples {

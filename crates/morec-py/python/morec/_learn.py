@@ -244,8 +244,8 @@ def learning_curve(
 ) -> dict[str, Any]:
     """Measure what more samples and more people are worth; what ``morec crossval --curve --json`` prints.
 
-    Cross-validates with 1, 2, 4 ... samples of each class and with 1, 2, 4 ... people, three draws each, and with all of them. The
-    parameters are those of `crossval`.
+    Cross-validates with 1, 2, 4 ... samples of each class and with 1, 2, 4 ... people, three draws each, and with all of them. Its
+    parameters mean what they mean in `crossval`.
 
     Returns
     -------

@@ -86,13 +86,13 @@ pub fn misspelled(counts: &BTreeMap<&str, usize>) -> Vec<String> {
     asked.collect()
 }
 
-/// A name without its case and without what separates its words.
+/// A name in lower case, with underscores between its words.
 fn folded(name: &str) -> String {
     let lower = name.to_lowercase();
     lower.replace([' ', '-'], "_")
 }
 
-/// How many times the labels of a class that is meant are those of a misspelled one, at least.
+/// The least ratio of labels, of the class that is meant to the misspelled one.
 fn times_more(name: &str, other: &str) -> usize {
     match are_swapped(name, other) {
         true => TIMES_MORE_SWAPPED,
